@@ -1,0 +1,80 @@
+"""What the leaves of one robot's tree share: plain typed attributes, nothing process-wide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point
+from robobt.world.state import Frame, RobotState
+
+
+@dataclass(slots=True, frozen=True)
+class Shot:
+    """A rated shot: what every shot rater returns.
+
+    Attributes:
+        target: point to aim at, on the opponent's goal line [m].
+        tolerance: half angle around it that still counts as this shot [rad].
+        score: 0 (hopeless) to 1 (as good as in).
+    """
+
+    target: Point
+    tolerance: float
+    score: float
+
+
+@dataclass(slots=True, frozen=True)
+class Pass:
+    """A chosen pass: the receiver's number, where it shall go [m], ball speed [m/s], score 0 to 1."""
+
+    receiver: int
+    target: Point
+    speed: float
+    score: float
+
+
+@dataclass(slots=True)
+class TeamStore:
+    """What the robots of one team share.
+
+    Attributes:
+        passer, receiver: numbers of the robots of the pass under way, None without one.
+        pass_target: where that pass goes [m].
+        pass_time: when it was kicked [s].
+    """
+
+    passer: int | None = None
+    receiver: int | None = None
+    pass_target: Point | None = None
+    pass_time: float = 0.0
+
+
+@dataclass(slots=True)
+class Store:
+    """The store of one robot.
+
+    ``frame``, ``me`` and a fresh ``command`` (stand still) are set before every
+    tick; the leaves fill in the rest and decide the command.
+
+    Attributes:
+        frame: what is on the field, from the own team's side.
+        me: the robot this tree moves.
+        command: what it will be told after the tick.
+        rng: the tree's generator; the only randomness a leaf may use.
+        team: what the team shares.
+        target: where a skill wants the robot or the ball to go [m].
+        shot: the shot selected last, None when there is none.
+        pass_: the pass selected last, None when there is none.
+    """
+
+    frame: Frame
+    me: RobotState
+    command: RobotCommand = field(default_factory=RobotCommand)
+    rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
+    team: TeamStore = field(default_factory=TeamStore)
+    target: Point | None = None
+    shot: Shot | None = None
+    pass_: Pass | None = None

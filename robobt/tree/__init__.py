@@ -1,0 +1,33 @@
+"""The engine over py_trees: leaf base, runner, registry. Knows nothing of physics.
+
+Composites and decorators are py_trees' own, under their own names.
+"""
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Parallel, Selector, Sequence
+from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, Repeat, Retry, SuccessIsFailure
+
+from robobt.tree.leaf import Leaf, bind
+from robobt.tree.registry import Registry
+from robobt.tree.runner import TreeRunner, node_path, preorder
+
+__all__ = [
+    "Behaviour",
+    "FailureIsSuccess",
+    "Inverter",
+    "Leaf",
+    "OneShot",
+    "Parallel",
+    "Registry",
+    "Repeat",
+    "Retry",
+    "Selector",
+    "Sequence",
+    "Status",
+    "SuccessIsFailure",
+    "TreeRunner",
+    "bind",
+    "node_path",
+    "preorder",
+]

@@ -1,0 +1,94 @@
+"""The base of every leaf: a py_trees behaviour with a typed store and a lifecycle that reads aloud."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Generic, TypeVar
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+StoreT = TypeVar("StoreT")
+
+
+class Leaf(Behaviour, Generic[StoreT]):
+    """A leaf that works on a store shared by one robot's tree.
+
+    Override :meth:`on_running`, and the others where needed:
+
+    | method | when |
+    | --- | --- |
+    | ``on_start`` | the leaf is ticked and was not running |
+    | ``on_running`` | every tick, the first one included; returns the status |
+    | ``on_done`` | the leaf has just succeeded or failed |
+    | ``on_interrupt`` | a running leaf was stopped by another branch |
+
+    py_trees ticks the interrupting branch before it stops the old one, so
+    ``on_interrupt`` runs after the new branch has decided its command and must
+    not write one.
+
+    Attributes:
+        reads, writes: names of the store's entries the leaf uses.
+        store: the robot's store; set by :func:`bind` before the first tick.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    writes: ClassVar[tuple[str, ...]] = ()
+
+    store: StoreT
+
+    def __init__(self, name: str = "") -> None:
+        super().__init__(name or type(self).__name__)
+
+    def on_start(self) -> None:
+        """Called on the first tick of a run."""
+
+    def on_running(self) -> Status:
+        """One tick's work; SUCCESS or FAILURE ends the run."""
+        raise NotImplementedError(f"{type(self).__name__} does not define on_running")
+
+    def on_done(self, status: Status) -> None:
+        """Called when the run ends by itself."""
+
+    def on_interrupt(self) -> None:
+        """Called when a running leaf is stopped from outside."""
+
+    def fail(self, reason: str) -> Status:
+        """FAILURE, with the reason as the node's feedback."""
+        self.feedback_message = reason
+        return Status.FAILURE
+
+    def run(self, feedback: str = "") -> Status:
+        """RUNNING, with what is being done as the node's feedback."""
+        self.feedback_message = feedback
+        return Status.RUNNING
+
+    def succeed(self, feedback: str = "") -> Status:
+        """SUCCESS, with an optional remark as the node's feedback."""
+        self.feedback_message = feedback
+        return Status.SUCCESS
+
+    def initialise(self) -> None:
+        """Called by py_trees; override :meth:`on_start` instead."""
+        self.on_start()
+
+    def update(self) -> Status:
+        """Called by py_trees; override :meth:`on_running` instead."""
+        return self.on_running()
+
+    def terminate(self, new_status: Status) -> None:
+        """Called by py_trees; override :meth:`on_done` or :meth:`on_interrupt` instead.
+
+        py_trees also stops finished nodes with INVALID when their parent starts
+        anew; that is neither an end nor an interruption and reaches nobody.
+        """
+        if new_status is not Status.INVALID:
+            self.on_done(new_status)
+        elif self.status is Status.RUNNING:
+            self.on_interrupt()
+
+
+def bind(root: Behaviour, store: object) -> None:
+    """Give every leaf below ``root`` the store of the robot that runs the tree."""
+    for node in root.iterate():
+        if isinstance(node, Leaf):
+            node.store = store

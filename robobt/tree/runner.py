@@ -1,0 +1,89 @@
+"""Ticks one robot's tree and keeps a fault in it from spreading."""
+
+from __future__ import annotations
+
+import logging
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from robobt.tree.leaf import bind
+
+_log = logging.getLogger(__name__)
+
+
+def node_path(node: Behaviour) -> str:
+    """Names from the root to the node, joined by slashes."""
+    names = [node.name]
+    while node.parent is not None:
+        node = node.parent
+        names.append(node.name)
+    return "/".join(reversed(names))
+
+
+class TreeRunner:
+    """A tree bound to one store.
+
+    An exception in a node stops this tree: every node becomes INVALID, ``error``
+    says what happened and where, and the next tick starts from the root again.
+
+    Attributes:
+        nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
+        error: what the last tick raised, None when it went well.
+    """
+
+    def __init__(self, root: Behaviour, store: object) -> None:
+        self.root = root
+        self.error: str | None = None
+        self.nodes = preorder(root)
+        bind(root, store)
+
+    def tick(self) -> Status:
+        """Tick the tree once; INVALID when a node raised."""
+        self.error = None
+        try:
+            for _ in self.root.tick():
+                pass
+        except Exception as error:
+            self.error = f"{self._raiser(error)}: {type(error).__name__}: {error}"
+            _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
+            self._clear()
+        return self.root.status
+
+    def statuses(self) -> str:
+        """One letter a node in the order of ``nodes``: S, F, R or - (not ticked)."""
+        return "".join([_LETTERS[node.status] for node in self.nodes])
+
+    def stop(self) -> None:
+        """End the run; running leaves are interrupted."""
+        self.root.stop(Status.INVALID)
+
+    def _raiser(self, error: Exception) -> str:
+        trace = error.__traceback__
+        path = node_path(self.root)
+        while trace is not None:
+            candidate = trace.tb_frame.f_locals.get("self")
+            if isinstance(candidate, Behaviour):
+                path = node_path(candidate)
+            trace = trace.tb_next
+        return path
+
+    def _clear(self) -> None:
+        try:
+            self.stop()
+        except Exception:
+            _log.warning("a node raised again while its tree was being stopped", exc_info=True)
+        for node in self.nodes:
+            # Whatever state the exception left behind, no node may stay RUNNING.
+            node.status = Status.INVALID
+
+
+def preorder(root: Behaviour) -> list[Behaviour]:
+    """Every node below and including ``root``, parents before children."""
+    nodes = [root]
+    for child in root.children:
+        nodes.extend(preorder(child))
+    return nodes
+
+
+_LETTERS = {Status.SUCCESS: "S", Status.FAILURE: "F", Status.RUNNING: "R", Status.INVALID: "-"}

@@ -1,0 +1,40 @@
+"""What a tree tells its robot to do for one control period."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isfinite
+
+
+class KickTrigger(StrEnum):
+    """When a kick command fires."""
+
+    NOW = "now"
+    """At once, and only if the ball is in the mouth at that instant."""
+    ON_CONTACT = "on_contact"
+    """As soon as the ball is in the mouth, while the command stands."""
+
+
+@dataclass(slots=True)
+class RobotCommand:
+    """One robot's command, in the robot's own frame (x forward, y left).
+
+    Attributes:
+        vx, vy: velocity [m/s].
+        omega: turning rate, counter-clockwise positive [rad/s].
+        kick_speed: speed the ball shall leave with [m/s]; 0 is no kick.
+        kick_trigger: when the kick fires.
+        dribbler: whether the dribbler turns.
+    """
+
+    vx: float = 0.0
+    vy: float = 0.0
+    omega: float = 0.0
+    kick_speed: float = 0.0
+    kick_trigger: KickTrigger = KickTrigger.ON_CONTACT
+    dribbler: bool = False
+
+    def finite(self) -> bool:
+        """Whether every number in it is finite; one that is not must not reach a robot."""
+        return isfinite(self.vx) and isfinite(self.vy) and isfinite(self.omega) and isfinite(self.kick_speed)

@@ -1,0 +1,211 @@
+"""The observation vectors of the learned skills, each defined once.
+
+Training, the skill at run time and the shot collector all call these functions.
+Each works on arrays with any leading batch axes; the ``..._of`` wrappers take a
+frame. A model card names the observation with its version: change what a vector
+means and its version has to change with it.
+
+Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
+Eq. 4 and the state definitions of Go-To-Ball and Shoot-Towards-Goal, in the
+form of the authors' published code; lengths here are metres.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robobt.world.geometry import FloatArray, Point, wrap_angles
+from robobt.world.state import Frame, RobotState
+
+
+@dataclass(frozen=True)
+class ObservationSpec:
+    """Name, version and entries (name, unit) of an observation vector."""
+
+    name: str
+    version: int
+    entries: tuple[tuple[str, str], ...]
+
+    @property
+    def size(self) -> int:
+        """Length of the vector."""
+        return len(self.entries)
+
+
+SHOT = ObservationSpec(
+    "shot",
+    1,
+    (
+        ("angle", "rad"),
+        ("target_distance", "m"),
+        ("opponent_distance", "m"),
+        ("along", "m"),
+        ("across", "m"),
+    ),
+)
+"""Eq. 4: one opponent beside the line shooter -> target."""
+
+GO_TO_BALL = ObservationSpec(
+    "go_to_ball",
+    1,
+    (
+        ("sin_ball", "1"),
+        ("cos_ball", "1"),
+        ("ball_distance", "m"),
+        ("vx", "m/s"),
+        ("vy", "m/s"),
+        ("omega", "rad/s"),
+    ),
+)
+"""The ball and the robot's velocity, in the robot's frame."""
+
+SHOOT = ObservationSpec(
+    "shoot",
+    1,
+    (
+        ("ball_x", "m"),
+        ("ball_y", "m"),
+        ("ball_vx", "m/s"),
+        ("ball_vy", "m/s"),
+        ("omega", "rad/s"),
+        ("goal_distance", "m"),
+        ("sin_upper_post", "1"),
+        ("cos_upper_post", "1"),
+        ("sin_lower_post", "1"),
+        ("cos_lower_post", "1"),
+    ),
+)
+"""The ball and the posts of the attacked goal, in the robot's frame."""
+
+OBSERVATIONS = {spec.name: spec for spec in (SHOT, GO_TO_BALL, SHOOT)}
+
+
+def shot_features(shooter: ArrayLike, target: ArrayLike, opponent: ArrayLike) -> FloatArray:
+    """Eq. 4 of the paper.
+
+    The frame has its origin at the shooter and its first axis along shooter ->
+    target (not along the robot's heading).
+
+    Args:
+        shooter, target, opponent: (..., 2) positions [m]; axes broadcast.
+
+    Returns:
+        (..., 5): :data:`SHOT`.
+    """
+    origin = np.asarray(shooter, dtype=np.float64)
+    to_target = np.asarray(target, dtype=np.float64) - origin
+    to_opponent = np.asarray(opponent, dtype=np.float64) - origin
+    length = np.hypot(to_target[..., 0], to_target[..., 1])
+    safe = np.where(length > 0.0, length, 1.0)
+    cos = np.where(length > 0.0, to_target[..., 0] / safe, 1.0)
+    sin = to_target[..., 1] / safe
+    along = cos * to_opponent[..., 0] + sin * to_opponent[..., 1]
+    across = np.abs(cos * to_opponent[..., 1] - sin * to_opponent[..., 0])
+    parts = np.broadcast_arrays(np.arctan2(across, along), length, np.hypot(along, across), along, across)
+    return np.stack(parts, axis=-1)
+
+
+def go_to_ball_observation(robot: ArrayLike, ball: ArrayLike) -> FloatArray:
+    """State of the Go-To-Ball skill.
+
+    Args:
+        robot: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
+        ball: (..., >=2) x, y.
+
+    Returns:
+        (..., 6): :data:`GO_TO_BALL`.
+    """
+    r = np.asarray(robot, dtype=np.float64)
+    b = np.asarray(ball, dtype=np.float64)
+    cos, sin = np.cos(r[..., 2]), np.sin(r[..., 2])
+    dx, dy = b[..., 0] - r[..., 0], b[..., 1] - r[..., 1]
+    gap = np.hypot(dx, dy)
+    safe = np.where(gap > 0.0, gap, 1.0)
+    parts = (
+        (cos * dy - sin * dx) / safe,
+        np.where(gap > 0.0, (cos * dx + sin * dy) / safe, 1.0),
+        gap,
+        cos * r[..., 3] + sin * r[..., 4],
+        cos * r[..., 4] - sin * r[..., 3],
+        r[..., 5],
+    )
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def shoot_observation(
+    robot: ArrayLike, ball: ArrayLike, upper_post: ArrayLike, lower_post: ArrayLike
+) -> FloatArray:
+    """State of the Shoot-Towards-Goal skill.
+
+    Args:
+        robot: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
+        ball: (..., 4) x, y, vx, vy in field coordinates.
+        upper_post, lower_post: (..., 2) the attacked goal's posts (y > 0, y < 0).
+
+    Returns:
+        (..., 10): :data:`SHOOT`.
+    """
+    r = np.asarray(robot, dtype=np.float64)
+    b = np.asarray(ball, dtype=np.float64)
+    upper = np.asarray(upper_post, dtype=np.float64)
+    lower = np.asarray(lower_post, dtype=np.float64)
+    cos, sin = np.cos(r[..., 2]), np.sin(r[..., 2])
+    dx, dy = b[..., 0] - r[..., 0], b[..., 1] - r[..., 1]
+    middle = (upper + lower) / 2.0
+    to_upper = np.arctan2(upper[..., 1] - r[..., 1], upper[..., 0] - r[..., 0]) - r[..., 2]
+    to_lower = np.arctan2(lower[..., 1] - r[..., 1], lower[..., 0] - r[..., 0]) - r[..., 2]
+    parts = (
+        cos * dx + sin * dy,
+        cos * dy - sin * dx,
+        cos * b[..., 2] + sin * b[..., 3],
+        cos * b[..., 3] - sin * b[..., 2],
+        r[..., 5],
+        np.hypot(middle[..., 0] - r[..., 0], middle[..., 1] - r[..., 1]),
+        np.sin(to_upper),
+        np.cos(to_upper),
+        np.sin(to_lower),
+        np.cos(to_lower),
+    )
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def ball_angle(robot: ArrayLike, ball: ArrayLike) -> FloatArray:
+    """Angle from the robot's heading to the ball in (-pi, pi] [rad]; shapes as above."""
+    r = np.asarray(robot, dtype=np.float64)
+    b = np.asarray(ball, dtype=np.float64)
+    return wrap_angles(np.arctan2(b[..., 1] - r[..., 1], b[..., 0] - r[..., 0]) - r[..., 2])
+
+
+def shot_features_of(frame: Frame, robot: RobotState, targets: ArrayLike) -> FloatArray:
+    """Eq. 4 for every target point and every opponent of a frame.
+
+    Args:
+        targets: (T, 2) points [m].
+
+    Returns:
+        (T, K, 5) for the frame's K opponents.
+    """
+    points = np.asarray(targets, dtype=np.float64)
+    opponents = np.array([other.position for other in frame.opponents], dtype=np.float64)
+    return shot_features(robot.position, points[:, None, :], opponents.reshape(1, -1, 2))
+
+
+def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:
+    """The Go-To-Ball state of one robot in a frame, (6,)."""
+    return go_to_ball_observation(_kinematics(robot), frame.ball.position)
+
+
+def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
+    """The Shoot state of one robot in a frame, (10,)."""
+    ball = frame.ball
+    half_goal = frame.field.goal_width / 2
+    upper: Point = (frame.field.half_length, half_goal)
+    lower: Point = (frame.field.half_length, -half_goal)
+    return shoot_observation(_kinematics(robot), (ball.x, ball.y, ball.vx, ball.vy), upper, lower)
+
+
+def _kinematics(robot: RobotState) -> tuple[float, ...]:
+    return (robot.x, robot.y, robot.heading, robot.vx, robot.vy, robot.omega)

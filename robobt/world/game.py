@@ -1,0 +1,124 @@
+"""The referee's word: command, stage, score. Held by every frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum, StrEnum
+
+
+class Team(StrEnum):
+    """Team colour. In world coordinates blue defends -x; every tree sees its own team so."""
+
+    BLUE = "blue"
+    YELLOW = "yellow"
+
+    @property
+    def other(self) -> Team:
+        """The opponent's colour."""
+        return Team.YELLOW if self is Team.BLUE else Team.BLUE
+
+
+class RefereeCommand(IntEnum):
+    """Commands with the numbers of the league's referee protocol."""
+
+    HALT = 0
+    STOP = 1
+    NORMAL_START = 2
+    FORCE_START = 3
+    PREPARE_KICKOFF_YELLOW = 4
+    PREPARE_KICKOFF_BLUE = 5
+    PREPARE_PENALTY_YELLOW = 6
+    PREPARE_PENALTY_BLUE = 7
+    DIRECT_FREE_YELLOW = 8
+    DIRECT_FREE_BLUE = 9
+    TIMEOUT_YELLOW = 12
+    TIMEOUT_BLUE = 13
+    BALL_PLACEMENT_YELLOW = 16
+    BALL_PLACEMENT_BLUE = 17
+
+
+class Stage(IntEnum):
+    """Stages with the numbers of the league's referee protocol."""
+
+    NORMAL_FIRST_HALF_PRE = 0
+    NORMAL_FIRST_HALF = 1
+    NORMAL_HALF_TIME = 2
+    NORMAL_SECOND_HALF_PRE = 3
+    NORMAL_SECOND_HALF = 4
+    EXTRA_TIME_BREAK = 5
+    EXTRA_FIRST_HALF_PRE = 6
+    EXTRA_FIRST_HALF = 7
+    EXTRA_HALF_TIME = 8
+    EXTRA_SECOND_HALF_PRE = 9
+    EXTRA_SECOND_HALF = 10
+    PENALTY_SHOOTOUT_BREAK = 11
+    PENALTY_SHOOTOUT = 12
+    POST_GAME = 13
+
+
+class Restart(StrEnum):
+    """How play is about to resume."""
+
+    KICKOFF = "kickoff"
+    FREE_KICK = "free_kick"
+    PENALTY = "penalty"
+    BALL_PLACEMENT = "ball_placement"
+
+
+@dataclass(slots=True, frozen=True)
+class GameState:
+    """What the referee has said, as of one frame.
+
+    Attributes:
+        command: the last command.
+        stage: the match's stage.
+        blue_score, yellow_score: goals.
+        restart: the pending restart, or None once the ball is in play.
+        restart_team: whose restart it is.
+        may_touch: whether ``restart_team`` may take the restart now.
+        placement: where the ball has to be placed or lies for the restart,
+            in the coordinates of the frame that holds this state [m].
+    """
+
+    command: RefereeCommand = RefereeCommand.FORCE_START
+    stage: Stage = Stage.NORMAL_FIRST_HALF
+    blue_score: int = 0
+    yellow_score: int = 0
+    restart: Restart | None = None
+    restart_team: Team | None = None
+    may_touch: bool = True
+    placement: tuple[float, float] | None = None
+
+    @property
+    def halted(self) -> bool:
+        """Every robot has to stand still."""
+        return self.command in _HALTED
+
+    @property
+    def stopped(self) -> bool:
+        """Robots are slow (1.5 m/s) and keep 0.5 m from the ball."""
+        return self.command is RefereeCommand.STOP
+
+    @property
+    def in_play(self) -> bool:
+        """The ball is free for both teams."""
+        return self.restart is None and self.command in _STARTED
+
+    def mirrored(self) -> GameState:
+        """The same state in coordinates turned by 180 degrees."""
+        if self.placement is None:
+            return self
+        return replace(self, placement=(-self.placement[0], -self.placement[1]))
+
+
+_HALTED = frozenset({RefereeCommand.HALT, RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW})
+_STARTED = frozenset(
+    {
+        RefereeCommand.NORMAL_START,
+        RefereeCommand.FORCE_START,
+        RefereeCommand.DIRECT_FREE_BLUE,
+        RefereeCommand.DIRECT_FREE_YELLOW,
+    }
+)
+OPEN_PLAY = GameState()
+"""Free play without a referee: what a scenario without one holds."""

@@ -1,0 +1,103 @@
+"""Plane geometry: scalar helpers for skills, array helpers with leading batch axes.
+
+Angles are in radians, counter-clockwise, lengths in metres.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Point = tuple[float, float]
+FloatArray = NDArray[np.float64]
+
+_TAU = 2.0 * pi
+
+
+def wrap_angle(angle: float) -> float:
+    """The same direction in (-pi, pi]."""
+    wrapped = angle % _TAU
+    return wrapped - _TAU if wrapped > pi else wrapped
+
+
+def wrap_angles(angles: ArrayLike) -> FloatArray:
+    """Elementwise :func:`wrap_angle`; any shape."""
+    wrapped = np.mod(np.asarray(angles, dtype=np.float64), _TAU)
+    return np.where(wrapped > pi, wrapped - _TAU, wrapped)
+
+
+def direction(origin: Point, target: Point) -> float:
+    """Angle of the ray from ``origin`` to ``target``; 0 when they coincide."""
+    return atan2(target[1] - origin[1], target[0] - origin[0])
+
+
+def distance(a: Point, b: Point) -> float:
+    """Euclidean distance [m]."""
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
+    """The point of the segment nearest to ``point``; ``start`` for a segment of no length."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length_squared = dx * dx + dy * dy
+    if length_squared <= 0.0:
+        return start
+    share = ((point[0] - start[0]) * dx + (point[1] - start[1]) * dy) / length_squared
+    share = min(1.0, max(0.0, share))
+    return (start[0] + share * dx, start[1] + share * dy)
+
+
+def segment_distance(point: Point, start: Point, end: Point) -> float:
+    """Distance of ``point`` from the segment [m]."""
+    return distance(point, closest_point_on_segment(point, start, end))
+
+
+def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
+    """y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
+
+    None when the ray points away from the line or runs along it.
+    """
+    step = cos(angle)
+    reach = x - start[0]
+    if step == 0.0 or reach * step < 0.0:
+        return None
+    return start[1] + reach / step * sin(angle)
+
+
+def clearances(origin: ArrayLike, targets: ArrayLike, obstacles: ArrayLike) -> FloatArray:
+    """Distance of every obstacle from every segment origin -> target.
+
+    Args:
+        origin: (..., 2).
+        targets: (..., T, 2).
+        obstacles: (..., K, 2).
+
+    Returns:
+        (..., T, K) distances [m].
+    """
+    start = np.asarray(origin, dtype=np.float64)[..., None, :]
+    along = np.asarray(targets, dtype=np.float64) - start
+    to_obstacle = np.asarray(obstacles, dtype=np.float64) - start
+    dx, dy = along[..., :, None, 0], along[..., :, None, 1]
+    ox, oy = to_obstacle[..., None, :, 0], to_obstacle[..., None, :, 1]
+    length_squared = dx * dx + dy * dy
+    share = (ox * dx + oy * dy) / np.where(length_squared > 0.0, length_squared, 1.0)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)
+    return np.hypot(ox - share * dx, oy - share * dy)
+
+
+def to_robot_frame(vx: float, vy: float, heading: float) -> Point:
+    """A field-frame vector in the frame of a robot with this heading."""
+    c, s = cos(heading), sin(heading)
+    return (c * vx + s * vy, c * vy - s * vx)
+
+
+def limit_norm(x: float, y: float, most: float) -> Point:
+    """The vector shortened to length ``most`` when it is longer."""
+    squared = x * x + y * y
+    if squared <= most * most:
+        return (x, y)
+    scale = most / sqrt(squared)
+    return (x * scale, y * scale)

@@ -1,0 +1,47 @@
+"""What a robot can do, written once for pilots, raters and the simulator."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class RobotLimits(BaseModel):
+    """Limits of one robot's motion, SI units.
+
+    ``side_acceleration`` and ``side_braking`` default to the forward values. The
+    defaults are the typical league robot of the simulators' presets: 3 m/s,
+    3 m/s^2, braking at 6 m/s^2.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
+    acceleration: float = Field(3.0, gt=0, le=50, description="speeding up along the heading [m/s^2]")
+    braking: float = Field(6.0, gt=0, le=50, description="slowing down along the heading [m/s^2]")
+    side_acceleration: float | None = Field(None, gt=0, le=50, description="speeding up sideways [m/s^2]")
+    side_braking: float | None = Field(None, gt=0, le=50, description="slowing down sideways [m/s^2]")
+    max_turn: float = Field(10.0, gt=0, le=100, description="top turning rate [rad/s]")
+    turn_acceleration: float = Field(50.0, gt=0, le=5000, description="change of the turning rate [rad/s^2]")
+
+    @property
+    def lateral_acceleration(self) -> float:
+        """Acceleration sideways [m/s^2]."""
+        return self.acceleration if self.side_acceleration is None else self.side_acceleration
+
+    @property
+    def lateral_braking(self) -> float:
+        """Braking sideways [m/s^2]."""
+        return self.braking if self.side_braking is None else self.side_braking
+
+    def scaled(self, factor: float) -> RobotLimits:
+        """The same robot with its top speed and turning rate times ``factor``.
+
+        Accelerations stay: a goalkeeper at half speed is a robot told to drive
+        half as fast, not a weaker one.
+        """
+        return self.model_copy(
+            update={"max_speed": self.max_speed * factor, "max_turn": self.max_turn * factor}
+        )
+
+
+DEFAULT_LIMITS = RobotLimits()

@@ -1,0 +1,54 @@
+"""The interface every backend implements: the simulator, the league, a recorded match."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
+
+from robobt.world.command import RobotCommand
+from robobt.world.state import Frame, RobotId
+
+
+@dataclass(slots=True)
+class Placement:
+    """Where everything stands at a start, in world coordinates (blue defends -x).
+
+    Attributes:
+        robots: (x, y, heading) of each robot [m, m, rad]; all at rest.
+        ball: (x, y, vx, vy) [m, m, m/s, m/s].
+    """
+
+    robots: dict[RobotId, tuple[float, float, float]] = field(default_factory=dict)
+    ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+
+
+@runtime_checkable
+class World(Protocol):
+    """A field that can be set up, looked at and acted upon.
+
+    One control tick is one ``observe`` followed by one ``act``.
+    """
+
+    def reset(self, placement: Placement, seed: int) -> None:
+        """Put robots and ball where ``placement`` says; ``seed`` fixes all later randomness.
+
+        Raises:
+            ValueError: a robot of the placement is not part of this world, or
+                a coordinate is not finite or lies outside the walls.
+        """
+
+    def observe(self) -> Frame:
+        """What the cameras and sensors report, seen from blue's side."""
+
+    def truth(self) -> Frame:
+        """The best knowledge of what really is, for referees and records, seen from blue's side."""
+
+    def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """Send one command a robot and let one control period pass.
+
+        A robot without a command stands still.
+        """
+
+    def place_ball(self, x: float, y: float) -> None:
+        """Put the ball down at rest (the referee's hand), in world coordinates [m]."""

@@ -1,0 +1,165 @@
+"""What is on the field at one instant. Made anew every tick, read-only by convention.
+
+These are plain slotted classes, not frozen ones: a frozen dataclass costs about
+three times as much to make, and a match makes some forty of them a tick.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, pi
+from typing import NamedTuple
+
+from robobt.world.field import FieldGeometry
+from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
+
+ROBOT_RADIUS = 0.09
+"""Radius of the largest robot the rules allow [m]."""
+
+BALL_RADIUS = 0.0215
+"""Radius of a golf ball [m]."""
+
+
+class RobotId(NamedTuple):
+    """A robot's team and its number on that team."""
+
+    team: Team
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.team.value} {self.number}"
+
+
+@dataclass(slots=True)
+class RobotState:
+    """One robot: pose, velocity in field coordinates, and its ball sensor.
+
+    Attributes:
+        id: number on its team.
+        x, y: centre [m].
+        heading: direction of the mouth in (-pi, pi], counter-clockwise from +x [rad].
+        vx, vy: velocity in field coordinates [m/s].
+        omega: turning rate, counter-clockwise positive [rad/s].
+        ball_contact: the ball lies in the mouth (the break-beam sensor).
+        limits: what the robot can do, as far as known.
+    """
+
+    id: int
+    x: float
+    y: float
+    heading: float = 0.0
+    vx: float = 0.0
+    vy: float = 0.0
+    omega: float = 0.0
+    ball_contact: bool = False
+    limits: RobotLimits = DEFAULT_LIMITS
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Centre (x, y) [m]."""
+        return (self.x, self.y)
+
+    @property
+    def speed(self) -> float:
+        """Magnitude of the velocity [m/s]."""
+        return hypot(self.vx, self.vy)
+
+
+@dataclass(slots=True)
+class BallState:
+    """The ball: position [m] and velocity [m/s] in field coordinates."""
+
+    x: float
+    y: float
+    vx: float = 0.0
+    vy: float = 0.0
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Centre (x, y) [m]."""
+        return (self.x, self.y)
+
+    @property
+    def speed(self) -> float:
+        """Magnitude of the velocity [m/s]."""
+        return hypot(self.vx, self.vy)
+
+
+@dataclass(slots=True)
+class Frame:
+    """The field at one instant as ``team`` sees it: own goal at -x, attack towards +x.
+
+    Attributes:
+        time: seconds since the start; the only clock a tree may read [s].
+        period: seconds from this frame to the next [s].
+        field: dimensions.
+        team: whose view this is.
+        ball: the ball.
+        own, opponents: robots on the field, in order of their numbers.
+        game: what the referee has said.
+        last_touch: who touched the ball last, None before anybody did.
+    """
+
+    time: float
+    field: FieldGeometry
+    ball: BallState
+    own: tuple[RobotState, ...] = ()
+    opponents: tuple[RobotState, ...] = ()
+    team: Team = Team.BLUE
+    period: float = 0.025
+    game: GameState = OPEN_PLAY
+    last_touch: RobotId | None = None
+
+    def robot(self, number: int) -> RobotState | None:
+        """The own robot with this number, None when it is not on the field."""
+        for robot in self.own:
+            if robot.id == number:
+                return robot
+        return None
+
+    def others(self, number: int) -> list[RobotState]:
+        """Every robot on the field but the own one with this number."""
+        return [robot for robot in self.own if robot.id != number] + list(self.opponents)
+
+    def teammates(self, number: int) -> list[RobotState]:
+        """The own robots without the one with this number."""
+        return [robot for robot in self.own if robot.id != number]
+
+    def mirrored(self) -> Frame:
+        """The same instant seen by the other team: all turned by 180 degrees.
+
+        A turn, not a reflection, so velocities and commands in a robot's own
+        frame are the same in both views.
+        """
+        ball = self.ball
+        return Frame(
+            self.time,
+            self.field,
+            BallState(-ball.x, -ball.y, -ball.vx, -ball.vy),
+            tuple([_turned(robot) for robot in self.opponents]),
+            tuple([_turned(robot) for robot in self.own]),
+            self.team.other,
+            self.period,
+            self.game.mirrored(),
+            self.last_touch,
+        )
+
+    def seen_by(self, team: Team) -> Frame:
+        """This frame from ``team``'s side; itself when it already is."""
+        return self if team is self.team else self.mirrored()
+
+
+def _turned(robot: RobotState) -> RobotState:
+    heading = robot.heading
+    return RobotState(
+        robot.id,
+        -robot.x,
+        -robot.y,
+        heading - pi if heading > 0.0 else heading + pi,
+        -robot.vx,
+        -robot.vy,
+        robot.omega,
+        robot.ball_contact,
+        robot.limits,
+    )
