@@ -8,9 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field
 class RobotLimits(BaseModel):
     """Limits of one robot's motion, SI units.
 
-    ``side_acceleration`` and ``side_braking`` default to the forward values. The
-    defaults are the typical league robot of the simulators' presets: 3 m/s,
-    3 m/s^2, braking at 6 m/s^2.
+    ``side_acceleration`` and ``side_braking`` default to the forward values,
+    ``turn_braking`` to ``turn_acceleration``. The defaults are the typical league
+    robot of the simulators' presets: 3 m/s, 3 m/s^2, braking at 6 m/s^2.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -22,6 +22,7 @@ class RobotLimits(BaseModel):
     side_braking: float | None = Field(None, gt=0, le=50, description="slowing down sideways [m/s^2]")
     max_turn: float = Field(10.0, gt=0, le=100, description="top turning rate [rad/s]")
     turn_acceleration: float = Field(50.0, gt=0, le=5000, description="change of the turning rate [rad/s^2]")
+    turn_braking: float | None = Field(None, gt=0, le=5000, description="slowing a turn down [rad/s^2]")
 
     @property
     def lateral_acceleration(self) -> float:
@@ -32,6 +33,11 @@ class RobotLimits(BaseModel):
     def lateral_braking(self) -> float:
         """Braking sideways [m/s^2]."""
         return self.braking if self.side_braking is None else self.side_braking
+
+    @property
+    def angular_braking(self) -> float:
+        """Rate at which a turn is slowed down [rad/s^2]."""
+        return self.turn_acceleration if self.turn_braking is None else self.turn_braking
 
     def scaled(self, factor: float) -> RobotLimits:
         """The same robot with its top speed and turning rate times ``factor``.

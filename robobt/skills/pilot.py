@@ -1,0 +1,188 @@
+"""Drives a robot to a pose: a trapezoid in distance and one in angle, made for a control period.
+
+The shape is that of RoboBulls' published code (PilotOmni): speed by the square
+root of the distance left, the heading's own profile beside it, and the
+velocity's direction corrected for the turn made meanwhile. Here the profile is
+solved for the speed at the *end* of a control period, so that the robot brakes
+neither a period too late, which overshoots, nor too early, which creeps.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, radians, sin, sqrt
+
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.state import RobotState
+
+ROBOBULLS_LIMITS = RobotLimits(
+    max_speed=1.5,
+    acceleration=2.5,
+    braking=0.8,
+    max_turn=radians(80.0),
+    turn_acceleration=radians(1500.0),
+    turn_braking=radians(100.0),
+)
+"""How RoboBulls' published code drives any robot (PilotOmni and config/motion.yaml)."""
+
+
+def drive(
+    me: RobotState,
+    target: Point,
+    heading: float,
+    limits: RobotLimits,
+    period: float,
+    final_speed: float = 0.0,
+) -> RobotCommand:
+    """The command that brings ``me`` one control period nearer to a pose.
+
+    An acceleration in ``limits`` at or above the robot's own is left to the
+    robot, which knows its velocity without delay; a lower one is kept here, by
+    asking for no velocity that lies too far from the present one.
+
+    Args:
+        target: where to [m].
+        heading: where the mouth shall point [rad]; turned to on the way.
+        limits: how to drive; usually ``me.limits``.
+        period: time until the next command [s].
+        final_speed: speed allowed at the target [m/s], for way-points.
+    """
+    dx, dy = target[0] - me.x, target[1] - me.y
+    distance = hypot(dx, dy)
+    vx = vy = 0.0
+    if distance > 0.0:
+        ux, uy = dx / distance, dy / distance
+        bearing = atan2(uy, ux) - me.heading
+        braking = along(limits.braking, limits.lateral_braking, bearing)
+        speed = approach_speed(
+            distance + final_speed * final_speed / (2.0 * braking),
+            ux * me.vx + uy * me.vy,
+            limits.max_speed,
+            along(limits.acceleration, limits.lateral_acceleration, bearing),
+            braking,
+            period,
+        )
+        vx, vy = ux * speed, uy * speed
+    return command(me, vx, vy, turn_rate(me, heading, limits, period), limits, period)
+
+
+def command(
+    me: RobotState, vx: float, vy: float, omega: float, limits: RobotLimits, period: float
+) -> RobotCommand:
+    """A velocity in field coordinates as a command in the robot's frame.
+
+    It is shortened to ``limits`` and turned back by half of what the robot will
+    turn within the period, so that on average it points where it should.
+
+    Args:
+        vx, vy: wanted at the end of the period, in field coordinates [m/s].
+        omega: turning rate [rad/s].
+    """
+    squared = vx * vx + vy * vy
+    if squared > limits.max_speed * limits.max_speed:
+        scale = limits.max_speed / sqrt(squared)
+        vx, vy = vx * scale, vy * scale
+    if limits is not me.limits:
+        vx, vy = _gentle(me, vx, vy, limits, period)
+    heading = me.heading + 0.5 * omega * period
+    c, s = cos(heading), sin(heading)
+    return RobotCommand(c * vx + s * vy, c * vy - s * vx, omega)
+
+
+def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float) -> float:
+    """The turning rate to ask for now so as to end at ``heading`` [rad/s]."""
+    error = wrap_angle(heading - me.heading)
+    side = 1.0 if error >= 0.0 else -1.0
+    rate = side * approach_speed(
+        side * error,
+        side * me.omega,
+        limits.max_turn,
+        limits.turn_acceleration,
+        limits.angular_braking,
+        period,
+    )
+    if limits.turn_acceleration < me.limits.turn_acceleration:
+        step = limits.turn_acceleration * period
+        rate = min(me.omega + step, max(me.omega - step, rate))
+    return rate
+
+
+def approach_speed(
+    distance: float, speed: float, cruise: float, acceleration: float, braking: float, period: float
+) -> float:
+    """The highest speed at the end of a period from which one can still stop in time.
+
+    The robot is taken to change to that speed at its limit and to hold it for
+    the rest of the period. Unit of length is free: metres or radians.
+
+    Args:
+        distance: what is left, not negative.
+        speed: towards the target, now.
+        cruise: most to return.
+        acceleration, braking: per s^2.
+        period: [s].
+    """
+    v = speed if speed > 0.0 else 0.0
+    slowest = v - braking * period
+    if slowest < 0.0:
+        slowest = 0.0
+    # Way made within the period while braking to w, and from w to rest:
+    # w * period + (v - w)^2 / (2 * braking) + w^2 / (2 * braking).
+    if v * period + v * v / (2.0 * braking) > distance:
+        half = 0.5 * (v - braking * period)
+        root = half * half - 0.5 * v * v + braking * distance
+        return min(cruise, max(slowest, half + sqrt(root))) if root > 0.0 else slowest
+    # While speeding up to w: w * period - (w - v)^2 / (2 * acceleration), then to rest.
+    a = 0.5 / braking - 0.5 / acceleration
+    b = period + v / acceleration
+    c = distance + 0.5 * v * v / acceleration
+    root = b * b + 4.0 * a * c
+    return min(cruise, 2.0 * c / (b + sqrt(root))) if root > 0.0 else cruise
+
+
+def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
+    """Time to cover ``distance`` and stop there: the trapezoid optimum [s].
+
+    Args:
+        distance: along a straight line [m].
+        speed: towards the target at the start [m/s]; negative is away from it.
+    """
+    a, b, cruise = limits.acceleration, limits.braking, limits.max_speed
+    if speed < 0.0:
+        return -speed / b + travel_time(distance + speed * speed / (2.0 * b), 0.0, limits)
+    if speed * speed / (2.0 * b) > distance:
+        beyond = speed * speed / (2.0 * b) - distance
+        return speed / b + travel_time(beyond, 0.0, limits)
+    peak = sqrt((distance + 0.5 * speed * speed / a) / (0.5 / a + 0.5 / b))
+    if peak <= cruise or speed >= cruise:
+        peak = max(peak, speed) if speed < cruise else speed
+        used = (peak * peak - speed * speed) / (2.0 * a) + peak * peak / (2.0 * b)
+        return (peak - speed) / a + peak / b + max(0.0, distance - used) / peak if peak > 0.0 else 0.0
+    used = (cruise * cruise - speed * speed) / (2.0 * a) + cruise * cruise / (2.0 * b)
+    return (cruise - speed) / a + cruise / b + (distance - used) / cruise
+
+
+def along(forward: float, lateral: float, bearing: float) -> float:
+    """A limit in the direction ``bearing`` from the heading, between its forward and sideways values."""
+    if forward == lateral:
+        return forward
+    return 1.0 / hypot(cos(bearing) / forward, sin(bearing) / lateral)
+
+
+def _gentle(me: RobotState, vx: float, vy: float, limits: RobotLimits, period: float) -> Point:
+    dx, dy = vx - me.vx, vy - me.vy
+    change = hypot(dx, dy)
+    if change == 0.0:
+        return (vx, vy)
+    bearing = atan2(dy, dx) - me.heading
+    own = me.limits
+    rate = along(limits.acceleration, limits.lateral_acceleration, bearing)
+    if rate >= along(own.acceleration, own.lateral_acceleration, bearing):
+        rate = inf
+    if vx * vx + vy * vy < me.vx * me.vx + me.vy * me.vy:
+        rate = max(rate, along(limits.braking, limits.lateral_braking, bearing))
+    if change <= rate * period:
+        return (vx, vy)
+    share = rate * period / change
+    return (me.vx + dx * share, me.vy + dy * share)
