@@ -1,0 +1,70 @@
+"""Who touches the ball, who touched it last and who has carried it how far."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.match.rules import touches
+from robobt.world.geometry import Point, distance
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
+
+_LOST_GAP = 0.06
+"""Who had the ball still has it up to this gap. Source: Sumatra's autoreferee [m]."""
+
+
+class Touches:
+    """Follows the ball from frame to frame; frames are seen from blue's side.
+
+    Attributes:
+        now: robots that touch the ball in this frame.
+        last: who touched it last; the world's word where it has one, else the contact seen.
+        where: where the ball was when it was last touched [m].
+        carrier: who keeps the ball at its hull, None when nobody does.
+        carried: how far the carrier has taken it, as the crow flies [m].
+    """
+
+    def __init__(self) -> None:
+        self.now: list[RobotId] = []
+        self.last: RobotId | None = None
+        self.where: Point = (0.0, 0.0)
+        self.carrier: RobotId | None = None
+        self.carried = 0.0
+        self._carry_start: Point = (0.0, 0.0)
+
+    def watch(self, frame: Frame) -> None:
+        """Take in the next frame."""
+        ball = frame.ball
+        touching = []
+        carrier: RobotState | None = None
+        for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
+            for robot in robots:
+                if abs(robot.x - ball.x) < 0.2 and abs(robot.y - ball.y) < 0.2:
+                    identity = RobotId(team, robot.id)
+                    if touches(robot, ball):
+                        touching.append(identity)
+                    if identity == self.carrier:
+                        carrier = robot
+        self.now = touching
+        told = frame.last_touch
+        if told is None and touching and self.last not in touching:
+            told = touching[0]
+        if touching or (told is not None and told != self.last):
+            self.where = ball.position
+        if told is not None:
+            self.last = told
+        self._follow_carrier(ball.position, carrier)
+
+    def forget(self) -> None:
+        """Start anew where the ball has been put down by hand."""
+        self.carrier = None
+        self.carried = 0.0
+
+    def _follow_carrier(self, ball: Point, carrier: RobotState | None) -> None:
+        if carrier is not None and self.last == self.carrier:
+            gap = hypot(carrier.x - ball[0], carrier.y - ball[1]) - ROBOT_RADIUS - BALL_RADIUS
+            if gap <= _LOST_GAP:
+                self.carried = distance(self._carry_start, ball)
+                return
+        self.carrier = self.last if self.last in self.now else None
+        self._carry_start = ball
+        self.carried = 0.0
