@@ -1,0 +1,278 @@
+"""Settings of the simulator and its named presets, SI units.
+
+Source of the presets' figures: measurements in the running simulators (grSim,
+rSim, ER-Force), which win over what their sources or geometry packets claim,
+and the published parameters of TIGERs' Sumatra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+
+class _Settings(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class BallSettings(_Settings):
+    """A ball that slides, then rolls.
+
+    A kicked ball slides with constant deceleration and picks up spin until it
+    rolls, at ``switch_share`` of the speed it started with; from there it rolls
+    with a smaller constant deceleration until it rests.
+    """
+
+    mass: float = Field(0.046, gt=0.001, le=1, description="mass [kg]")
+    slide_deceleration: float = Field(3.0, gt=0, le=50, description="while it slides [m/s^2]")
+    switch_share: float = Field(
+        0.66, gt=0.05, lt=1, description="share of the start speed where rolling begins"
+    )
+    roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
+    stop_speed: float = Field(0.01, gt=0, le=0.5, description="slower than this is at rest [m/s]")
+
+
+class BodySettings(_Settings):
+    """A robot's body: a disc cut flat at the front, with the mouth in the flat."""
+
+    mass: float = Field(2.5, gt=0.1, le=20, description="mass [kg]")
+    face: float = Field(0.075, gt=0.03, lt=ROBOT_RADIUS, description="centre to the flat front [m]")
+    mouth_width: float = Field(
+        0.08, gt=0.02, le=0.16, description="width in which ball counts as in the mouth [m]"
+    )
+    sensor_depth: float = Field(
+        0.01, gt=0.0005, le=0.03, description="gap to the front that still counts [m]"
+    )
+
+
+class DribblerSettings(_Settings):
+    """How the dribbler holds the ball.
+
+    ``force`` pulls the ball towards the front with a limited acceleration, so the
+    ball is lost when holding it would take more: turning at w with the ball's
+    centre at distance L needs w^2 L, driving backwards needs the robot's own
+    acceleration. ``glue`` carries the ball rigidly, as grSim's hinge does.
+    """
+
+    kind: Literal["force", "glue"] = "force"
+    pull: float = Field(3.0, ge=0, le=200, description="largest pull towards the front [m/s^2]")
+    side: float = Field(4.0, ge=0, le=200, description="largest sideways acceleration [m/s^2]")
+    reach: float = Field(0.012, gt=0, le=0.1, description="gap up to which it pulls [m]")
+    centring: float = Field(0.05, gt=0.005, le=5, description="time constant towards the middle [s]")
+    idle_hold: float = Field(
+        0.0,
+        ge=0,
+        le=200,
+        description="as pull and side, with the dribbler off and the robot not backing away [m/s^2]",
+    )
+
+
+class KickerSettings(_Settings):
+    """The kicker. The sideways velocity of the ball stays as it was at the kick."""
+
+    max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
+    damping: float = Field(
+        0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
+    )
+    recharge: float = Field(0.1, ge=0, le=10, description="no kick and no dribbling after a kick [s]")
+
+
+class ContactSettings(_Settings):
+    """Restitution and friction of the ball against things, and of robots against each other."""
+
+    front_restitution: float = Field(0.2, ge=0, le=1)
+    front_friction: float = Field(0.3, ge=0, le=5)
+    hull_restitution: float = Field(0.5, ge=0, le=1)
+    hull_friction: float = Field(0.22, ge=0, le=5)
+    wall_restitution: float = Field(0.4, ge=0, le=1)
+    wall_friction: float = Field(0.3, ge=0, le=5)
+    goal_restitution: float = Field(0.3, ge=0, le=1)
+    goal_friction: float = Field(0.5, ge=0, le=5)
+    goal_back_restitution: float = Field(0.1, ge=0, le=1)
+    robot_restitution: float = Field(0.3, ge=0, le=1)
+    robot_friction: float = Field(0.2, ge=0, le=5)
+
+
+class RealismSettings(_Settings):
+    """Noise, losses and delays between the world and the trees."""
+
+    ball_noise: float = Field(0.0, ge=0, le=1, description="standard deviation of the ball's position [m]")
+    robot_noise: float = Field(0.0, ge=0, le=1, description="standard deviation of a robot's position [m]")
+    heading_noise: float = Field(0.0, ge=0, le=3, description="standard deviation of a robot's heading [rad]")
+    missing_ball: float = Field(0.0, ge=0, le=1, description="chance a tick that the ball is not seen")
+    missing_robot: float = Field(0.0, ge=0, le=1, description="chance a tick and robot that it is not seen")
+    command_loss: float = Field(
+        0.0, ge=0, le=1, description="chance that a command is lost; the last one stands"
+    )
+    vision_delay: float = Field(0.0, ge=0, le=0.5, description="age of what is observed [s]")
+    command_delay: float = Field(0.0, ge=0, le=0.5, description="command to effect [s]")
+
+
+REALISM: dict[str, RealismSettings] = {
+    "none": RealismSettings(),
+    "friendly": RealismSettings(
+        ball_noise=0.0004,
+        robot_noise=0.0003,
+        heading_noise=0.003,
+        missing_ball=0.01,
+        missing_robot=0.01,
+        command_loss=0.01,
+        vision_delay=0.035,
+    ),
+    "rc2021": RealismSettings(ball_noise=0.001, robot_noise=0.0013, heading_noise=0.01, vision_delay=0.035),
+    "realistic": RealismSettings(
+        ball_noise=0.0014,
+        robot_noise=0.0013,
+        heading_noise=0.01,
+        missing_ball=0.05,
+        missing_robot=0.02,
+        command_loss=0.03,
+        vision_delay=0.035,
+        command_delay=0.003,
+    ),
+}
+"""Realism levels. Source: ER-Force's simulator-realism configurations."""
+
+
+class SimSettings(_Settings):
+    """Everything that makes one simulator differ from another."""
+
+    ball: BallSettings = BallSettings()
+    body: BodySettings = BodySettings()
+    limits: RobotLimits = Field(RobotLimits(), description="of robots that are given none of their own")
+    dribbler: DribblerSettings = DribblerSettings()
+    kicker: KickerSettings = KickerSettings()
+    contact: ContactSettings = ContactSettings()
+    realism: RealismSettings = RealismSettings()
+    sub_step: float = Field(0.005, gt=0.0005, le=0.01, description="longest physics step [s]")
+
+
+_GRSIM = SimSettings(
+    ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
+    body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
+    limits=RobotLimits(
+        max_speed=5.0,
+        acceleration=4.15,
+        braking=4.6,
+        side_acceleration=3.67,
+        side_braking=4.1,
+        max_turn=20.0,
+        turn_acceleration=50.0,
+    ),
+    dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
+    kicker=KickerSettings(max_speed=10.0, damping=0.2),
+    contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
+)
+
+PRESETS: dict[str, SimSettings] = {
+    "default": SimSettings(),
+    "grsim": _GRSIM,
+    "rsim": SimSettings(
+        ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
+        body=BodySettings(mass=2.42, face=0.081, mouth_width=0.08, sensor_depth=0.01),
+        limits=RobotLimits(
+            max_speed=4.0,
+            acceleration=3.34,
+            braking=3.8,
+            side_acceleration=2.41,
+            side_braking=2.8,
+            max_turn=40.0,
+            turn_acceleration=50.0,
+        ),
+        dribbler=DribblerSettings(kind="glue", reach=0.01),
+        kicker=KickerSettings(max_speed=20.0, damping=0.2, recharge=0.25),
+        contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
+    ),
+    "erforce": SimSettings(
+        ball=BallSettings(mass=0.046, slide_deceleration=3.9, switch_share=0.645, roll_deceleration=0.36),
+        body=BodySettings(mass=1.5, face=0.0635, mouth_width=0.07, sensor_depth=0.0015),
+        limits=RobotLimits(
+            max_speed=3.0,
+            acceleration=6.6,
+            braking=8.2,
+            side_acceleration=4.5,
+            side_braking=6.0,
+            max_turn=10.0,
+            turn_acceleration=60.0,
+        ),
+        dribbler=DribblerSettings(kind="force", pull=0.6, side=3.0, reach=0.02),
+        kicker=KickerSettings(max_speed=6.5),
+        contact=ContactSettings(front_restitution=0.2, hull_restitution=0.6, wall_restitution=0.3),
+    ),
+    "sumatra": SimSettings(
+        ball=BallSettings(slide_deceleration=2.46, switch_share=0.64, roll_deceleration=0.29),
+        body=BodySettings(face=0.075, mouth_width=0.0995),
+        limits=RobotLimits(
+            max_speed=3.0, acceleration=3.0, braking=6.0, max_turn=20.0, turn_acceleration=50.0
+        ),
+        dribbler=DribblerSettings(kind="force", pull=20.0, side=20.0, reach=0.01),
+        kicker=KickerSettings(max_speed=7.5),
+        contact=ContactSettings(front_restitution=0.0, goal_restitution=0.3),
+    ),
+    "robobulls": _GRSIM.model_copy(update={"kicker": KickerSettings(max_speed=7.5, damping=0.2)}),
+}
+"""Named presets. ``robobulls`` is grSim with the kicks that RoboBulls' software sends."""
+
+
+def preset(name: str, **changes: Any) -> SimSettings:
+    """The preset with top-level settings replaced.
+
+    Raises:
+        KeyError: no such preset; the message lists those there are.
+    """
+    if name not in PRESETS:
+        raise KeyError(f"no simulator preset is called {name!r}; there are {', '.join(sorted(PRESETS))}")
+    return PRESETS[name].model_copy(update=changes)
+
+
+def settings_from(simulator: str | Mapping[str, Any]) -> SimSettings:
+    """Settings from what a scenario file holds.
+
+    A name is a preset. A mapping may name a ``preset`` to start from
+    ("default" without one), a ``realism`` level by name, and any setting to
+    change, nested as in :class:`SimSettings`.
+
+    Raises:
+        KeyError: an unknown preset or realism level.
+        pydantic.ValidationError: an unknown setting or a value out of range.
+    """
+    if isinstance(simulator, str):
+        return preset(simulator)
+    changes = dict(simulator)
+    base = preset(str(changes.pop("preset", "default"))).model_dump()
+    realism = changes.get("realism")
+    if isinstance(realism, str):
+        if realism not in REALISM:
+            raise KeyError(f"no realism level is called {realism!r}; there are {', '.join(REALISM)}")
+        changes["realism"] = REALISM[realism].model_dump()
+    return SimSettings.model_validate(_merged(base, changes))
+
+
+def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(base)
+    for key, value in changes.items():
+        old = result.get(key)
+        both = isinstance(old, Mapping) and isinstance(value, Mapping)
+        result[key] = _merged(old, value) if both else value  # type: ignore[arg-type]
+    return result
+
+
+__all__ = [
+    "BALL_RADIUS",
+    "PRESETS",
+    "REALISM",
+    "BallSettings",
+    "BodySettings",
+    "ContactSettings",
+    "DribblerSettings",
+    "KickerSettings",
+    "RealismSettings",
+    "SimSettings",
+    "preset",
+    "settings_from",
+]

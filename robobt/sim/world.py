@@ -1,0 +1,220 @@
+"""The simulator as a World: one arena, frames and commands, noise and delays."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from math import isfinite
+
+import numpy as np
+
+from robobt.sim.arenas import Arenas
+from robobt.sim.settings import SimSettings
+from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.geometry import FloatArray, wrap_angles
+from robobt.world.limits import RobotLimits
+from robobt.world.protocol import Placement
+from robobt.world.state import BallState, Frame, RobotId, RobotState
+
+
+class SimWorld:
+    """A simulated field that implements :class:`robobt.world.World`.
+
+    Args:
+        field: dimensions.
+        robots: each robot's limits; None takes the settings' own.
+        settings: of the simulator.
+        period: control period [s].
+
+    Attributes:
+        kicks: who kicked during the last ``act``.
+    """
+
+    def __init__(
+        self,
+        field: FieldGeometry,
+        robots: Mapping[RobotId, RobotLimits | None],
+        settings: SimSettings | None = None,
+        period: float = 0.025,
+    ) -> None:
+        self.field = field
+        self.settings = SimSettings() if settings is None else settings
+        self.period = period
+        self._ids = sorted(robots)
+        self._index = {robot: i for i, robot in enumerate(self._ids)}
+        self._limits = [robots[robot] or self.settings.limits for robot in self._ids]
+        blue = sum(robot.team is Team.BLUE for robot in self._ids)
+        self._blue = [(robot.number, self._limits[i]) for i, robot in enumerate(self._ids) if i < blue]
+        self._yellow = [(robot.number, self._limits[i]) for i, robot in enumerate(self._ids) if i >= blue]
+        realism = self.settings.realism
+        self._delayed = realism.vision_delay > 0.0
+        self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
+        self._lossy = any((realism.missing_ball, realism.missing_robot))
+        self._arenas = Arenas(field, self._limits, self.settings, period, keep_history=self._delayed)
+        self._commands = np.zeros((1, len(self._ids), 6))
+        self._rng = np.random.default_rng(0)
+        self._ticks = 0
+        self.kicks: list[RobotId] = []
+        # Robots' rows and the ball's, newest last; long enough to look back by the vision's delay.
+        self._past: deque[FloatArray] = deque(maxlen=round(realism.vision_delay / self._arenas.dt) + 1)
+        self._seen: FloatArray | None = None
+        self._report: FloatArray = self._rows()
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds since the reset."""
+        return self._ticks * self.period
+
+    def reset(self, placement: Placement, seed: int) -> None:
+        """See :meth:`robobt.world.World.reset`; every robot needs a pose."""
+        outer_x = self.field.half_length + self.field.margin
+        outer_y = self.field.half_width + self.field.margin
+        missing = [robot for robot in self._ids if robot not in placement.robots]
+        if missing:
+            raise ValueError(f"the placement has no pose for {', '.join(map(str, missing))}")
+        poses = np.zeros((len(self._ids), 3))
+        for robot, pose in placement.robots.items():
+            if robot not in self._index:
+                raise ValueError(f"{robot} is not part of this world")
+            _check_inside(str(robot), pose, outer_x, outer_y)
+            poses[self._index[robot]] = pose
+        _check_inside("the ball", placement.ball, outer_x, outer_y)
+        self._arenas.place(poses[None], np.array([placement.ball]))
+        self._commands[:] = 0.0
+        self._rng = np.random.default_rng(seed)
+        self._ticks = 0
+        self.kicks = []
+        self._seen = None
+        self._past.clear()
+        self._past.append(self._rows())
+        self._report = self._perceive()
+
+    def observe(self) -> Frame:
+        """What the cameras report: late, noisy and with gaps where the settings say so.
+
+        Velocities carry no noise of their own; a missing detection repeats the last one.
+        """
+        if not (self._delayed or self._noisy or self._lossy):
+            return self.truth()
+        rows = self._report
+        return self._frame(rows[:-1].tolist(), rows[-1].tolist())
+
+    def truth(self) -> Frame:
+        """The simulated state itself."""
+        return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
+
+    def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """Send the commands and simulate one control period.
+
+        Raises:
+            KeyError: a command for a robot that is not part of this world.
+            ValueError: a command that is not finite.
+        """
+        rows = self._commands[0]
+        loss = self.settings.realism.command_loss
+        lost = self._rng.random(len(self._ids)) < loss if loss > 0.0 else None
+        if lost is None:
+            rows[:] = 0.0
+        else:
+            rows[~lost] = 0.0
+            # A lost command is not sent twice: the robot drives on but does not kick again.
+            rows[lost, 3] = 0.0
+        for robot, command in commands.items():
+            i = self._index[robot]
+            if not command.finite():
+                raise ValueError(f"the command for {robot} is not finite: {command}")
+            if lost is None or not lost[i]:
+                rows[i] = (
+                    command.vx,
+                    command.vy,
+                    command.omega,
+                    command.kick_speed,
+                    command.kick_trigger is KickTrigger.ON_CONTACT,
+                    command.dribbler,
+                )
+        self._arenas.step(self._commands)
+        self._ticks += 1
+        kicked = self._arenas.kicked[0]
+        self.kicks = [self._ids[i] for i in kicked.nonzero()[0]] if kicked.any() else []
+        if self._delayed:
+            for rows in self._arenas.history[:, 0]:
+                self._past.append(rows.copy())
+        if self._delayed or self._noisy or self._lossy:
+            self._report = self._perceive()
+
+    def place_ball(self, x: float, y: float) -> None:
+        """See :meth:`robobt.world.World.place_ball`."""
+        _check_inside(
+            "the ball",
+            (x, y),
+            self.field.half_length + self.field.margin,
+            self.field.half_width + self.field.margin,
+        )
+        self._arenas.place_ball(0, x, y)
+
+    def _rows(self) -> FloatArray:
+        """Robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, 0, vx, vy, 0)."""
+        rows = np.zeros((len(self._ids) + 1, 6))
+        rows[:-1] = self._arenas.robots[0]
+        rows[-1, :2] = self._arenas.balls[0, :2]
+        rows[-1, 3:5] = self._arenas.balls[0, 2:]
+        return rows
+
+    def _perceive(self) -> FloatArray:
+        realism, rng = self.settings.realism, self._rng
+        rows = self._past[0].copy() if self._delayed else self._rows()
+        robots = len(self._ids)
+        rows[:robots, 2] = wrap_angles(rows[:robots, 2])
+        if self._noisy:
+            rows[:robots, :2] += rng.normal(0.0, realism.robot_noise, (robots, 2))
+            rows[:robots, 2] = wrap_angles(rows[:robots, 2] + rng.normal(0.0, realism.heading_noise, robots))
+            rows[robots, :2] += rng.normal(0.0, realism.ball_noise, 2)
+        if self._lossy:
+            chance = np.full(robots + 1, realism.missing_robot)
+            chance[robots] = realism.missing_ball
+            gone = rng.random(robots + 1) < chance
+            if self._seen is not None:
+                rows[gone] = self._seen[gone]
+            self._seen = rows
+        return rows
+
+    def _frame(self, robots: list[list[float]], ball: list[float]) -> Frame:
+        contact = self._arenas.contact[0].tolist()
+        blue = len(self._blue)
+        touch = int(self._arenas.touch[0])
+        if len(ball) == 6:
+            ball = [ball[0], ball[1], ball[3], ball[4]]
+        return Frame(
+            self._ticks * self.period,
+            self.field,
+            BallState(*ball),
+            tuple(
+                [
+                    RobotState(number, *row, touching, limits)
+                    for (number, limits), row, touching in zip(self._blue, robots, contact, strict=False)
+                ]
+            ),
+            tuple(
+                [
+                    RobotState(number, *row, touching, limits)
+                    for (number, limits), row, touching in zip(
+                        self._yellow, robots[blue:], contact[blue:], strict=True
+                    )
+                ]
+            ),
+            Team.BLUE,
+            self.period,
+            last_touch=self._ids[touch] if touch >= 0 else None,
+        )
+
+
+def _check_inside(what: str, values: tuple[float, ...], outer_x: float, outer_y: float) -> None:
+    if not all(isfinite(value) for value in values):
+        raise ValueError(f"{what} is placed at {values}: not finite")
+    if abs(values[0]) > outer_x or abs(values[1]) > outer_y:
+        raise ValueError(
+            f"{what} is placed at ({values[0]:g}, {values[1]:g}), outside the walls at "
+            f"({outer_x:g}, {outer_y:g})"
+        )
