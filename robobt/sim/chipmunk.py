@@ -24,7 +24,7 @@ ROW = 6
 
 
 @intrinsic
-def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
+def _call_step(_context: Any, _function: Any, _space: Any, _dt: Any) -> Any:
     """``cpSpaceStep(space, dt)`` by address, from compiled code."""
     signature = types.void(types.uint64, types.uint64, types.float64)
 
@@ -38,7 +38,7 @@ def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
 
 
 @intrinsic
-def _call_each_body(typingctx: Any, function: Any, space: Any, callback: Any, data: Any) -> Any:
+def _call_each_body(_context: Any, _function: Any, _space: Any, _callback: Any, _data: Any) -> Any:
     """``cpSpaceEachBody(space, callback, data)`` by address, from compiled code."""
     signature = types.void(types.uint64, types.uint64, types.uint64, types.uint64)
 
@@ -52,8 +52,9 @@ def _call_each_body(typingctx: Any, function: Any, space: Any, callback: Any, da
     return signature, generate
 
 
-call_step = _call_step
-call_each_body = _call_each_body
+# numba passes the first argument itself, which no type checker can know.
+call_step: Any = _call_step
+call_each_body: Any = _call_each_body
 
 
 class BodyBuffer:

@@ -69,6 +69,9 @@ _OVERLAP = 3e-4
 _TOUCH = 2e-3
 """Gap between ball and robot that still counts as a touch [m]."""
 
+_BACKING = -0.02
+"""A robot slower than this along its heading backs away from the ball [m/s]."""
+
 _GLUE_GAP = 2e-4
 """Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
 
@@ -248,7 +251,7 @@ def _in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) 
     px, py = ball[0] - robot[0], ball[1] - robot[1]
     ahead = c * px + s * py
     aside = c * py - s * px
-    return 0.0 < ahead <= p[FACE] + p[BALL_R] + depth and abs(aside) <= p[HALF_MOUTH]
+    return bool(0.0 < ahead <= p[FACE] + p[BALL_R] + depth and abs(aside) <= p[HALF_MOUTH])
 
 
 @njit(cache=True)
@@ -424,10 +427,13 @@ def control_tick(
                             glued = i
                         else:
                             _hold(ball, velocity, robot, p, -1.0, dt, pull)
-                elif p[IDLE_HOLD] > 0.0 and _in_mouth(ball, robot, p, p[REACH]):
-                    if cos(robot[2]) * robot[3] + sin(robot[2]) * robot[4] > -0.02:
-                        held = True
-                        _hold(ball, velocity, robot, p, p[IDLE_HOLD], dt, pull)
+                elif (
+                    p[IDLE_HOLD] > 0.0
+                    and cos(robot[2]) * robot[3] + sin(robot[2]) * robot[4] > _BACKING
+                    and _in_mouth(ball, robot, p, p[REACH])
+                ):
+                    held = True
+                    _hold(ball, velocity, robot, p, p[IDLE_HOLD], dt, pull)
             if glued >= 0:
                 _carry(ball, rows[first + glued], p, dt, move)
                 velocity[0] = spin[0] = move[0]

@@ -99,7 +99,9 @@ class SimWorld:
         if not (self._delayed or self._noisy or self._lossy):
             return self.truth()
         rows = self._report
-        return self._frame(rows[:-1].tolist(), rows[-1].tolist())
+        robots = rows.tolist()
+        x, y, _, vx, vy, _ = robots.pop()
+        return self._frame(robots, [x, y, vx, vy])
 
     def truth(self) -> Frame:
         """The simulated state itself."""
@@ -184,30 +186,27 @@ class SimWorld:
         contact = self._arenas.contact[0].tolist()
         blue = len(self._blue)
         touch = int(self._arenas.touch[0])
-        if len(ball) == 6:
-            ball = [ball[0], ball[1], ball[3], ball[4]]
         return Frame(
             self._ticks * self.period,
             self.field,
             BallState(*ball),
-            tuple(
-                [
-                    RobotState(number, *row, touching, limits)
-                    for (number, limits), row, touching in zip(self._blue, robots, contact, strict=False)
-                ]
-            ),
-            tuple(
-                [
-                    RobotState(number, *row, touching, limits)
-                    for (number, limits), row, touching in zip(
-                        self._yellow, robots[blue:], contact[blue:], strict=True
-                    )
-                ]
-            ),
+            _states(self._blue, robots[:blue], contact[:blue]),
+            _states(self._yellow, robots[blue:], contact[blue:]),
             Team.BLUE,
             self.period,
             last_touch=self._ids[touch] if touch >= 0 else None,
         )
+
+
+def _states(
+    known: list[tuple[int, RobotLimits]], rows: list[list[float]], contact: list[bool]
+) -> tuple[RobotState, ...]:
+    return tuple(
+        [
+            RobotState(number, row[0], row[1], row[2], row[3], row[4], row[5], touching, limits)
+            for (number, limits), row, touching in zip(known, rows, contact, strict=True)
+        ]
+    )
 
 
 def _check_inside(what: str, values: tuple[float, ...], outer_x: float, outer_y: float) -> None:
