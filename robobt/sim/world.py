@@ -146,6 +146,10 @@ class SimWorld:
         if self._delayed or self._noisy or self._lossy:
             self._report = self._perceive()
 
+    def step_bare(self) -> None:
+        """Step the physics engine through one period without frames or commands, for benchmarks."""
+        self._arenas.step_bare()
+
     def place_ball(self, x: float, y: float) -> None:
         """See :meth:`robobt.world.World.place_ball`."""
         _check_inside(

@@ -1,0 +1,108 @@
+"""How fast the simulator is: control steps a second with frames and commands, beside the bare space."""
+
+from __future__ import annotations
+
+from math import atan2, cos, pi, sin
+from time import perf_counter
+
+from robobt.sim.settings import preset
+from robobt.sim.world import SimWorld
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_A
+from robobt.world.game import Team
+from robobt.world.protocol import Placement
+from robobt.world.state import Frame, RobotId, RobotState
+
+CASES = {"one_v_one": 1, "six_v_six": 6, "eleven_v_eleven": 11}
+"""Keys of the benchmark's result and robots a team."""
+
+PERIOD = 0.025
+"""Control period, five sub-steps [s]."""
+
+
+def bench_sim(seconds: float = 2.0, rounds: int = 3) -> dict[str, dict[str, float]]:
+    """Measure each of :data:`CASES` on one core.
+
+    Everybody chases the ball, dribbles and kicks it, so that robots and ball
+    move and meet. A control step observes a frame, makes both teams' views,
+    takes a command a robot and advances the physics. ``bare_ratio`` divides its
+    time by that of stepping the same space with pymunk's own call and nothing else.
+
+    Args:
+        seconds: how long to measure each case in each round.
+        rounds: repetitions; the fastest counts.
+
+    Returns:
+        for each case: ``steps_per_s``, ``bare_steps_per_s``, ``bare_ratio`` and
+        ``contacts_per_s``, ball touches by another robot than before and kicks
+        per simulated second, which show that things do meet.
+    """
+    return {name: _measure(count, seconds, rounds) for name, count in CASES.items()}
+
+
+def _measure(count: int, seconds: float, rounds: int) -> dict[str, float]:
+    world = _crowd(count)
+    _play(world, 50)
+    # A chunk long enough that reading the clock costs nothing.
+    chunk = 200
+    best = bare = 0.0
+    meetings = steps = 0
+    for _ in range(rounds):
+        begin, done = perf_counter(), 0
+        while perf_counter() - begin < seconds / 2:
+            meetings += _play(world, chunk)
+            done += chunk
+        best = max(best, done / (perf_counter() - begin))
+        steps += done
+        begin, done = perf_counter(), 0
+        while perf_counter() - begin < seconds / 2:
+            for _ in range(chunk):
+                world.step_bare()
+            done += chunk
+        bare = max(bare, done / (perf_counter() - begin))
+    return {
+        "steps_per_s": best,
+        "bare_steps_per_s": bare,
+        "bare_ratio": bare / best,
+        "contacts_per_s": meetings / (steps * PERIOD),
+    }
+
+
+def _crowd(count: int) -> SimWorld:
+    ids = [RobotId(team, number) for team in Team for number in range(count)]
+    world = SimWorld(DIVISION_A, dict.fromkeys(ids), preset("default"), PERIOD)
+    poses = {}
+    for i, robot in enumerate(ids):
+        angle = 2 * pi * i / len(ids)
+        poses[robot] = (3.0 * cos(angle), 3.0 * sin(angle), angle + pi)
+    world.reset(Placement(poses), seed=0)
+    return world
+
+
+def _play(world: SimWorld, steps: int) -> int:
+    """Let everybody chase the ball for some steps; how often it changed hands or was kicked."""
+    meetings = 0
+    last = None
+    for _ in range(steps):
+        frame = world.observe()
+        views = {Team.BLUE: frame, Team.YELLOW: frame.mirrored()}
+        commands = {}
+        for team, view in views.items():
+            for robot in view.own:
+                commands[RobotId(team, robot.id)] = _chase(view, robot)
+        world.act(commands)
+        meetings += len(world.kicks) + (frame.last_touch != last)
+        last = frame.last_touch
+    return meetings
+
+
+def _chase(view: Frame, robot: RobotState) -> RobotCommand:
+    ball = view.ball
+    error = atan2(ball.y - robot.y, ball.x - robot.x) - robot.heading
+    return RobotCommand(
+        2.0 * cos(error),
+        2.0 * sin(error),
+        5.0 * sin(error),
+        3.0 if robot.ball_contact else 0.0,
+        dribbler=True,
+    )
