@@ -1,0 +1,99 @@
+"""Where RoboBulls' path planner sends a robot first: round the ball and round other robots.
+
+Source: RoboBulls' published code, PathPlannerFPPA. Only the first way-point is
+ever driven to, so only the first is worked out. Its side is fixed: to the right
+of the way unless that leads off the field, even where the left would be shorter;
+that is what the published times hold.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point, closest_point_on_segment, distance, segment_distance
+from robobt.world.state import BALL_RADIUS, Frame, RobotState
+
+RADIUS = 0.1
+"""The robot radius in RoboBulls' constants [m]; real robots have 0.09 m."""
+
+_BORDER = 0.1
+_STEP = 0.02
+_MOST_TURNS = 4
+_BALL_HIT = RADIUS + BALL_RADIUS + 0.01
+_BALL_FREE = RADIUS + BALL_RADIUS + 0.05
+_ROBOT_HIT = 2 * RADIUS + 0.01
+_ROBOT_FREE = 2 * RADIUS + 0.05
+
+
+def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: bool = False) -> Point:
+    """Where to drive now to get to ``goal`` without touching the ball or a robot [m].
+
+    Args:
+        goalkeeper: whether ``me`` may drive in its own defence area.
+    """
+    start = me.position
+    others = [other.position for other in frame.others(me.id)]
+    next_ = allowed(frame.field, goal, goalkeeper=goalkeeper)
+    for _ in range(_MOST_TURNS):
+        obstacle = _in_the_way(start, next_, frame.ball.position, others)
+        if obstacle is None:
+            return next_
+        beside = _beside(frame, start, next_, obstacle, others)
+        if beside is None:
+            return next_
+        next_ = allowed(frame.field, beside, goalkeeper=goalkeeper)
+    return next_
+
+
+def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> Point:
+    """The point moved to where a robot may go: 0.1 m inside the lines and out of the defence areas [m]."""
+    x = min(max(point[0], _BORDER - field.half_length), field.half_length - _BORDER)
+    y = min(max(point[1], _BORDER - field.half_width), field.half_width - _BORDER)
+    if goalkeeper and x <= 0.0:
+        return (x, y)
+    sign = 1.0 if x > 0.0 else -1.0
+    to_front = abs(x) - (field.half_length - field.defense_depth)
+    to_side = field.defense_width / 2 - abs(y)
+    if to_front < 0.0 or to_side < 0.0:
+        return (x, y)
+    if to_side >= to_front:
+        return (x - sign * to_front, y)
+    return (x, y + (to_side if y >= 0.0 else -to_side))
+
+
+def _in_the_way(start: Point, end: Point, ball: Point, others: list[Point]) -> Point | None:
+    if segment_distance(ball, start, end) <= _BALL_HIT:
+        return ball
+    for other in others:
+        if not _close(other, start, _ROBOT_HIT) and segment_distance(other, start, end) <= _ROBOT_HIT:
+            return other
+    return None
+
+
+def _beside(frame: Frame, start: Point, end: Point, obstacle: Point, others: list[Point]) -> Point | None:
+    length = distance(start, end)
+    if length < _STEP:
+        return None
+    foot = closest_point_on_segment(obstacle, start, end)
+    right = ((end[1] - start[1]) / length, (start[0] - end[0]) / length)
+    left = (-right[0], -right[1])
+    return _free_point(frame, foot, right, obstacle, others) or _free_point(
+        frame, foot, left, obstacle, others
+    )
+
+
+def _free_point(frame: Frame, foot: Point, side: Point, obstacle: Point, others: list[Point]) -> Point | None:
+    round_ball = obstacle == frame.ball.position
+    x, y = foot
+    while frame.field.contains(x, y):
+        if not (round_ball and _close((x, y), obstacle, _BALL_FREE)) and all(
+            hypot(x - other_x, y - other_y) > _ROBOT_FREE for other_x, other_y in others
+        ):
+            return (x, y)
+        x, y = x + _STEP * side[0], y + _STEP * side[1]
+    return None
+
+
+def _close(a: Point, b: Point, most: float) -> bool:
+    return abs(a[0] - b[0]) <= most and abs(a[1] - b[1]) <= most
