@@ -224,11 +224,11 @@ class Referee:
         if frame.team is not Team.BLUE:
             raise ValueError("the referee looks from blue's side; pass World.truth() as it is")
         self._events, self._place = [], None
-        if self._since is None:
-            self._open(frame)
         self._touches.watch(frame)
         game = self.game
-        if game.in_play:
+        if self._since is None:
+            self._open(frame)
+        elif game.in_play:
             self._judge_play(frame)
         elif game.halted:
             self._judge_halt(frame)
