@@ -1,0 +1,67 @@
+"""How long a kicked ball takes and how fast it has to be kicked, in closed form."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class BallModel(BaseModel):
+    """A ball that slides, then rolls: what skills believe about the ball.
+
+    A kicked ball slides with one deceleration down to ``switch_share`` of the
+    speed it was kicked with, and rolls with a smaller one from there to rest.
+    The defaults are those of the default simulator; parameters and names follow
+    the two-phase model of the league's vision packet (straight_two_phase).
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    slide_deceleration: float = Field(3.0, gt=0, le=50, description="while it slides [m/s^2]")
+    switch_share: float = Field(0.66, gt=0.05, lt=1, description="share of the kick speed where it rolls")
+    roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
+
+    def time_to(self, distance: float, speed: float) -> float:
+        """Seconds until a ball kicked at ``speed`` [m/s] has gone ``distance`` [m]; inf if it never does."""
+        if distance <= 0.0:
+            return 0.0
+        if speed <= 0.0:
+            return inf
+        slide = self.slide_deceleration
+        at_end = speed * speed - 2.0 * slide * distance
+        rolling = self.switch_share * speed
+        if at_end >= rolling * rolling:
+            return (speed - sqrt(at_end)) / slide
+        roll = self.roll_deceleration
+        left = distance - (speed * speed - rolling * rolling) / (2.0 * slide)
+        at_end = rolling * rolling - 2.0 * roll * left
+        if at_end < 0.0:
+            return inf
+        return (speed - rolling) / slide + (rolling - sqrt(at_end)) / roll
+
+    def speed_at(self, distance: float, speed: float) -> float:
+        """Speed [m/s] after ``distance`` [m] of a ball kicked at ``speed`` [m/s]; 0 where it has stopped."""
+        if distance <= 0.0:
+            return speed
+        rolling = self.switch_share * speed
+        at_end = speed * speed - 2.0 * self.slide_deceleration * distance
+        if at_end >= rolling * rolling:
+            return sqrt(at_end)
+        slid = (speed * speed - rolling * rolling) / (2.0 * self.slide_deceleration)
+        return sqrt(max(0.0, rolling * rolling - 2.0 * self.roll_deceleration * (distance - slid)))
+
+    def kick_speed(self, distance: float, arrival_speed: float) -> float:
+        """Kick speed [m/s] with which the ball still has ``arrival_speed`` [m/s] after ``distance`` [m]."""
+        slide, roll, share = self.slide_deceleration, self.roll_deceleration, self.switch_share
+        distance = max(0.0, distance)
+        sliding = sqrt(arrival_speed * arrival_speed + 2.0 * slide * distance)
+        if share * sliding <= arrival_speed:
+            return sliding
+        squared = (distance + arrival_speed * arrival_speed / (2.0 * roll)) / (
+            (1.0 - share * share) / (2.0 * slide) + share * share / (2.0 * roll)
+        )
+        return sqrt(squared)
+
+
+DEFAULT_BALL = BallModel()

@@ -1,0 +1,80 @@
+"""The interface of every shot rater, and the raters by name."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from robobt.skills.store import Shot
+from robobt.tree import Registry
+from robobt.world.geometry import Point, direction, wrap_angle
+from robobt.world.state import Frame, RobotState
+
+
+class ShotRater(BaseModel, ABC):
+    """Judges shots at the opponent's goal.
+
+    A rater is a small read-only object whose fields are its settings; everything
+    it judges comes in with the call. Every rater keeps to this:
+
+    * robots of both teams block, all but the shooter;
+    * a robot behind the ball, seen from the goal, does not;
+    * mirroring the scene in the x axis mirrors the shots;
+    * one robot more never raises the best score.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    @abstractmethod
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
+        """Every distinct opening, the best first; empty when there is none.
+
+        Among equally good ones the first is that for which ``me`` has to turn least.
+
+        Args:
+            frame: the field, seen from the shooter's side.
+            origin: where the ball will be kicked from [m].
+            me: the robot that kicks; it does not block itself.
+            delay: time until the kick [s], for raters that know about motion.
+        """
+
+    def rate(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> Shot | None:
+        """The best opening, None when there is none; arguments as in :meth:`rate_all`."""
+        shots = self.rate_all(frame, origin, me, delay=delay)
+        return shots[0] if shots else None
+
+
+RATERS: Registry[type[ShotRater]] = Registry("shot rater")
+"""The shot raters by name."""
+
+
+def make_rater(rater: str | ShotRater, **settings: Any) -> ShotRater:
+    """The rater with this name and these settings; a rater already made is returned as it is.
+
+    Settings that are None are left at the rater's default.
+
+    Raises:
+        KeyError: no rater has that name.
+        ValueError: the rater has no such setting or refuses its value, or
+            settings came with a rater already made.
+    """
+    given = {key: value for key, value in settings.items() if value is not None}
+    if isinstance(rater, ShotRater):
+        if given:
+            raise ValueError(f"give {', '.join(sorted(given))} to the rater itself")
+        return rater
+    return RATERS[rater](**given)
+
+
+def best_first(shots: Iterable[Shot], origin: Point, heading: float) -> list[Shot]:
+    """The shots by falling score; equal ones by the turn they need from ``heading``, then left to right."""
+
+    def rank(shot: Shot) -> tuple[float, float, float]:
+        turn = abs(wrap_angle(direction(origin, shot.target) - heading))
+        # Rounded, so that what differs by a rounding error counts as equal.
+        return (-round(shot.score, 9), round(turn, 9), -shot.target[1])
+
+    return sorted(shots, key=rank)

@@ -1,0 +1,84 @@
+"""The goal line as a row of target points: shared by every rater that tries points."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import BALL_RADIUS, Frame, RobotState
+
+POST_GAP = BALL_RADIUS + 0.01
+"""Least distance of a target point from a post [m]. Source: the paper's shot selection."""
+
+
+def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
+    """Target points on the opponent's goal line, from the right post (y < 0) to the left.
+
+    As many as fit between the posts less :data:`POST_GAP` on either side, 94 on a
+    goal of 1 m at the paper's 10 mm. The row is centred on the goal, so that it is
+    its own mirror image (the paper's starts at the right end instead, which puts
+    it up to half a spacing off centre).
+
+    Returns:
+        (T, 2) points [m], not to be written to.
+    """
+    return _candidates(field.half_length, field.goal_width, spacing)
+
+
+@lru_cache(maxsize=64)
+def _candidates(x: float, goal_width: float, spacing: float) -> FloatArray:
+    usable = max(0.0, goal_width - 2.0 * POST_GAP)
+    count = int(usable / spacing + 1e-9) + 1
+    points = np.empty((count, 2))
+    points[:, 0] = x
+    points[:, 1] = (np.arange(count) - (count - 1) / 2.0) * spacing
+    points.flags.writeable = False
+    return points
+
+
+def obstacles(frame: Frame, me: RobotState) -> FloatArray:
+    """Centres of all robots but ``me``, own ones first, (K, 2) [m]."""
+    return np.array([(robot.x, robot.y) for robot in frame.others(me.id)], dtype=np.float64).reshape(-1, 2)
+
+
+def lane_clearances(origin: Point, targets: FloatArray, centres: FloatArray) -> FloatArray:
+    """Distance of every obstacle from every straight lane origin -> target.
+
+    An obstacle whose nearest point on the lane would lie behind the origin is
+    not in the ball's way: its distance is infinite.
+
+    Args:
+        origin: where the lanes start [m].
+        targets: (T, 2) ends [m].
+        centres: (K, 2) [m].
+
+    Returns:
+        (T, K) distances [m].
+    """
+    dx, dy = (targets - origin).T[:, :, None]
+    ox, oy = (centres - origin).T[:, None, :]
+    length_squared = dx * dx + dy * dy
+    along = dx * ox + dy * oy
+    across = dx * oy
+    across -= dy * ox
+    across *= across
+    across /= np.maximum(length_squared, 1e-12)
+    beyond = along > length_squared
+    if beyond.any():
+        to_end = np.square(ox - dx) + np.square(oy - dy)
+        across = np.where(beyond, to_end, across)
+    across[along <= 0.0] = np.inf
+    distances: FloatArray = np.sqrt(across)
+    return distances
+
+
+def runs(clear: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Groups of neighbouring true entries as (first, one past the last), in order."""
+    padded = np.zeros(len(clear) + 2, dtype=np.bool_)
+    padded[1:-1] = clear
+    edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
+    return list(zip(edges[::2], edges[1::2], strict=True))

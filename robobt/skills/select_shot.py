@@ -1,0 +1,76 @@
+"""Choose where to shoot."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.raters import ShotRater, make_rater
+from robobt.skills.store import Shot
+from robobt.tree import Status
+from robobt.world.geometry import direction, distance, wrap_angle
+
+
+@skill
+class SelectShot(Skill):
+    """Rate the shots from where the ball lies and write the best one to ``shot``.
+
+    SUCCESS when there is one good enough. FAILURE otherwise, with the reason, and
+    ``shot`` is None.
+
+    Args:
+        rater: name of a shot rater, or a rater with settings of its own.
+        tolerance: the tolerance of the ``segment_clearance`` rater [m]; None is its default.
+        min_score: worst score still accepted, 0 to 1; what a score means is the rater's.
+        max_distance: no shots from farther than this from the goal's centre [m]; None is any.
+        keep: stay with the opening of the last shot while it scores at most this
+            much worse than the best, so that the aim does not jump between two
+            like ones.
+    """
+
+    reads = ("shot",)
+    writes = ("shot",)
+
+    def __init__(
+        self,
+        *,
+        rater: str | ShotRater = "segment_clearance",
+        tolerance: float | None = None,
+        min_score: float = 0.0,
+        max_distance: float | None = None,
+        keep: float = 0.1,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.rater = make_rater(rater, tolerance=tolerance)
+        self.min_score = min_score
+        self.max_distance = max_distance
+        self.keep = keep
+
+    def on_running(self) -> Status:
+        """Rate and choose."""
+        last, self.store.shot = self.store.shot, None
+        frame = self.frame
+        origin = self.ball.position
+        if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
+            return self.fail(f"farther than {self.max_distance:g} m from the goal")
+        shots = self.rater.rate_all(frame, origin, self.me)
+        if not shots:
+            return self.fail("no way to the goal is free")
+        shot = shots[0]
+        if last is not None:
+            aim = direction(origin, last.target)
+            for other in shots[1:]:
+                if other.score < shot.score - self.keep:
+                    break
+                if _in_opening(aim, shot, origin):
+                    break
+                if _in_opening(aim, other, origin):
+                    shot = other
+                    break
+        if shot.score < self.min_score:
+            return self.fail(f"the best shot scores {shot.score:.2f}")
+        self.store.shot = shot
+        return self.succeed(f"score {shot.score:.2f}")
+
+
+def _in_opening(aim: float, shot: Shot, origin: tuple[float, float]) -> bool:
+    return abs(wrap_angle(direction(origin, shot.target) - aim)) <= shot.tolerance
