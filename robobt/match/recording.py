@@ -21,30 +21,38 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Mapping
+from array import array
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
+from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass
 from enum import IntFlag
+from math import isfinite
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import Any, BinaryIO, Self, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
 from py_trees.common import Status
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from robobt import __version__
 from robobt.tree import TreeRunner
 from robobt.tree.drawing import NodeKind, describe
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
-from robobt.world.game import GameState, Team
-from robobt.world.state import ROBOT_RADIUS, Frame, RobotId
+from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.geometry import FloatArray
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
+
+T = TypeVar("T")
 
 FORMAT = "robobt-recording"
 VERSION = 1
 
-LENGTH_UNIT = 1e-4
-"""Metres a unit of the file's lengths."""
-
+_BALL_UNITS = (1e-4, 1e-4, 1e-3, 1e-3)
+_ROBOT_UNITS = (1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3)
 _encode = json.JSONEncoder(separators=(",", ":")).encode
 _LETTERS = {Status.SUCCESS.name: "S", Status.FAILURE.name: "F", Status.RUNNING.name: "R"}
 
@@ -372,3 +380,354 @@ def _game_to_json(game: GameState) -> dict[str, Any]:
         "may_touch": game.may_touch,
         "placement": game.placement,
     }
+
+
+@dataclass(slots=True)
+class Recording:
+    """A match that was recorded, in world coordinates (blue defends -x).
+
+    T is the number of ticks, K that of robots in the header.
+
+    Attributes:
+        path: the file.
+        header: what stayed the same.
+        times: (T,) [s], never decreasing.
+        ball: (T, 4) x, y [m], vx, vy [m/s]; NaN where it was not known.
+        robots: (T, K, 6) x, y [m], heading [rad], vx, vy [m/s], omega [rad/s]; NaN off the field.
+        flags: (T, K) :class:`RobotFlag`.
+        statuses: for each robot the ticks at which its tree changed, with one letter a node.
+        feedback: for each robot the ticks at which nodes said something new, by node.
+        games: the ticks at which the referee's word changed.
+        touches: the ticks at which the last touch changed hands.
+        events: in the order they were recorded.
+        outcome: what the match ended with, None when its recorder was not closed.
+    """
+
+    path: Path
+    header: RecordingHeader
+    times: FloatArray
+    ball: FloatArray
+    robots: FloatArray
+    flags: NDArray[np.uint8]
+    statuses: list[list[tuple[int, str]]]
+    feedback: list[list[tuple[int, dict[int, str]]]]
+    games: list[tuple[int, GameState]]
+    touches: list[tuple[int, RobotId | None]]
+    events: list[Event]
+    outcome: dict[str, Any] | None
+
+    @property
+    def complete(self) -> bool:
+        """Whether the recording reached its end; a killed match's did not."""
+        return self.outcome is not None
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def frame(self, tick: int) -> Frame:
+        """What was on the field at a tick, from blue's side, as exactly as the file holds it.
+
+        Raises:
+            IndexError: no such tick.
+        """
+        period = self.header.period
+        tick = range(len(self))[tick]
+        ball = BallState(*self.ball[tick].tolist())
+        teams: dict[Team, list[RobotState]] = {team: [] for team in Team}
+        for robot, row, flags in zip(
+            self.header.robots, self.robots[tick].tolist(), self.flags[tick].tolist(), strict=True
+        ):
+            if isfinite(row[0]):
+                contact = bool(flags & RobotFlag.BALL_CONTACT)
+                x, y, heading, vx, vy, omega = row
+                state = RobotState(robot.number, x, y, heading, vx, vy, omega, contact)
+                teams[robot.team].append(state)
+        own, opponents = (tuple(sorted(teams[team], key=_number)) for team in (Team.BLUE, Team.YELLOW))
+        game = _latest(self.games, tick, OPEN_PLAY)
+        touch = _latest(self.touches, tick, None)
+        time = float(self.times[tick])
+        return Frame(time, self.header.field, ball, own, opponents, Team.BLUE, period, game, touch)
+
+    def statuses_at(self, robot: RobotId, tick: int) -> str:
+        """One letter a node of the robot's tree (S, F, R, - not ticked), in the order of its header.
+
+        Raises:
+            KeyError: no such robot in this recording.
+        """
+        slot = self._slot(robot)
+        return _latest(self.statuses[slot], tick, "-" * len(self.header.robots[slot].tree))
+
+    def feedback_at(self, robot: RobotId, tick: int) -> dict[int, str]:
+        """What the nodes of the robot's tree have said last, by place in the tree.
+
+        Raises:
+            KeyError: no such robot in this recording.
+        """
+        said: dict[int, str] = {}
+        for when, changes in self.feedback[self._slot(robot)]:
+            if when > tick:
+                break
+            said.update(changes)
+        return {place: message for place, message in said.items() if message}
+
+    def _slot(self, robot: RobotId) -> int:
+        for slot, entry in enumerate(self.header.robots):
+            if entry.id == robot:
+                return slot
+        raise KeyError(f"robot {robot} is not in {self.path}")
+
+
+def _number(robot: RobotState) -> int:
+    return robot.id
+
+
+def _latest(changes: SequenceOf[tuple[int, T]], tick: int, default: T) -> T:
+    place = bisect_right(changes, tick, key=_when)
+    return changes[place - 1][1] if place else default
+
+
+def _when(change: tuple[int, Any]) -> int:
+    return change[0]
+
+
+def load_recording(path: str | Path) -> Recording:
+    """Read a recording, plain or compressed; one that was cut off, up to its last whole line.
+
+    Raises:
+        RecordingError: the file cannot be read, is no recording, or a line of it is not what
+            it should be; the message names the file, the line and the field.
+    """
+    path = Path(path)
+    lines = _lines_of(path)
+    header = _read_header(path, lines[0])
+    reader = _Reader(path, header)
+    for number, line in enumerate(lines[1:], start=2):
+        reader.read(number, line)
+    return reader.recording()
+
+
+def _lines_of(path: Path) -> list[bytes]:
+    """The whole lines of the file, at least one."""
+    try:
+        data = path.read_bytes()
+        if data.startswith(b"\x1f\x8b"):
+            # Unlike gzip.open, this gives what there is of a stream that was cut off.
+            data = zlib.decompressobj(wbits=31).decompress(data)
+    except OSError as error:
+        raise RecordingError(path, error.strerror or str(error)) from None
+    except zlib.error as error:
+        raise RecordingError(path, f"its compressed data are damaged ({error})") from None
+    if not data:
+        raise RecordingError(path, "is empty")
+    lines = data.split(b"\n")
+    last = lines.pop()
+    if not lines:
+        if FORMAT.encode() in last[:100]:
+            raise RecordingError(path, "is cut off inside its header", 1)
+        raise RecordingError(path, "is not a robobt recording", 1)
+    return lines
+
+
+def _object(path: Path, number: int, line: bytes) -> dict[str, Any]:
+    try:
+        entry = json.loads(line)
+    except (ValueError, RecursionError):
+        raise RecordingError(path, "is not a JSON object", number) from None
+    if not isinstance(entry, dict):
+        raise RecordingError(path, "is not a JSON object", number)
+    return entry
+
+
+def _read_header(path: Path, line: bytes) -> RecordingHeader:
+    try:
+        entry = _object(path, 1, line)
+    except RecordingError:
+        raise RecordingError(path, "is not a robobt recording", 1) from None
+    if entry.pop("format", None) != FORMAT:
+        raise RecordingError(path, f"must be {FORMAT!r}: this is not a robobt recording", 1, "format")
+    version = entry.pop("version", None)
+    if version != VERSION:
+        problem = f"{version!r} cannot be read by robobt {__version__}, which reads {VERSION}"
+        raise RecordingError(path, problem, 1, "version")
+    try:
+        return RecordingHeader.model_validate(entry)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise RecordingError(path, first["msg"], 1, place or None) from None
+
+
+_NOWHERE = -(2**31)
+_LONGEST = 1e9
+
+
+class _Reader:
+    """Takes the lines after the header one by one."""
+
+    def __init__(self, path: Path, header: RecordingHeader) -> None:
+        self.path, self.header = path, header
+        self.times: list[float] = []
+        self.ball = array("i")
+        self.robots = array("i")
+        self.statuses: list[list[tuple[int, str]]] = [[] for _ in header.robots]
+        self.feedback: list[list[tuple[int, dict[int, str]]]] = [[] for _ in header.robots]
+        self.games: list[tuple[int, GameState]] = []
+        self.touches: list[tuple[int, RobotId | None]] = []
+        self.events: list[Event] = []
+        self.outcome: dict[str, Any] | None = None
+        self.number = 1
+
+    def read(self, number: int, line: bytes) -> None:
+        self.number = number
+        if self.outcome is not None:
+            raise RecordingError(self.path, "stands after the last line of the recording", number)
+        entry = _object(self.path, number, line)
+        if "r" in entry:
+            self._tick(entry)
+        elif "e" in entry:
+            self._event(entry)
+        elif "end" in entry:
+            self._need(isinstance(entry["end"], dict), "end", "must be an object")
+            self.outcome = entry["end"]
+        else:
+            raise RecordingError(self.path, "is neither a tick nor an event nor the end", number)
+
+    def recording(self) -> Recording:
+        ticks, count = len(self.times), len(self.header.robots)
+        ball = np.array(self.ball, dtype=np.float64).reshape(ticks, len(_BALL_UNITS))
+        rows = np.array(self.robots, dtype=np.float64).reshape(ticks, count, len(_ROBOT_UNITS) + 1)
+        ball[ball[:, 0] == _NOWHERE] = np.nan
+        flags = rows[:, :, -1].astype(np.uint8)
+        robots = rows[:, :, :-1]
+        robots[robots[:, :, 0] == _NOWHERE] = np.nan
+        return Recording(
+            self.path,
+            self.header,
+            np.array(self.times, dtype=np.float64),
+            ball * _BALL_UNITS,
+            robots * _ROBOT_UNITS,
+            flags,
+            self.statuses,
+            self.feedback,
+            self.games,
+            self.touches,
+            self.events,
+            self.outcome,
+        )
+
+    def _tick(self, entry: dict[str, Any]) -> None:
+        tick = len(self.times)
+        time = self._time(entry)
+        self._need(not self.times or time >= self.times[-1], "t", "runs backwards")
+        self.times.append(time)
+        self._integers(self.ball, entry.get("b"), 4, "b")
+        rows = entry["r"]
+        count = len(self.header.robots)
+        if type(rows) is not list or len(rows) != count:
+            raise self._error("r", f"must be a list of {count} robots")
+        for slot, row in enumerate(rows):
+            self._integers(self.robots, row, 7, f"r.{slot}")
+            if row is None:
+                self.robots[-1] = 0
+            elif not 0 <= row[6] <= 7:
+                raise self._error(f"r.{slot}", f"{row[6]} are no flags")
+        if "s" in entry:
+            for slot, letters in self._by_robot(entry["s"], "s"):
+                size = len(self.header.robots[slot].tree)
+                good = isinstance(letters, str) and len(letters) == size and not letters.strip("SFR-")
+                self._need(good, f"s.{slot}", f"must be {size} letters out of S, F, R, -")
+                self.statuses[slot].append((tick, letters))
+        if "f" in entry:
+            for slot, messages in self._by_robot(entry["f"], "f"):
+                self.feedback[slot].append((tick, self._messages(slot, messages)))
+        if "g" in entry:
+            self.games.append((tick, self._game(entry["g"])))
+        if "l" in entry:
+            touch = entry["l"]
+            self.touches.append((tick, None if touch is None else self._robot(touch, "l")))
+
+    def _event(self, entry: dict[str, Any]) -> None:
+        kind, text = entry["e"], entry.get("text", "")
+        self._need(isinstance(kind, str), "e", "must be a word")
+        self._need(isinstance(text, str), "text", "must be a text")
+        robot = self._robot(entry["robot"], "robot") if "robot" in entry else None
+        team = self._team(entry["team"], "team") if "team" in entry else None
+        self.events.append(Event(self._time(entry), kind, team, robot, text))
+
+    def _messages(self, slot: int, messages: Any) -> dict[int, str]:
+        field = f"f.{slot}"
+        self._need(isinstance(messages, dict), field, "must be an object")
+        said = {}
+        for key, message in messages.items():
+            place = self._index(key, len(self.header.robots[slot].tree), field, "node")
+            self._need(isinstance(message, str), f"{field}.{key}", "must be a text")
+            said[place] = message
+        return said
+
+    def _game(self, entry: Any) -> GameState:
+        self._need(isinstance(entry, dict), "g", "must be an object")
+        try:
+            placement = entry["placement"]
+            if placement is not None:
+                x, y = placement
+                placement = (float(x), float(y))
+            return GameState(
+                RefereeCommand[entry["command"]],
+                Stage[entry["stage"]],
+                int(entry["blue"]),
+                int(entry["yellow"]),
+                None if entry["restart"] is None else Restart(entry["restart"]),
+                None if entry["team"] is None else Team(entry["team"]),
+                bool(entry["may_touch"]),
+                placement,
+            )
+        except KeyError as error:
+            raise self._error("g", f"{error.args[0]!r} is missing or unknown") from None
+        except (TypeError, ValueError, OverflowError) as error:
+            raise self._error("g", str(error)) from None
+
+    def _time(self, entry: dict[str, Any]) -> float:
+        time = entry.get("t")
+        if isinstance(time, int | float) and not isinstance(time, bool) and abs(time) < _LONGEST:
+            return float(time)
+        raise self._error("t", "must be a finite number")
+
+    def _integers(self, into: array[int], row: Any, size: int, field: str) -> None:
+        if row is None:
+            into.extend([_NOWHERE] * size)
+            return
+        try:
+            if type(row) is list and len(row) == size:
+                into.extend(row)
+                return
+        except (TypeError, OverflowError):
+            pass
+        raise self._error(field, f"must be null or a list of {size} integers")
+
+    def _by_robot(self, entry: Any, field: str) -> Iterator[tuple[int, Any]]:
+        self._need(isinstance(entry, dict), field, "must be an object")
+        for key, value in entry.items():
+            yield self._index(key, len(self.header.robots), field, "robot"), value
+
+    def _index(self, key: str, size: int, field: str, what: str) -> int:
+        index = int(key) if key.isascii() and key.isdigit() and len(key) < 6 else size
+        self._need(index < size, field, f"there is no {what} {key!r}")
+        return index
+
+    def _team(self, value: Any, field: str) -> Team:
+        try:
+            return Team(value)
+        except ValueError:
+            raise self._error(field, f"{value!r} is not a team") from None
+
+    def _robot(self, value: Any, field: str) -> RobotId:
+        good = isinstance(value, list) and len(value) == 2 and type(value[1]) is int
+        self._need(good, field, "must be a team and a number")
+        return RobotId(self._team(value[0], field), value[1])
+
+    def _need(self, good: bool, field: str, problem: str) -> None:
+        if not good:
+            raise self._error(field, problem)
+
+    def _error(self, field: str, problem: str) -> RecordingError:
+        return RecordingError(self.path, problem, self.number, field)
