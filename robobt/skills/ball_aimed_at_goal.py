@@ -1,0 +1,39 @@
+"""Condition: a robot that has the ball points it at our goal."""
+
+from __future__ import annotations
+
+from math import cos
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.geometry import line_crossing_x
+from robobt.world.state import ROBOT_RADIUS
+
+
+@skill
+class BallAimedAtGoal(Skill):
+    """SUCCESS while another robot, of either team, holds the ball and points at our goal mouth.
+
+    Writes where to block: the store's ``target`` is the point a robot's radius
+    before the goal line at which a kick now would cross it.
+
+    Source: RoboBulls' published code, Goalie.
+    """
+
+    writes: ClassVar[tuple[str, ...]] = ("target",)
+
+    def on_running(self) -> Status:
+        """Look at every other robot's heading."""
+        field, ball, number = self.frame.field, self.ball, self.me.id
+        for robots in (self.frame.opponents, self.frame.own):
+            for robot in robots:
+                if robots is self.frame.own and robot.id == number:
+                    continue
+                if has_ball(robot, ball) and cos(robot.heading) < 0.0:
+                    y = line_crossing_x(ball.position, robot.heading, -field.half_length)
+                    if y is not None and abs(y) < field.goal_width / 2:
+                        self.store.target = (ROBOT_RADIUS - field.half_length, y)
+                        return self.succeed(f"robot {robot.id} aims at y = {y:.2f}")
+        return self.fail("nobody aims at our goal")

@@ -1,0 +1,46 @@
+"""Condition: a resting ball on the edge of the own defence area is the goalkeeper's to fetch."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import distance
+from robobt.world.state import ROBOT_RADIUS
+
+
+@skill
+class BallAtDefenseEdge(Skill):
+    """SUCCESS from when such a ball may be fetched until it is fetched or lost.
+
+    It may be fetched while it rests between a robot's diameter outside the area's
+    edge and half a radius inside it, and no opponent is about as near to it as
+    the own team. It is fetched when it lies a radius inside the area, lost when
+    it is more than a diameter outside.
+
+    Source: RoboBulls' published code, Goalie.
+
+    Args:
+        rest_speed: fastest ball that rests [m/s].
+    """
+
+    def __init__(self, *, rest_speed: float = 0.1, name: str = "") -> None:
+        super().__init__(name)
+        self.rest_speed = rest_speed
+        self._fetching = False
+
+    def on_running(self) -> Status:
+        """Look where the ball is and who is near."""
+        field, ball = self.frame.field, self.ball
+        near = field.in_our_defense(ball.x, ball.y, 2.0 * ROBOT_RADIUS)
+        if self._fetching:
+            self._fetching = near and not field.in_our_defense(ball.x, ball.y, -ROBOT_RADIUS)
+        elif near and not field.in_our_defense(ball.x, ball.y, -0.5 * ROBOT_RADIUS):
+            self._fetching = ball.speed <= self.rest_speed and self._ours()
+        return self.succeed() if self._fetching else self.fail("no ball to fetch")
+
+    def _ours(self) -> bool:
+        here = self.ball.position
+        if not self.frame.opponents:
+            return True
+        theirs = min(distance(robot.position, here) for robot in self.frame.opponents)
+        return theirs - min(distance(robot.position, here) for robot in self.frame.own) > ROBOT_RADIUS

@@ -1,0 +1,31 @@
+"""Condition: the ball lies in the own defence area and somebody has to clear it."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+
+
+@skill
+class BallRestsInDefense(Skill):
+    """SUCCESS while the ball lies in the own defence area, at rest or held by this robot.
+
+    Source: RoboBulls' published code, Goalie.
+
+    Args:
+        rest_speed: fastest ball that rests [m/s].
+    """
+
+    def __init__(self, *, rest_speed: float = 0.1, name: str = "") -> None:
+        super().__init__(name)
+        self.rest_speed = rest_speed
+
+    def on_running(self) -> Status:
+        """Look where the ball is and how fast."""
+        ball = self.ball
+        if not self.frame.field.in_our_defense(ball.x, ball.y):
+            return self.fail("the ball is outside our area")
+        if ball.speed > self.rest_speed and not has_ball(self.me, ball):
+            return self.fail("the ball moves")
+        return self.succeed()

@@ -1,0 +1,29 @@
+"""How fast a skill drives: given limits or the robot's own, top speed scaled."""
+
+from __future__ import annotations
+
+from robobt.world.limits import RobotLimits
+
+
+class Pace:
+    """Limits to drive with, worked out once for each robot's limits.
+
+    Args:
+        limits: how to drive; None takes the robot's own.
+        speed: factor on the top speed and turning rate.
+    """
+
+    def __init__(self, limits: RobotLimits | None, speed: float) -> None:
+        self._limits = limits
+        self._speed = speed
+        self._base: RobotLimits | None = None
+        self._scaled: RobotLimits | None = None
+
+    def of(self, own: RobotLimits) -> RobotLimits:
+        """The limits to drive with for a robot whose own are ``own``."""
+        base = own if self._limits is None else self._limits
+        if self._speed == 1.0:
+            return base
+        if self._scaled is None or base is not self._base:
+            self._base, self._scaled = base, base.scaled(self._speed)
+        return self._scaled

@@ -1,0 +1,43 @@
+"""Condition: the ball rolls into our goal."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.state import ROBOT_RADIUS
+
+
+@skill
+class ShotComing(Skill):
+    """SUCCESS while the ball, straight on, crosses our goal line between the posts.
+
+    A ball that this robot holds is no shot. Writes where to block: the store's
+    ``target`` is the point of the crossing, a robot's radius before the line.
+
+    Source: RoboBulls' published code, Goalie.
+
+    Args:
+        min_speed: slowest approach to the goal line that counts [m/s].
+        margin: how far beside the mouth it still counts [m].
+    """
+
+    writes: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(self, *, min_speed: float = 0.1, margin: float = 0.0, name: str = "") -> None:
+        super().__init__(name)
+        self.min_speed = min_speed
+        self.margin = margin
+
+    def on_running(self) -> Status:
+        """Extend the ball's way to the goal line."""
+        field, ball = self.frame.field, self.ball
+        if ball.vx > -self.min_speed or has_ball(self.me, ball):
+            return self.fail("no ball comes")
+        y = ball.y - (ball.x + field.half_length) * ball.vy / ball.vx
+        if ball.x < -field.half_length or abs(y) >= field.goal_width / 2 + self.margin:
+            return self.fail("the ball goes wide")
+        self.store.target = (ROBOT_RADIUS - field.half_length, y)
+        return self.succeed(f"crosses at y = {y:.2f}")
