@@ -1,1 +1,20 @@
-"""match."""
+"""Scenarios, matches between trees, their results and recordings."""
+
+from robobt.match.ends import Outcome
+from robobt.match.loop import Match, WorldFactory, play_match
+from robobt.match.results import MatchResult, RobotResult, Summary, summarise
+from robobt.match.scenario import Scenario, ScenarioError, load_scenario
+
+__all__ = [
+    "Match",
+    "MatchResult",
+    "Outcome",
+    "RobotResult",
+    "Scenario",
+    "ScenarioError",
+    "Summary",
+    "WorldFactory",
+    "load_scenario",
+    "play_match",
+    "summarise",
+]

@@ -1,0 +1,135 @@
+"""When a trial is over, and how it went."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from math import ceil, hypot
+
+from robobt.match.rules import between_posts, exit_point, left_over_goal_line, left_over_touch_line
+from robobt.match.scenario import Scenario
+from robobt.world.game import GameState, Stage, Team
+from robobt.world.geometry import Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+_HELD_GAP = 0.02
+"""A ball this close to the hull is the goalkeeper's. Source: Sumatra's referee [m]."""
+
+_REST_SPEED = 0.05
+"""A ball slower than this lies still [m/s]."""
+
+
+class Outcome(StrEnum):
+    """How a trial ended."""
+
+    GOAL_BLUE = "goal_blue"
+    GOAL_YELLOW = "goal_yellow"
+    SAVED = "saved"
+    """A goalkeeper has the ball."""
+    OUT = "out"
+    REST = "rest"
+    """The ball lies still after a kick."""
+    TIME = "time"
+    SCORE = "score"
+    """A team has reached the score limit."""
+    FULL_TIME = "full_time"
+    """The referee has ended the match."""
+
+
+class EndJudge:
+    """Watches a scenario's end conditions; frames are true and seen from blue's side.
+
+    Where there is no referee it is also who counts goals.
+
+    Attributes:
+        scores: goals of each team.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        ends = scenario.ends
+        free = scenario.referee is None
+        self.scores = {Team.BLUE: 0, Team.YELLOW: 0}
+        self._referee = not free
+        self._ends = ends
+        self._goal_ends = free if ends.goal is None else ends.goal
+        self._out_ends = free if ends.ball_out is None else ends.ball_out
+        self._keepers = scenario.goalkeepers()
+        self._last_tick = ceil(ends.time_limit / scenario.period - 1e-9)
+        self._ticks = -1
+        self._ball_before: Point | None = None
+        self._was_out = False
+        self._held_since: float | None = None
+        self._rest_since: float | None = None
+
+    def judge(self, truth: Frame, game: GameState, kicks: int) -> Outcome | None:
+        """Whether the match is over at this frame.
+
+        Args:
+            game: the referee's word.
+            kicks: how often the ball has been kicked so far.
+        """
+        self._ticks += 1
+        scorer = self._scorer(truth, game)
+        if scorer is not None and self._goal_ends:
+            return Outcome.GOAL_BLUE if scorer is Team.BLUE else Outcome.GOAL_YELLOW
+        limit = self._ends.score_limit
+        if limit is not None and max(self.scores.values()) >= limit:
+            return Outcome.SCORE
+        if game.stage is Stage.POST_GAME:
+            return Outcome.FULL_TIME
+        if self._was_out and self._out_ends and scorer is None:
+            return Outcome.OUT
+        if _lasted(self._since_held(truth), self._ends.held_by_goalkeeper, truth.time):
+            return Outcome.SAVED
+        if _lasted(self._since_rest(truth, kicks), self._ends.ball_at_rest, truth.time):
+            return Outcome.REST
+        return Outcome.TIME if self._ticks >= self._last_tick else None
+
+    def _scorer(self, truth: Frame, game: GameState) -> Team | None:
+        """Who has scored since the frame before."""
+        before = self._ball_before or truth.ball.position
+        self._ball_before = truth.ball.position
+        was_out = self._was_out
+        x, y = truth.ball.position
+        over_goal_line = left_over_goal_line(truth.field, x)
+        self._was_out = over_goal_line or left_over_touch_line(truth.field, y)
+        if self._referee:
+            told = {Team.BLUE: game.blue_score, Team.YELLOW: game.yellow_score}
+            scorers = [team for team in Team if told[team] > self.scores[team]]
+            self.scores = told
+            return scorers[0] if scorers else None
+        if not over_goal_line or was_out:
+            return None
+        crossing = exit_point(truth.field, before, truth.ball.position)
+        over_touch_line = abs(crossing[0]) < truth.field.half_length + BALL_RADIUS - 1e-9
+        if over_touch_line or not between_posts(truth.field, crossing[1]):
+            return None
+        scorer = Team.BLUE if x > 0.0 else Team.YELLOW
+        self.scores[scorer] += 1
+        return scorer
+
+    def _since_held(self, truth: Frame) -> float | None:
+        held = False
+        for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
+            number = self._keepers.get(team)
+            held = held or any(robot.id == number and _has_ball(robot, truth) for robot in robots)
+        if not held:
+            self._held_since = None
+        elif self._held_since is None:
+            self._held_since = truth.time
+        return self._held_since
+
+    def _since_rest(self, truth: Frame, kicks: int) -> float | None:
+        if not kicks or truth.ball.speed > _REST_SPEED:
+            self._rest_since = None
+        elif self._rest_since is None:
+            self._rest_since = truth.time
+        return self._rest_since
+
+
+def _has_ball(robot: RobotState, truth: Frame) -> bool:
+    reach = ROBOT_RADIUS + BALL_RADIUS + _HELD_GAP
+    return robot.ball_contact or hypot(robot.x - truth.ball.x, robot.y - truth.ball.y) <= reach
+
+
+def _lasted(since: float | None, duration: float | None, now: float) -> bool:
+    return since is not None and duration is not None and now - since >= duration - 1e-9

@@ -1,0 +1,267 @@
+"""One match: observe once, tick every robot's tree once, send the commands once."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from robobt.match.ends import EndJudge, Outcome
+from robobt.match.measures import Measures, Trace
+from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
+from robobt.match.referee import Referee, RefereeEvent
+from robobt.match.results import MatchResult, RobotResult
+from robobt.match.scenario import Scenario
+from robobt.skills.store import Store, TeamStore
+from robobt.tree import TreeRunner, node_path
+from robobt.world.command import RobotCommand
+from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.protocol import World
+from robobt.world.state import Frame, RobotId, RobotState
+
+_log = logging.getLogger(__name__)
+
+WorldFactory = Callable[[Scenario], World]
+"""Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
+
+
+@dataclass(slots=True)
+class Player:
+    """One robot on the field: its tree and its store."""
+
+    robot: RobotId
+    runner: TreeRunner
+    store: Store
+
+
+class Match:
+    """A match that is played tick by tick.
+
+    Args:
+        scenario: what is played.
+        seed: fixes placement, world and trees; the same seed gives the same match, bit for bit.
+        world_factory: makes the world.
+        record: file to record the match to; its name ends in ``.robobt.jsonl`` or ``.robobt.jsonl.gz``.
+        trial: which repetition this is; only written down.
+
+    Attributes:
+        world: where it is played.
+        players: the robots in the order of teams and scenario.
+        measures: figures so far.
+        game: the referee's word on the last frame.
+        outcome: how it ended, None while it is being played.
+
+    Raises:
+        ScenarioError: the scenario does not fit the world, or its objects find no place.
+        OSError: the recording cannot be written.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        world_factory: WorldFactory,
+        record: str | Path | None = None,
+        trial: int = 0,
+    ) -> None:
+        self.scenario, self.seed, self.trial = scenario, seed, trial
+        self.world = world_factory(scenario)
+        placement_seed, world_seed, tree_seeds = np.random.SeedSequence(seed).spawn(3)
+        placement = scenario.place(np.random.default_rng(placement_seed))
+        self.world.reset(placement, int(world_seed.generate_state(1)[0]))
+        self.players = self._make_players(tree_seeds)
+        self.measures = Measures({player.robot: None for player in self.players})
+        self.game: GameState = OPEN_PLAY
+        self.outcome: Outcome | None = None
+        self._by_team = {
+            team: {player.robot.number: player for player in self.players if player.robot.team is team}
+            for team in Team
+        }
+        self._judge = EndJudge(scenario)
+        self._referee = _referee_of(scenario)
+        self._trace = Trace()
+        self._commands: dict[RobotId, RobotCommand] = {}
+        self._time = 0.0
+        self._recorder = None if record is None else self._make_recorder(Path(record))
+
+    def play(self) -> MatchResult:
+        """Play to the end."""
+        started = perf_counter()
+        with ExitStack() as stack:
+            if self._recorder is not None:
+                stack.enter_context(self._recorder)
+            while self.tick():
+                pass
+            result = self.result(perf_counter() - started)
+            if self._recorder is not None:
+                self._recorder.close(
+                    {"outcome": result.outcome, "blue": result.blue_score, "yellow": result.yellow_score}
+                )
+        return result
+
+    def tick(self) -> bool:
+        """One control period; False when the match is over, in which case nobody has acted."""
+        truth = self.world.truth()
+        self._time = truth.time
+        if self._referee is not None:
+            self._follow_referee(truth)
+        truth.game = self.game
+        self.measures.update(truth, self.game, self._commands)
+        self._trace.update(truth, self.game)
+        self.outcome = self._judge.judge(truth, self.game, self.measures.kicks)
+        if self.outcome is None:
+            frame = self.world.observe()
+            frame.game = self.game
+            self._commands = self._decide(frame)
+        else:
+            self._trace.event(self.outcome)
+            self._commands = {}
+        if self._recorder is not None:
+            self._record(self._recorder, truth)
+        if self.outcome is not None:
+            return False
+        self.world.act(self._commands)
+        return True
+
+    def result(self, wall_time: float = 0.0) -> MatchResult:
+        """The figures so far.
+
+        Args:
+            wall_time: how long it took, for the real-time factor [s].
+        """
+        outcome = Outcome.TIME if self.outcome is None else self.outcome
+        measures = self.measures
+        return MatchResult(
+            scenario=self.scenario.name,
+            trial=self.trial,
+            seed=self.seed,
+            outcome=outcome.value,
+            time=self._time,
+            blue_score=self._judge.scores[Team.BLUE],
+            yellow_score=self._judge.scores[Team.YELLOW],
+            in_play=measures.in_play / max(1, measures.ticks),
+            ticks=measures.ticks,
+            robots={
+                str(robot): RobotResult(
+                    figures.go_to_ball, figures.shoot, figures.kicks, figures.errors, figures.first_error
+                )
+                for robot, figures in measures.robots.items()
+            },
+            trace=self._trace.hexdigest(),
+            wall_time=wall_time,
+        )
+
+    def _make_players(self, seeds: np.random.SeedSequence) -> list[Player]:
+        teams = {team: TeamStore() for team in Team}
+        start = self.world.observe()
+        players = []
+        for robot, setup in self.scenario.robots:
+            # The robot is part of its seed, so one more robot changes nobody else's random numbers.
+            entropy = (*seeds.spawn_key, list(Team).index(robot.team), robot.number)
+            rng = np.random.default_rng(np.random.SeedSequence(seeds.entropy, spawn_key=entropy))
+            store = Store(start, RobotState(robot.number, 0.0, 0.0), rng=rng, team=teams[robot.team])
+            players.append(Player(robot, TreeRunner(setup.build_tree(), store), store))
+        return players
+
+    def _decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
+        """Tick every tree once; a robot that is not seen is not ticked and stands still."""
+        commands: dict[RobotId, RobotCommand] = {}
+        for team, players in self._by_team.items():
+            if not players:
+                continue
+            view = frame.seen_by(team)
+            for me in view.own:
+                player = players.get(me.id)
+                if player is not None:
+                    commands[player.robot] = self._decide_for(player, view, me)
+        return commands
+
+    def _decide_for(self, player: Player, view: Frame, me: RobotState) -> RobotCommand:
+        store, runner = player.store, player.runner
+        store.frame, store.me, store.command = view, me, RobotCommand()
+        runner.tick()
+        if runner.error is None:
+            if store.command.finite():
+                return store.command
+            tip = runner.root.tip() or runner.root
+            problem = f"{node_path(tip)}: command is not finite: {store.command}"
+            _log.warning("tree stopped: %s", problem)
+            runner.stop()
+        else:
+            problem = runner.error
+        figures = self.measures.robots[player.robot]
+        figures.errors += 1
+        if figures.first_error is None:
+            figures.first_error = problem
+        self._trace.event(f"error {player.robot}")
+        return RobotCommand()
+
+    def _follow_referee(self, truth: Frame) -> None:
+        assert self._referee is not None
+        decision = self._referee.update(truth)
+        self.game = decision.game
+        for event in decision.events:
+            self._trace.event(f"{event.kind} {event.robot}")
+            if self._recorder is not None:
+                _record_decision(self._recorder, event)
+        if decision.place_ball is not None:
+            self.world.place_ball(*decision.place_ball)
+
+    def _make_recorder(self, path: Path) -> Recorder:
+        scenario = self.scenario
+        header = RecordingHeader(
+            scenario=scenario.name,
+            trial=self.trial,
+            seed=self.seed,
+            period=scenario.period,
+            field=scenario.field,
+            robots=tuple(
+                RecordedRobot(team=robot.team, number=robot.number, play=setup.play)
+                for robot, setup in scenario.robots
+            ),
+        )
+        return Recorder(path, header, {player.robot: player.runner for player in self.players})
+
+    def _record(self, recorder: Recorder, truth: Frame) -> None:
+        for robot in self.measures.kicked:
+            recorder.event("kick", truth.time, robot=robot)
+        if self.outcome is not None and self.outcome in _END_EVENTS and self._referee is None:
+            kind, team = _END_EVENTS[self.outcome]
+            recorder.event(kind, truth.time, team=team)
+        recorder.tick(truth, self._commands)
+
+
+def play_match(
+    scenario: Scenario,
+    seed: int,
+    world_factory: WorldFactory,
+    record: str | Path | None = None,
+    trial: int = 0,
+) -> MatchResult:
+    """Play one match to its end; the arguments are those of :class:`Match`."""
+    return Match(scenario, seed, world_factory, record, trial).play()
+
+
+def _referee_of(scenario: Scenario) -> Referee | None:
+    settings = scenario.referee
+    if settings is None:
+        return None
+    keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
+    return Referee(scenario.field, settings.model_copy(update=keepers))
+
+
+def _record_decision(recorder: Recorder, event: RefereeEvent) -> None:
+    recorder.event(event.kind, event.time, team=event.team, robot=event.robot)
+
+
+_END_EVENTS: Mapping[Outcome, tuple[str, Team | None]] = {
+    Outcome.GOAL_BLUE: ("goal", Team.BLUE),
+    Outcome.GOAL_YELLOW: ("goal", Team.YELLOW),
+    Outcome.SAVED: ("save", None),
+    Outcome.OUT: ("out", None),
+}

@@ -1,0 +1,138 @@
+"""What is measured in a match, from true frames alone."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, sin
+from struct import pack
+
+from robobt.world.command import RobotCommand
+from robobt.world.game import GameState, Team
+from robobt.world.state import BallState, Frame, RobotId, RobotState
+
+_SURELY_KICKED = 2.0
+"""A ball that leaves the mouth this fast was kicked, however hard a kick was asked for [m/s]."""
+
+
+@dataclass(slots=True)
+class RobotMeasures:
+    """One robot's figures.
+
+    Attributes:
+        go_to_ball: from the start until the ball first lay in its mouth [s], None when it never did.
+        shoot: from then until its first kick [s], None without one.
+        kicks: how often it kicked.
+        errors: ticks at which its tree raised or decided a command that is not a number.
+        first_error: the first of them: the node's path and what happened.
+    """
+
+    go_to_ball: float | None = None
+    shoot: float | None = None
+    kicks: int = 0
+    errors: int = 0
+    first_error: str | None = None
+
+
+class Measures:
+    """Follows a match frame by frame; frames are seen from blue's side.
+
+    Attributes:
+        robots: figures by robot.
+        kicks: kicks so far, of all robots.
+        ticks: frames seen.
+        in_play: frames among them with the ball in play.
+        kicked: who kicked between the last frame and the one before.
+    """
+
+    def __init__(self, robots: Mapping[RobotId, object]) -> None:
+        self.robots = {robot: RobotMeasures() for robot in robots}
+        self.kicks = 0
+        self.ticks = 0
+        self.in_play = 0
+        self.kicked: list[RobotId] = []
+        self._outgoing: dict[RobotId, float] = {}
+
+    def update(self, truth: Frame, game: GameState, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """Take in the next true frame.
+
+        Args:
+            commands: what the robots were told at the frame before.
+        """
+        self.ticks += 1
+        self.kicked.clear()
+        if game.in_play and truth.field.contains(truth.ball.x, truth.ball.y):
+            self.in_play += 1
+        for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
+            for robot in robots:
+                identity = RobotId(team, robot.id)
+                if robot.ball_contact:
+                    figures = self.robots[identity]
+                    if figures.go_to_ball is None:
+                        figures.go_to_ball = truth.time
+                command = commands.get(identity)
+                if command is not None and command.kick_speed > 0.0:
+                    self._look_for_kick(identity, robot, truth, command.kick_speed)
+                elif identity in self._outgoing:
+                    del self._outgoing[identity]
+
+    def _look_for_kick(self, identity: RobotId, robot: RobotState, truth: Frame, speed: float) -> None:
+        """A kick: told to, near the ball, and the ball now leaves along the heading as it did not before."""
+        away = _leaving(robot, truth.ball)
+        before = self._outgoing.get(identity, 0.0)
+        self._outgoing[identity] = away
+        enough = min(0.5 * speed, _SURELY_KICKED)
+        if away < enough or before >= enough or truth.last_touch not in (None, identity):
+            return
+        reach = 0.15 + (away + robot.speed) * truth.period
+        if abs(robot.x - truth.ball.x) > reach or abs(robot.y - truth.ball.y) > reach:
+            return
+        figures = self.robots[identity]
+        if figures.go_to_ball is None:
+            figures.go_to_ball = truth.time
+        if figures.kicks == 0:
+            figures.shoot = truth.time - figures.go_to_ball
+        figures.kicks += 1
+        self.kicks += 1
+        self.kicked.append(identity)
+
+
+class Trace:
+    """A hash over the exact true states of a match: two matches with one trace were the same, bit for bit."""
+
+    def __init__(self) -> None:
+        self._hash = hashlib.blake2b(digest_size=16)
+
+    def update(self, truth: Frame, game: GameState) -> None:
+        """Take in the next true frame and the referee's word on it."""
+        ball = truth.ball
+        numbers = [truth.time, ball.x, ball.y, ball.vx, ball.vy]
+        for robots in (truth.own, truth.opponents):
+            numbers.append(len(robots))
+            for robot in robots:
+                numbers += (
+                    robot.id,
+                    robot.x,
+                    robot.y,
+                    robot.heading,
+                    robot.vx,
+                    robot.vy,
+                    robot.omega,
+                    robot.ball_contact,
+                )
+        numbers += (game.command, game.stage, game.blue_score, game.yellow_score, game.may_touch)
+        self._hash.update(pack(f"<{len(numbers)}d", *numbers))
+
+    def event(self, text: str) -> None:
+        """Take in something that happened."""
+        self._hash.update(text.encode())
+
+    def hexdigest(self) -> str:
+        """The hash so far, 32 hexadecimal digits."""
+        return self._hash.hexdigest()
+
+
+def _leaving(robot: RobotState, ball: BallState) -> float:
+    """Speed of the ball along the robot's heading, relative to the robot [m/s]."""
+    return (ball.vx - robot.vx) * cos(robot.heading) + (ball.vy - robot.vy) * sin(robot.heading)

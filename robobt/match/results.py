@@ -1,0 +1,231 @@
+"""What came out of one trial, and of many."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from statistics import fmean, variance
+from typing import Any
+
+from robobt.statistics import wilson_interval
+
+
+@dataclass(slots=True, frozen=True)
+class RobotResult:
+    """One robot's figures in one trial.
+
+    Attributes:
+        go_to_ball: from the start until the ball first lay in its mouth [s], None when it never did.
+        shoot: from then until its first kick [s], None without one.
+        kicks: how often it kicked.
+        errors: ticks at which its tree failed and the robot was stopped.
+        first_error: the first of them, None without one.
+    """
+
+    go_to_ball: float | None = None
+    shoot: float | None = None
+    kicks: int = 0
+    errors: int = 0
+    first_error: str | None = None
+
+    @property
+    def total(self) -> float | None:
+        """From the start to the first kick [s]."""
+        return None if self.go_to_ball is None or self.shoot is None else self.go_to_ball + self.shoot
+
+
+@dataclass(slots=True, frozen=True)
+class MatchResult:
+    """One trial.
+
+    Attributes:
+        scenario: its name.
+        trial: which repetition, from 0.
+        seed: what the trial's randomness followed from.
+        outcome: how it ended, one of :class:`robobt.match.ends.Outcome`.
+        time: how long it lasted in the world [s].
+        blue_score, yellow_score: goals.
+        in_play: share of the time in which the ball was in play, 0 to 1.
+        ticks: control periods.
+        robots: figures of each robot by its name ("blue 0").
+        trace: hash over every true state; equal traces are equal matches.
+        wall_time: how long it took to play [s]; the only figure that may differ between two runs.
+    """
+
+    scenario: str
+    trial: int
+    seed: int
+    outcome: str
+    time: float
+    blue_score: int
+    yellow_score: int
+    in_play: float
+    ticks: int
+    robots: Mapping[str, RobotResult]
+    trace: str
+    wall_time: float = 0.0
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data; the keys are the attributes' names."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> MatchResult:
+        """The result that :meth:`to_json` made the data of.
+
+        Raises:
+            ValueError: the data is not such a result.
+        """
+        try:
+            robots = {name: RobotResult(**figures) for name, figures in data["robots"].items()}
+            return cls(**{**{field.name: data[field.name] for field in fields(cls)}, "robots": robots})
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"not the result of a trial: {error}") from error
+
+
+@dataclass(slots=True, frozen=True)
+class Rate:
+    """How often something happened.
+
+    Attributes:
+        count: in so many trials it did.
+        rate: share of the trials.
+        low, high: 95 % Wilson interval of the rate.
+    """
+
+    count: int
+    rate: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, count: int, trials: int) -> Rate:
+        """The rate of ``count`` in ``trials``; 0 when there are none."""
+        low, high = wilson_interval(count, trials)
+        return cls(count, count / trials if trials else 0.0, low, high)
+
+
+@dataclass(slots=True, frozen=True)
+class Spread:
+    """Mean and variance of a figure.
+
+    Attributes:
+        n: trials that have the figure.
+        mean: None when none has.
+        variance: sample variance (n - 1), None with fewer than two.
+    """
+
+    n: int
+    mean: float | None
+    variance: float | None
+
+    @classmethod
+    def of(cls, values: Iterable[float | None]) -> Spread:
+        """The spread of the values that are there."""
+        given = [value for value in values if value is not None]
+        return cls(len(given), fmean(given) if given else None, variance(given) if len(given) > 1 else None)
+
+
+@dataclass(slots=True, frozen=True)
+class RobotSummary:
+    """One robot's figures over all trials; times in seconds, kicks a trial."""
+
+    go_to_ball: Spread
+    shoot: Spread
+    total: Spread
+    kicks: Spread
+    errors: int
+    first_error: str | None
+
+
+@dataclass(slots=True, frozen=True)
+class Summary:
+    """All trials of a run together.
+
+    Attributes:
+        scenario: its name.
+        seed: the run's seed, from which each trial's follows.
+        trials: how many were played.
+        outcomes: how often each outcome happened; only those that did.
+        goals: of each team: ``total``, and ``trials`` in which it scored at all.
+        time: how long the trials lasted [s].
+        in_play: mean share of the time in which the ball was in play.
+        robots: figures by robot.
+        real_time_factor: simulated time over the time spent playing, on one core.
+        trace: hash over the trials' traces in order; equal for equal runs.
+    """
+
+    scenario: str
+    seed: int
+    trials: int
+    outcomes: Mapping[str, Rate]
+    goals: Mapping[str, GoalCount]
+    time: Spread
+    in_play: float
+    robots: Mapping[str, RobotSummary]
+    real_time_factor: float
+    trace: str
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data; the keys are the attributes' names."""
+        return asdict(self)
+
+
+@dataclass(slots=True, frozen=True)
+class GoalCount:
+    """A team's goals: ``total`` of them, and the ``trials`` in which it scored at all."""
+
+    total: int
+    trials: Rate
+
+
+def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
+    """Put trials of one scenario together, in the order of their numbers.
+
+    Raises:
+        ValueError: there is no trial.
+    """
+    if not results:
+        raise ValueError("no trial was played")
+    ordered = sorted(results, key=lambda result: result.trial)
+    outcomes = Counter(result.outcome for result in ordered)
+    wall_time = sum(result.wall_time for result in ordered)
+    simulated = sum(result.time for result in ordered)
+    return Summary(
+        scenario=ordered[0].scenario,
+        seed=seed,
+        trials=len(ordered),
+        outcomes={name: Rate.of(count, len(ordered)) for name, count in outcomes.most_common()},
+        goals={
+            "blue": _goals([result.blue_score for result in ordered]),
+            "yellow": _goals([result.yellow_score for result in ordered]),
+        },
+        time=Spread.of(result.time for result in ordered),
+        in_play=fmean(result.in_play for result in ordered),
+        robots={
+            name: _robot([result.robots[name] for result in ordered if name in result.robots])
+            for name in ordered[0].robots
+        },
+        real_time_factor=simulated / wall_time if wall_time > 0.0 else 0.0,
+        trace=hashlib.blake2b(
+            "".join([result.trace for result in ordered]).encode(), digest_size=16
+        ).hexdigest(),
+    )
+
+
+def _goals(scores: Sequence[int]) -> GoalCount:
+    return GoalCount(sum(scores), Rate.of(sum(score > 0 for score in scores), len(scores)))
+
+
+def _robot(results: Sequence[RobotResult]) -> RobotSummary:
+    errors = [result.first_error for result in results if result.first_error is not None]
+    return RobotSummary(
+        go_to_ball=Spread.of(result.go_to_ball for result in results),
+        shoot=Spread.of(result.shoot for result in results),
+        total=Spread.of(result.total for result in results),
+        kicks=Spread.of(result.kicks for result in results),
+        errors=sum(result.errors for result in results),
+        first_error=errors[0] if errors else None,
+    )

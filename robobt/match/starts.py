@@ -1,0 +1,195 @@
+"""Where robots and ball may stand at the start: fixed places and distributions.
+
+Everything a robot's start says is in its own team's view: its goal at -x. A
+start can be sampled and printed.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, pi, sin, sqrt
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point, direction
+
+
+class Part(BaseModel):
+    """A part of a scenario: unchangeable, strict about types, no unknown keys, finite numbers."""
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+
+def _ordered(bounds: tuple[float, float]) -> tuple[float, float]:
+    if bounds[0] > bounds[1]:
+        raise ValueError(f"the lower bound {bounds[0]:g} is above the upper bound {bounds[1]:g}")
+    return bounds
+
+
+_Length = Annotated[float, Field(ge=-50, le=50)]
+_Angle = Annotated[float, Field(ge=-2 * pi - 1e-3, le=2 * pi + 1e-3)]
+Place = tuple[_Length, _Length]
+"""A fixed point x, y [m]."""
+_Range = Annotated[tuple[_Length, _Length], AfterValidator(_ordered)]
+_Distances = Annotated[
+    tuple[Annotated[float, Field(ge=0, le=50)], Annotated[float, Field(ge=0, le=50)]],
+    AfterValidator(_ordered),
+]
+_Angles = Annotated[tuple[_Angle, _Angle], AfterValidator(_ordered)]
+
+
+class Box(Part):
+    """Anywhere in a rectangle, uniformly."""
+
+    x: _Range = Field(description="least and greatest x [m]")
+    y: _Range = Field(description="least and greatest y [m]")
+
+    def sample(self, rng: np.random.Generator) -> Point:
+        """A point of the box [m]."""
+        return (float(rng.uniform(*self.x)), float(rng.uniform(*self.y)))
+
+    def __str__(self) -> str:
+        return f"in the box x {self.x[0]:g} to {self.x[1]:g} m, y {self.y[0]:g} to {self.y[1]:g} m"
+
+
+class Disc(Part):
+    """Anywhere in a disc, uniformly."""
+
+    center: Place = Field(description="x, y [m]")
+    radius: float = Field(gt=0, le=50, description="[m]")
+
+    def sample(self, rng: np.random.Generator) -> Point:
+        """A point of the disc [m]."""
+        reach, angle = self.radius * sqrt(float(rng.random())), float(rng.uniform(-pi, pi))
+        return (self.center[0] + reach * cos(angle), self.center[1] + reach * sin(angle))
+
+    def __str__(self) -> str:
+        return f"within {self.radius:g} m of ({self.center[0]:g}, {self.center[1]:g}) m"
+
+
+class Around(Part):
+    """At some distance and bearing from something, both uniform."""
+
+    around: Literal["ball", "own goal", "their goal"] = Field(description="what it is around")
+    distance: _Distances = Field(description="least and greatest distance [m]")
+    bearing: _Angles = Field(
+        (-pi, pi), description="least and greatest direction from there, from +x counter-clockwise [rad]"
+    )
+
+    def sample(self, rng: np.random.Generator, middle: Point) -> Point:
+        """A point around ``middle`` [m]."""
+        reach, angle = float(rng.uniform(*self.distance)), float(rng.uniform(*self.bearing))
+        return (middle[0] + reach * cos(angle), middle[1] + reach * sin(angle))
+
+    def __str__(self) -> str:
+        turned = (
+            "" if self.bearing == (-pi, pi) else f", bearing {self.bearing[0]:g} to {self.bearing[1]:g} rad"
+        )
+        return f"{self.distance[0]:g} to {self.distance[1]:g} m from the {self.around}{turned}"
+
+
+def _position_kind(value: Any) -> str:
+    if isinstance(value, Box | Disc | Around):
+        return type(value).__name__.lower()
+    if not isinstance(value, dict):
+        return "place"
+    return "around" if "around" in value else "disc" if "center" in value or "radius" in value else "box"
+
+
+Position = Annotated[
+    Annotated[Place, Tag("place")]
+    | Annotated[Box, Tag("box")]
+    | Annotated[Disc, Tag("disc")]
+    | Annotated[Around, Tag("around")],
+    Discriminator(_position_kind),
+]
+"""A fixed point or a distribution of points."""
+
+
+def _heading_kind(value: Any) -> str:
+    return "towards" if isinstance(value, str) else "range" if isinstance(value, list | tuple) else "angle"
+
+
+Heading = Annotated[
+    Annotated[_Angle, Tag("angle")]
+    | Annotated[_Angles, Tag("range")]
+    | Annotated[Literal["towards ball", "towards goal"], Tag("towards")],
+    Discriminator(_heading_kind),
+]
+"""A fixed heading, a range of them, or what to look at [rad]."""
+
+
+class RobotStart(Part):
+    """A robot's pose at the start, in its own team's view."""
+
+    position: Position = Field(
+        description="[x, y], a box {x, y}, a disc {center, radius} or {around, distance} [m]"
+    )
+    heading: Heading = Field(
+        0.0,
+        description="an angle, [least, greatest], 'towards ball' or 'towards goal' (the attacked one) [rad]",
+    )
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the position is the same in every trial."""
+        return isinstance(self.position, tuple)
+
+    def sample_heading(
+        self, rng: np.random.Generator, place: Point, ball: Point | None, field: FieldGeometry
+    ) -> float:
+        """A heading for a robot at ``place`` [rad]; ``ball`` in the same view."""
+        if isinstance(self.heading, tuple):
+            return float(rng.uniform(*self.heading))
+        if self.heading == "towards goal":
+            return direction(place, field.their_goal)
+        if self.heading == "towards ball":
+            return direction(place, field.their_goal if ball is None else ball)
+        return self.heading
+
+    def __str__(self) -> str:
+        return f"{_say(self.position)}, heading {_say_heading(self.heading)}"
+
+
+class BallStart(Part):
+    """The ball at the start, in world coordinates, which are blue's view."""
+
+    position: Position | None = Field(None, description="[x, y], a box {x, y} or a disc {center, radius} [m]")
+    velocity: tuple[Annotated[float, Field(ge=-20, le=20)], Annotated[float, Field(ge=-20, le=20)]] = Field(
+        (0.0, 0.0), description="vx, vy [m/s]"
+    )
+    held_by: str | None = Field(
+        None, max_length=40, description="a robot, as 'blue 0': in that robot's mouth"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> BallStart:
+        if (self.position is None) == (self.held_by is None):
+            raise ValueError("give either position or held_by")
+        if isinstance(self.position, Around):
+            raise ValueError("the ball cannot be placed around something; use a box or a disc")
+        if self.held_by is not None and self.velocity != (0.0, 0.0):
+            raise ValueError("a ball that a robot holds has no velocity of its own")
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the position is given and the same in every trial."""
+        return isinstance(self.position, tuple)
+
+    def __str__(self) -> str:
+        speed = hypot(*self.velocity)
+        moving = f", moving at {speed:g} m/s" if speed else ""
+        return f"held by {self.held_by}" if self.position is None else f"{_say(self.position)}{moving}"
+
+
+def _say(position: object) -> str:
+    return f"at ({position[0]:g}, {position[1]:g}) m" if isinstance(position, tuple) else str(position)
+
+
+def _say_heading(heading: object) -> str:
+    if isinstance(heading, tuple):
+        return f"{heading[0]:g} to {heading[1]:g} rad"
+    return heading if isinstance(heading, str) else f"{heading:g} rad"

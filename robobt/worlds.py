@@ -1,0 +1,29 @@
+"""World factories: from a scenario to the world it is played in.
+
+Above ``match``, which knows no world, and ``sim``, which knows no scenario.
+"""
+
+from __future__ import annotations
+
+from pydantic import ValidationError
+
+from robobt.match.scenario import Scenario
+from robobt.sim import SimWorld, settings_from
+
+
+def sim_world(scenario: Scenario) -> SimWorld:
+    """The scenario's field and robots in the built-in simulator.
+
+    Raises:
+        ScenarioError: the simulator's settings in the scenario are wrong.
+    """
+    try:
+        settings = settings_from(scenario.simulator)
+    except ValidationError as error:
+        problem = error.errors(include_url=False)[0]
+        place = ".".join(["simulator", *[str(part) for part in problem["loc"]]])
+        raise scenario.error(problem["msg"], place) from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise scenario.error(str(error.args[0]), "simulator") from error
+    limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
+    return SimWorld(scenario.field, limits, settings, scenario.period)
