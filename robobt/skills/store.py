@@ -44,12 +44,27 @@ class TeamStore:
         passer, receiver: numbers of the robots of the pass under way, None without one.
         pass_target: where that pass goes [m].
         pass_time: when it was kicked [s].
+        attackers: numbers of the robots that may go for the ball, each with the largest x of
+            the ball at which it does [m].
+        attacker: who goes for the ball now.
+        markers: numbers of the robots that mark opponents.
+        marks: which opponent each of them marks.
+        kicker: who took the last restart and may not touch the ball again yet.
+        restart_pending: whether a restart of the own team is still to be taken.
+        agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
     """
 
     passer: int | None = None
     receiver: int | None = None
     pass_target: Point | None = None
     pass_time: float = 0.0
+    attackers: dict[int, float] = field(default_factory=dict)
+    attacker: int | None = None
+    markers: set[int] = field(default_factory=set)
+    marks: dict[int, int] = field(default_factory=dict)
+    kicker: int | None = None
+    restart_pending: bool = False
+    agreed_on: Frame | None = None
 
 
 @dataclass(slots=True)

@@ -1,0 +1,115 @@
+"""Who goes for the ball and who marks whom, agreed once a frame by the first robot that asks.
+
+Robots enter themselves in the team's store when they first ask, so a team may
+have any size. Choices stay until another is clearly better, so that two robots
+do not take turns.
+"""
+
+from __future__ import annotations
+
+from math import hypot, inf
+
+from robobt.skills.possession import has_ball, owner
+from robobt.skills.store import TeamStore
+from robobt.world.state import Frame, RobotId, RobotState
+
+SWITCH_GAIN = 0.3
+"""Another robot takes over when it is this much nearer [m]."""
+
+_LEAD = 0.25
+"""The ball is looked for where it will be after this time [s]."""
+
+_DETOUR = 0.5
+"""Most that is added to the way of a robot that has to get behind the ball first [m]."""
+
+_HELD = 1.0
+"""How much nearer a robot counts that has the ball [m]."""
+
+_MARK_FROM = 0.5
+"""Opponents are marked up to this x: the own half and a little more [m]."""
+
+
+def attacker(frame: Frame, team: TeamStore) -> int | None:
+    """Number of the robot that goes for the ball; None when nobody may."""
+    if team.agreed_on is not frame:
+        team.agreed_on = frame
+        _follow_restart(frame, team)
+        team.attacker = _choose_attacker(frame, team)
+        team.marks = _choose_marks(frame, team) if team.markers else {}
+    return team.attacker
+
+
+def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
+    """The opponent that the own robot with this number marks; None when there is none for it."""
+    attacker(frame, team)
+    opponent = team.marks.get(number)
+    if opponent is None:
+        return None
+    return next((robot for robot in frame.opponents if robot.id == opponent), None)
+
+
+def _follow_restart(frame: Frame, team: TeamStore) -> None:
+    """Remember who took the own restart until somebody else has touched the ball."""
+    game = frame.game
+    if game.restart is not None:
+        team.kicker = None
+        team.restart_pending = game.may_touch and game.restart_team is frame.team
+        return
+    touched = frame.last_touch or owner(frame)
+    if team.restart_pending:
+        team.restart_pending = False
+        if game.in_play:
+            ours = touched is not None and touched.team is frame.team
+            team.kicker = touched.number if touched is not None and ours else team.attacker
+    elif not game.in_play or (touched is not None and touched != RobotId(frame.team, team.kicker or 0)):
+        team.kicker = None
+
+
+def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
+    ball = frame.ball
+    x, y = ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy
+    if not frame.game.in_play and frame.game.placement is not None:
+        x, y = frame.game.placement
+    best: int | None = None
+    least = present = inf
+    for robot in frame.own:
+        if robot.id == team.kicker or x > team.attackers.get(robot.id, -inf):
+            continue
+        way = hypot(robot.x - x, robot.y - y) + min(_DETOUR, max(0.0, robot.x - x))
+        if has_ball(robot, ball):
+            way -= _HELD
+        if robot.id == team.attacker:
+            present = way
+        if way < least:
+            best, least = robot.id, way
+    return team.attacker if present < least + SWITCH_GAIN else best
+
+
+def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
+    """The opponents nearest to the own goal first, each to the nearest free marker."""
+    goal_x, goal_y = frame.field.our_goal
+    holder = owner(frame)
+    free = [robot for robot in frame.own if robot.id in team.markers and robot.id != team.attacker]
+    threats = [
+        (hypot(robot.x - goal_x, robot.y - goal_y), robot)
+        for robot in frame.opponents
+        if robot.x < _MARK_FROM and (holder is None or holder != RobotId(frame.team.other, robot.id))
+    ]
+    threats.sort(key=_first)
+    marks: dict[int, int] = {}
+    for _, threat in threats:
+        if not free:
+            break
+        nearest = min(free, key=lambda mate: _mark_cost(team, mate, threat))
+        free.remove(nearest)
+        marks[nearest.id] = threat.id
+    return marks
+
+
+def _mark_cost(team: TeamStore, mate: RobotState, threat: RobotState) -> float:
+    kept = SWITCH_GAIN if team.marks.get(mate.id) == threat.id else 0.0
+    return hypot(mate.x - threat.x, mate.y - threat.y) - kept
+
+
+def _first(pair: tuple[float, RobotState]) -> float:
+    return pair[0]
