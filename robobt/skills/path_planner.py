@@ -137,12 +137,13 @@ def way_point(
         corner = _around_area(field, -x, y, (-target[0], target[1]), ROBOT_RADIUS + _AREA_GAP)
         if corner != (-target[0], target[1]):
             goal = (-corner[0], corner[1])
+    corner_first = goal != target
     circles = _circles(frame, me, goal, avoid_robots, avoid_ball)
-    first = _first_hit(x, y, goal[0], goal[1], circles, True) if circles else None
+    first = _first_hit(x, y, goal[0], goal[1], circles, not corner_first) if circles else None
     if first is None:
-        return (goal, 0.0) if goal == target else (goal, me.limits.max_speed * 0.5)
+        return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
     acceleration = min(me.limits.acceleration, me.limits.lateral_acceleration)
-    best: tuple[Point, float] | None = None
+    best = (goal, 0.0)
     least = inf
     speed = max(1.0, hypot(me.vx, me.vy))
     for side in (1.0, -1.0):
@@ -156,9 +157,8 @@ def way_point(
             cost += 10.0
         if cost < least:
             bend = 1.0 / cos(min(arc, 2.8) / 2.0) - 1.0
-            passing = sqrt(acceleration * max(first[2], _CORNER_SLACK / bend if bend > 0.0 else inf))
+            passing = sqrt(acceleration * max(first[2], _CORNER_SLACK / max(bend, 1e-3)))
             best, least = (point, passing), cost
-    assert best is not None
     return best
 
 

@@ -1,0 +1,97 @@
+"""Drive to a pose."""
+
+from __future__ import annotations
+
+from math import hypot, radians
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.path_planner import allowed_target, slowed, travel
+from robobt.tree import Status
+from robobt.world.geometry import Point, direction, wrap_angle
+
+_STANDING = 0.1
+"""Speed below which a robot has arrived [m/s]."""
+
+
+@skill
+class GoToPose(Skill):
+    """Drive to a pose round everything in the way, and stop there.
+
+    Succeeds when the robot stands within the tolerances; it goes on holding the
+    pose as long as it is ticked. A target where the robot may not stand (outside
+    the walls, in a defence area, too near the ball during a stop) is replaced by
+    the nearest point where it may. Fails without a target.
+
+    Args:
+        target: where to [m]; None takes ``store.target``.
+        heading: where the mouth shall point [rad]; None keeps the present heading.
+        face_ball: turn to the ball instead of to ``heading``.
+        tolerance: distance that counts as there [m].
+        heading_tolerance: angle that counts as there [rad].
+        max_speed: top speed [m/s]; None is the robot's own.
+        avoid_robots, avoid_ball: what must not be touched on the way.
+        goalkeeper: may enter the own defence area.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(
+        self,
+        *,
+        target: Point | None = None,
+        heading: float | None = None,
+        face_ball: bool = False,
+        tolerance: float = 0.01,
+        heading_tolerance: float = radians(2.0),
+        max_speed: float | None = None,
+        avoid_robots: bool = True,
+        avoid_ball: bool = False,
+        goalkeeper: bool = False,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.target = target
+        self.heading = heading
+        self.face_ball = face_ball
+        self.tolerance = tolerance
+        self.heading_tolerance = heading_tolerance
+        self.max_speed = max_speed
+        self.avoid_robots = avoid_robots
+        self.avoid_ball = avoid_ball
+        self.goalkeeper = goalkeeper
+        self._kept_heading = 0.0
+
+    def on_start(self) -> None:
+        """Remember the heading to keep."""
+        self._kept_heading = self.me.heading
+
+    def on_running(self) -> Status:
+        """Drive one tick."""
+        target = self.store.target if self.target is None else self.target
+        if target is None:
+            return self.fail("no target")
+        me, frame = self.me, self.frame
+        heading = self._heading()
+        limits = me.limits if self.max_speed is None else slowed(me.limits, self.max_speed)
+        self.store.command = travel(
+            frame,
+            me,
+            target,
+            heading,
+            limits,
+            avoid_robots=self.avoid_robots,
+            avoid_ball=self.avoid_ball,
+            goalkeeper=self.goalkeeper,
+        )
+        x, y = allowed_target(frame, me, target, goalkeeper=self.goalkeeper)
+        gap = hypot(x - me.x, y - me.y)
+        there = gap <= self.tolerance and abs(wrap_angle(heading - me.heading)) <= self.heading_tolerance
+        if there and me.speed < _STANDING:
+            return self.succeed("there")
+        return self.run("driving")
+
+    def _heading(self) -> float:
+        if self.face_ball:
+            return direction(self.me.position, self.ball.position)
+        return self._kept_heading if self.heading is None else self.heading
