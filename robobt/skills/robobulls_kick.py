@@ -9,8 +9,9 @@ from __future__ import annotations
 from enum import StrEnum
 from math import atan2, cos, hypot, inf, radians, sin
 
-from robobt.skills.pilot import ROBOBULLS_LIMITS, drive
+from robobt.skills.pilot import ROBOBULLS_LIMITS
 from robobt.skills.robobulls_detour import RADIUS, allowed, first_waypoint
+from robobt.skills.robobulls_pilot import robobulls_drive
 from robobt.skills.store import Store
 from robobt.tree import Status
 from robobt.world.command import KickTrigger, RobotCommand
@@ -183,7 +184,7 @@ class RobobullsKick:
         return self._there_for > _SETTLED
 
     def _drive(self, me: RobotState, goal: Point, heading: float, period: float) -> RobotCommand:
-        return drive(me, goal, heading, self.limits, period)
+        return robobulls_drive(me, goal, heading, period, self.limits)
 
     def _power(self, ball: BallState, target: Point) -> float:
         if self.kick_speed is not None:
