@@ -61,7 +61,9 @@ def _follow_restart(frame: Frame, team: TeamStore) -> None:
         if game.in_play:
             ours = touched is not None and touched.team is frame.team
             team.kicker = touched.number if touched is not None and ours else team.attacker
-    elif not game.in_play or (touched is not None and touched != RobotId(frame.team, team.kicker or 0)):
+    elif team.kicker is not None and (
+        not game.in_play or (touched is not None and touched != RobotId(frame.team, team.kicker))
+    ):
         team.kicker = None
 
 

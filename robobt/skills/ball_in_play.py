@@ -1,0 +1,18 @@
+"""Condition: both teams may play the ball."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+
+
+@skill
+class BallInPlay(Skill):
+    """SUCCESS while the ball is free for both teams; FAILURE in a stop and before a restart is taken."""
+
+    def on_running(self) -> Status:
+        """Listen to the referee."""
+        game = self.frame.game
+        if game.in_play:
+            return self.succeed()
+        return self.fail(game.command.name)

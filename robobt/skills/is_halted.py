@@ -1,0 +1,17 @@
+"""Condition: everybody has to stand still."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+
+
+@skill
+class IsHalted(Skill):
+    """SUCCESS while the referee has halted the game or a team has its time-out."""
+
+    def on_running(self) -> Status:
+        """Listen to the referee."""
+        if self.frame.game.halted:
+            return self.succeed(self.frame.game.command.name)
+        return self.fail("the game is not halted")

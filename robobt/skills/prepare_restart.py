@@ -1,0 +1,57 @@
+"""Wait behind the ball until the restart may be taken."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.path_planner import STOP_DISTANCE, travel
+from robobt.tree import Status
+from robobt.world.game import Restart
+from robobt.world.geometry import Point, direction
+from robobt.world.state import ROBOT_RADIUS
+
+_STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
+
+
+@skill
+class PrepareRestart(Skill):
+    """Stand behind the ball of the own restart, looking over it at the opponent's goal.
+
+    In a stop it keeps to the rules' distance. SUCCESS once the restart may be
+    taken, FAILURE while the own team has none.
+
+    Args:
+        gap: from the ball to the robot's centre [m].
+    """
+
+    def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
+        super().__init__(name)
+        self.gap = gap
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        frame, me, game = self.frame, self.me, self.frame.game
+        if game.restart is None or game.restart_team is not frame.team:
+            return self.fail("no restart of ours")
+        if game.may_touch and not game.stopped:
+            return self.succeed("it may be taken")
+        spot = game.placement or frame.ball.position
+        gap = _STOP_GAP if game.stopped else self.gap
+        looks_at = (
+            (frame.field.half_length, spot[1]) if game.restart is Restart.KICKOFF else frame.field.their_goal
+        )
+        x, y = _before(spot, looks_at, -gap)
+        if game.stopped and not frame.field.contains(x, y):
+            x, y = _before(spot, (0.0, 0.0), gap)
+        self.store.command = travel(
+            frame, me, (x, y), direction(me.position, spot), me.limits, avoid_ball=True
+        )
+        return self.run("waiting for the whistle")
+
+
+def _before(spot: Point, point: Point, gap: float) -> Point:
+    """``gap`` metres from ``spot`` towards ``point``; behind ``spot`` when negative."""
+    dx, dy = point[0] - spot[0], point[1] - spot[1]
+    length = hypot(dx, dy)
+    return (spot[0] + gap * dx / length, spot[1] + gap * dy / length)
