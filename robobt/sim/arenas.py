@@ -22,7 +22,7 @@ _WALL = 0.02
 _BEYOND = 0.5
 """Thickness of the walls around the field [m]."""
 
-_HULL_CORNERS = 20
+_HULL_CORNERS = 24
 _PLATE = 0.006
 """Thickness of the plate that forms a robot's flat front [m]."""
 
@@ -315,11 +315,16 @@ def _finish(shape: pymunk.Shape, restitution: float, friction: float, category: 
 
 
 def _hull(chord: float) -> list[tuple[float, float]]:
-    """The round part of a robot: a polygon on the disc, cut flat ``chord`` ahead of the centre."""
+    """The round part of a robot: a polygon around the disc, cut flat ``chord`` ahead of the centre.
+
+    Its edges touch the disc, so that a ball that has come to the disc meets it.
+    """
     opening = acos(chord / ROBOT_RADIUS)
-    steps = _HULL_CORNERS - 1
-    angles = [opening + (2 * pi - 2 * opening) * i / steps for i in range(_HULL_CORNERS)]
-    return [(ROBOT_RADIUS * cos(angle), ROBOT_RADIUS * sin(angle)) for angle in angles]
+    step = (2 * pi - 2 * opening) / _HULL_CORNERS
+    radius = ROBOT_RADIUS / cos(step / 2)
+    angles = [opening + step * (i + 0.5) for i in range(_HULL_CORNERS)]
+    ends = [(chord, radius * sin(opening)), (chord, -radius * sin(opening))]
+    return [ends[0], *[(radius * cos(angle), radius * sin(angle)) for angle in angles], ends[1]]
 
 
 def _plate(face: float) -> list[tuple[float, float]]:

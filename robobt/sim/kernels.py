@@ -161,6 +161,39 @@ def _enters(
 
 
 @njit(cache=True)
+def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tuple[float, float]:
+    """When p + t * d enters and leaves the disc of radius ``reach`` around the origin; (2, -1) if never."""
+    a = dx * dx + dy * dy
+    b = px * dx + py * dy
+    root = b * b - a * (px * px + py * py - reach * reach)
+    if a <= 0.0 or root <= 0.0:
+        return 2.0, -1.0
+    root = sqrt(root)
+    return (-b - root) / a, (-b + root) / a
+
+
+@njit(cache=True)
+def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius: float) -> float:
+    """When in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
+    first = 1.0
+    t_in, t_out = _enters(x, dx, box[0] - radius, box[2] + radius, -1.0, 2.0)
+    t_in, t_out = _enters(y, dy, box[1] - radius, box[3] + radius, t_in, t_out)
+    if not (t_in <= t_out and t_in < 1.0 and t_out > 0.0):
+        return first
+    for wide, high in ((radius, 0.0), (0.0, radius)):
+        t_in, t_out = _enters(x, dx, box[0] - wide, box[2] + wide, -1.0, 2.0)
+        t_in, t_out = _enters(y, dy, box[1] - high, box[3] + high, t_in, t_out)
+        if 0.0 < t_in <= t_out and t_in < first:
+            first = t_in
+    for corner_x in (box[0], box[2]):
+        for corner_y in (box[1], box[3]):
+            t_in, t_out = _meets_disc(x - corner_x, y - corner_y, dx, dy, radius)
+            if 0.0 < t_in <= t_out and t_in < first:
+                first = t_in
+    return first
+
+
+@njit(cache=True)
 def _sweep(
     rows: FloatArray,
     first: int,
@@ -184,16 +217,9 @@ def _sweep(
         row = rows[first + i]
         px, py = ball[0] - row[0], ball[1] - row[1]
         dx, dy = (move[0] - row[3]) * dt, (move[1] - row[4]) * dt
-        reach = p[ROBOT_R] + radius
-        # The disc.
-        a = dx * dx + dy * dy
-        b = px * dx + py * dy
-        gap = px * px + py * py - reach * reach
-        root = b * b - a * gap
-        if a <= 0.0 or root <= 0.0 or b >= 0.0:
+        if px * dx + py * dy >= 0.0:
             continue
-        root = sqrt(root)
-        t_in, t_out = (-b - root) / a, (-b + root) / a
+        t_in, t_out = _meets_disc(px, py, dx, dy, p[ROBOT_R] + radius)
         # The half-plane behind the flat front.
         c, s = cos(row[2]), sin(row[2])
         ahead = c * px + s * py
@@ -203,10 +229,7 @@ def _sweep(
     x, y = ball[0] - origin[0], ball[1] - origin[1]
     dx, dy = move[0] * dt, move[1] * dt
     for k in range(walls.shape[0]):
-        t_in, t_out = _enters(x, dx, walls[k, 0] - radius, walls[k, 2] + radius, -1.0, 2.0)
-        t_in, t_out = _enters(y, dy, walls[k, 1] - radius, walls[k, 3] + radius, t_in, t_out)
-        if 0.0 < t_in <= t_out and t_in < share:
-            share = t_in
+        share = min(share, _meets_box(x, y, dx, dy, walls[k], radius))
     return share
 
 
@@ -445,7 +468,7 @@ def control_tick(
                 move[1] = spin[1] = velocity[1]
             else:
                 _friction(velocity, spin, p, dt, move)
-            if glued < 0 and hypot(move[0], move[1]) * dt > 0.25 * p[BALL_R]:
+            if glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
                 share = _sweep(rows, first, robots, walls, origins[a], move, p, dt)
                 if share < 1.0:
                     length = hypot(move[0], move[1]) * dt

@@ -34,7 +34,7 @@ class BallSettings(_Settings):
         0.66, gt=0.05, lt=1, description="share of the start speed where rolling begins"
     )
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
-    stop_speed: float = Field(0.01, gt=0, le=0.5, description="slower than this is at rest [m/s]")
+    stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
 
 
 class BodySettings(_Settings):
@@ -60,8 +60,8 @@ class DribblerSettings(_Settings):
     """
 
     kind: Literal["force", "glue"] = "force"
-    pull: float = Field(3.0, ge=0, le=200, description="largest pull towards the front [m/s^2]")
-    side: float = Field(4.0, ge=0, le=200, description="largest sideways acceleration [m/s^2]")
+    pull: float = Field(4.0, ge=0, le=200, description="largest pull towards the front [m/s^2]")
+    side: float = Field(6.0, ge=0, le=200, description="largest sideways acceleration [m/s^2]")
     reach: float = Field(0.012, gt=0, le=0.1, description="gap up to which it pulls [m]")
     centring: float = Field(0.05, gt=0.005, le=5, description="time constant towards the middle [s]")
     idle_hold: float = Field(
@@ -200,7 +200,7 @@ PRESETS: dict[str, SimSettings] = {
             max_turn=10.0,
             turn_acceleration=60.0,
         ),
-        dribbler=DribblerSettings(kind="force", pull=0.6, side=3.0, reach=0.02),
+        dribbler=DribblerSettings(kind="force", pull=0.74, side=3.0, reach=0.02),
         kicker=KickerSettings(max_speed=6.5),
         contact=ContactSettings(front_restitution=0.2, hull_restitution=0.6, wall_restitution=0.3),
     ),

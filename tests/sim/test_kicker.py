@@ -1,0 +1,97 @@
+"""Kicks leave from the mouth only, along the heading, no faster than allowed."""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robobt.sim import preset
+from robobt.world import BALL_RADIUS, KickTrigger, RobotCommand
+from tests.sim.rig import ME, holding, one_robot
+
+NOW, ON_CONTACT = KickTrigger.NOW, KickTrigger.ON_CONTACT
+
+
+def kicked_speed(world: object, command: RobotCommand) -> float:
+    world.act({ME: command})
+    return world.truth().ball.speed
+
+
+@pytest.mark.parametrize("name", ["default", "erforce", "sumatra", "robobulls", "grsim", "rsim"])
+def test_no_kick_is_faster_than_the_presets_cap(name: str) -> None:
+    cap = preset(name).kicker.max_speed
+    speed = kicked_speed(holding(name), RobotCommand(kick_speed=50.0))
+    assert speed <= cap
+    assert speed == pytest.approx(cap, rel=0.02)
+
+
+def test_the_default_cap_is_the_rules() -> None:
+    assert preset("default").kicker.max_speed == 6.5
+
+
+@pytest.mark.parametrize(
+    ("ahead", "aside"), [(0.13, 0.0), (-0.0965, 0.0), (0.0, 0.0965 + 0.02), (0.0965, 0.06)]
+)
+@pytest.mark.parametrize("trigger", [NOW, ON_CONTACT])
+def test_a_ball_outside_the_mouth_is_not_kicked(ahead: float, aside: float, trigger: KickTrigger) -> None:
+    world = one_robot(ball=(ahead, aside, 0, 0))
+    world.act({ME: RobotCommand(kick_speed=6.0, kick_trigger=trigger)})
+    assert world.kicks == []
+    assert world.truth().ball.speed < 1.0
+
+
+def test_now_means_now_and_on_contact_waits() -> None:
+    for trigger, leaves in ((NOW, False), (ON_CONTACT, True)):
+        # The ball reaches the mouth in the middle of the control period.
+        world = one_robot(ball=(0.15, 0, -1.5, 0), period=0.05)
+        world.act({ME: RobotCommand(kick_speed=5.0, kick_trigger=trigger)})
+        assert (world.kicks == [ME]) == leaves
+        assert (world.truth().ball.vx > 3) == leaves
+
+
+@settings(max_examples=25, deadline=None)
+@given(heading=st.floats(-3.1, 3.1), speed=st.floats(0.5, 6.5))
+def test_the_ball_leaves_along_the_heading(heading: float, speed: float) -> None:
+    gap = preset("default").body.face + BALL_RADIUS + 0.0003
+    world = one_robot(pose=(0, 0, heading), ball=(gap * cos(heading), gap * sin(heading), 0, 0))
+    world.act({ME: RobotCommand(kick_speed=speed)})
+    ball = world.truth().ball
+    assert ball.vx / hypot(ball.vx, ball.vy) == pytest.approx(cos(heading), abs=1e-6)
+    assert ball.vy / hypot(ball.vx, ball.vy) == pytest.approx(sin(heading), abs=1e-6)
+    assert ball.speed == pytest.approx(speed, abs=0.02)
+
+
+def test_a_turning_robot_gives_the_ball_its_sideways_velocity() -> None:
+    world = holding("rsim")
+    for _ in range(200):
+        world.act({ME: RobotCommand(omega=10.0, dribbler=True)})
+    me = world.truth().own[0]
+    world.act({ME: RobotCommand(omega=10.0, kick_speed=5.0, dribbler=True)})
+    ball = world.truth().ball
+    # The ball sits about 0.103 m ahead: 10 rad/s give it about 1 m/s to the left of the heading.
+    heading = me.heading
+    sideways = cos(heading) * ball.vy - sin(heading) * ball.vx
+    assert sideways == pytest.approx(10.0 * 0.103, rel=0.15)
+
+
+def test_after_a_kick_the_dribbler_lets_the_ball_go_and_the_kicker_recharges() -> None:
+    world = holding("grsim")
+    world.act({ME: RobotCommand(kick_speed=0.3, dribbler=True)})
+    assert world.kicks == [ME]
+    again = []
+    while world.time < 0.09:
+        world.act({ME: RobotCommand(kick_speed=0.3, dribbler=True)})
+        again += world.kicks
+    assert again == []
+    assert world.truth().ball.vx > 0.1
+
+
+def test_a_single_kick_command_fires_once() -> None:
+    world = holding(period=0.05)
+    world.act({ME: RobotCommand(kick_speed=1.0)})
+    assert world.kicks == [ME]
+    world.act({})
+    assert world.kicks == []

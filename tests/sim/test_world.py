@@ -1,0 +1,147 @@
+"""The simulator is a World: what goes in, what is seen, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robobt.sim import REALISM, SimWorld, preset
+from robobt.world import DIVISION_B, Placement, RobotCommand, RobotId, Team, World
+from tests.sim.rig import IT, ME, one_robot
+
+
+def pair(realism: str = "none", period: float = 1 / 60) -> SimWorld:
+    world = SimWorld(DIVISION_B, {ME: None, IT: None}, preset("default", realism=REALISM[realism]), period)
+    world.reset(Placement({ME: (-1, 0.5, 0.3), IT: (1, -0.2, 3)}, (0.1, 0.2, 1, 0)), seed=1)
+    return world
+
+
+def test_it_is_a_world() -> None:
+    assert isinstance(pair(), World)
+
+
+def test_it_starts_as_placed() -> None:
+    frame = pair().observe()
+    assert frame.time == 0.0
+    assert (frame.own[0].x, frame.own[0].y, frame.own[0].heading) == (-1, 0.5, 0.3)
+    assert frame.opponents[0].position == (1, -0.2)
+    assert (frame.ball.x, frame.ball.vx) == (0.1, 1)
+    assert frame.last_touch is None
+
+
+def test_time_passes_by_the_control_period() -> None:
+    world = pair(period=0.03)
+    for _ in range(10):
+        world.act({})
+    assert world.observe().time == pytest.approx(0.3)
+
+
+def test_the_last_touch_is_known() -> None:
+    world = one_robot(ball=(0.3, 0, -2, 0))
+    for _ in range(60):
+        world.act({})
+    assert world.truth().last_touch == ME
+
+
+def test_without_realism_what_is_seen_is_what_is() -> None:
+    world = pair()
+    world.act({ME: RobotCommand(1, 0, 1)})
+    assert world.observe() == world.truth()
+
+
+def test_vision_is_late_by_its_delay() -> None:
+    world = pair("friendly")
+    quiet = world.settings.realism.model_copy(
+        update={
+            "ball_noise": 0,
+            "robot_noise": 0,
+            "heading_noise": 0,
+            "missing_ball": 0,
+            "missing_robot": 0,
+            "command_loss": 0,
+        }
+    )
+    world = SimWorld(DIVISION_B, {ME: None}, preset("default", realism=quiet), 0.005)
+    world.reset(Placement({ME: (-1, 0, 0)}, (0, 0.2, 1, 0)), 0)
+    past = []
+    for _ in range(100):
+        past.append(world.truth().ball.x)
+        world.act({})
+        seen = world.observe().ball.x
+        # 35 ms are seven sub-steps of 5 ms.
+        assert seen == (past[len(past) - 7] if len(past) >= 7 else past[0])
+
+
+def test_realistic_noise_has_the_stated_spread_and_the_seed_fixes_it() -> None:
+    def run(seed: int) -> np.ndarray:
+        world = pair("realistic")
+        world.reset(Placement({ME: (-1, 0, 0), IT: (1, 0, 0)}, (0, 0.5, 0, 0)), seed)
+        seen = []
+        for _ in range(600):
+            world.act({})
+            frame = world.observe()
+            seen.append((frame.ball.x, frame.own[0].x + 1, frame.own[0].heading))
+        return np.array(seen)
+
+    first = run(3)
+    spread = first.std(axis=0)
+    assert spread[0] == pytest.approx(0.0014, rel=0.15)
+    assert spread[1] == pytest.approx(0.0013, rel=0.15)
+    assert spread[2] == pytest.approx(0.01, rel=0.15)
+    np.testing.assert_array_equal(first, run(3))
+    assert (first != run(4)).any()
+
+
+def test_a_missing_detection_repeats_the_last_one() -> None:
+    world = pair("realistic")
+    repeats = 0
+    last = world.observe().ball.x
+    for _ in range(400):
+        world.act({})
+        now = world.observe().ball.x
+        repeats += now == last
+        last = now
+    assert repeats / 400 == pytest.approx(0.05, abs=0.035)
+
+
+def test_a_lost_command_leaves_the_last_one_standing() -> None:
+    realism = REALISM["none"].model_copy(update={"command_loss": 0.5})
+    world = SimWorld(DIVISION_B, {ME: None}, preset("default", realism=realism), 0.02)
+    world.reset(Placement({ME: (-4, 0, 0)}, (0, 2, 0, 0)), 0)
+    for _ in range(60):
+        world.act({ME: RobotCommand(vx=1.0)})
+    # Half the commands are lost and the robot still drives at full speed.
+    assert world.truth().own[0].vx == pytest.approx(1.0)
+
+
+def test_the_ball_can_be_put_down() -> None:
+    world = pair()
+    world.act({})
+    world.place_ball(2.0, -1.0)
+    ball = world.truth().ball
+    assert (ball.x, ball.y, ball.vx, ball.vy) == (2.0, -1.0, 0.0, 0.0)
+    world.act({})
+    assert world.truth().ball.speed == 0.0
+
+
+@pytest.mark.parametrize(
+    ("placement", "words"),
+    [
+        (Placement({ME: (-1, 0, 0)}), "no pose for yellow 0"),
+        (Placement({ME: (-1, 0, 0), IT: (99, 0, 0)}), "yellow 0 is placed at .* outside the walls"),
+        (Placement({ME: (float("nan"), 0, 0), IT: (1, 0, 0)}), "blue 0 is placed at .* not finite"),
+        (Placement({ME: (-1, 0, 0), IT: (1, 0, 0)}, (0, 50, 0, 0)), "the ball is placed at .* outside"),
+        (
+            Placement({ME: (-1, 0, 0), IT: (1, 0, 0), RobotId(Team.BLUE, 7): (0, 0, 0)}),
+            "blue 7 is not part of this world",
+        ),
+    ],
+)
+def test_a_wrong_placement_is_refused_by_name(placement: Placement, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        pair().reset(placement, 0)
+
+
+def test_a_command_that_is_not_finite_is_refused_by_name() -> None:
+    with pytest.raises(ValueError, match="the command for blue 0 is not finite"):
+        pair().act({ME: RobotCommand(vx=float("nan"))})
