@@ -1,0 +1,88 @@
+"""Angles, segments and clearances."""
+
+from __future__ import annotations
+
+from math import cos, hypot, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robobt.world import geometry as g
+
+coordinate = st.floats(-20, 20)
+point = st.tuples(coordinate, coordinate)
+angle = st.floats(-50, 50)
+
+
+@given(angle)
+def test_a_wrapped_angle_is_the_same_direction_in_half_open_range(a: float) -> None:
+    wrapped = g.wrap_angle(a)
+    assert -pi < wrapped <= pi
+    assert cos(wrapped) == pytest.approx(cos(a), abs=1e-9)
+    assert sin(wrapped) == pytest.approx(sin(a), abs=1e-9)
+    assert float(g.wrap_angles(a)) == wrapped
+
+
+@given(point, point, point)
+def test_the_closest_point_is_on_the_segment_and_no_sampled_point_is_closer(
+    p: g.Point, a: g.Point, b: g.Point
+) -> None:
+    nearest = g.closest_point_on_segment(p, a, b)
+    assert g.distance(a, nearest) + g.distance(nearest, b) == pytest.approx(g.distance(a, b), abs=1e-6)
+    for share in np.linspace(0, 1, 11):
+        sample = (a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]))
+        assert g.segment_distance(p, a, b) <= g.distance(p, sample) + 1e-9
+
+
+@given(point, st.lists(point, min_size=1, max_size=4), st.lists(point, min_size=1, max_size=3))
+def test_clearances_agree_with_the_scalar_helper(
+    origin: g.Point, targets: list[g.Point], obstacles: list[g.Point]
+) -> None:
+    table = g.clearances(origin, targets, obstacles)
+    assert table.shape == (len(targets), len(obstacles))
+    for i, target in enumerate(targets):
+        for j, obstacle in enumerate(obstacles):
+            assert table[i, j] == pytest.approx(g.segment_distance(obstacle, origin, target), abs=1e-9)
+
+
+def test_clearances_take_batches() -> None:
+    rng = np.random.default_rng(0)
+    origins, targets, obstacles = (
+        rng.normal(size=(5, 2)),
+        rng.normal(size=(5, 7, 2)),
+        rng.normal(size=(5, 3, 2)),
+    )
+    batch = g.clearances(origins, targets, obstacles)
+    for i in range(5):
+        np.testing.assert_allclose(batch[i], g.clearances(origins[i], targets[i], obstacles[i]))
+
+
+@given(point, st.floats(-3.1, 3.1), coordinate)
+def test_a_crossing_lies_on_the_ray(start: g.Point, heading: float, x: float) -> None:
+    y = g.line_crossing_x(start, heading, x)
+    if y is None:
+        assert (x - start[0]) * cos(heading) <= 0
+    elif abs(y) < 1e3:
+        reach = hypot(x - start[0], y - start[1])
+        assert start[0] + reach * cos(heading) == pytest.approx(x, abs=1e-6)
+        assert start[1] + reach * sin(heading) == pytest.approx(y, abs=1e-6)
+
+
+@given(coordinate, coordinate, st.floats(-3.1, 3.1))
+def test_turning_into_the_robots_frame_keeps_length_and_undoes_the_heading(
+    vx: float, vy: float, h: float
+) -> None:
+    x, y = g.to_robot_frame(vx, vy, h)
+    assert hypot(x, y) == pytest.approx(hypot(vx, vy), abs=1e-9)
+    assert cos(h) * x - sin(h) * y == pytest.approx(vx, abs=1e-9)
+
+
+@given(coordinate, coordinate, st.floats(0.01, 30))
+def test_a_limited_vector_keeps_its_direction(x: float, y: float, most: float) -> None:
+    lx, ly = g.limit_norm(x, y, most)
+    assert hypot(lx, ly) <= most * (1 + 1e-9)
+    assert lx * y == pytest.approx(ly * x, abs=1e-6)
+    if hypot(x, y) <= most:
+        assert (lx, ly) == (x, y)
