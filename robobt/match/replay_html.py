@@ -1,0 +1,229 @@
+"""A recording as one HTML page that needs nothing else: no network, no files beside it.
+
+The page's address may say where to start: ``#t=12.5&robot=blue 3&labels``.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from collections.abc import Iterable
+from importlib.resources import files
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robobt.match.recording import Recording, load_recording
+from robobt.world.game import GameState
+from robobt.world.geometry import FloatArray
+
+MOST_FRAMES = 36_000
+"""Frames a page holds, ten minutes at 60 Hz; of a longer recording every second, third, ... is shown."""
+
+MOST_FEEDBACK = 40_000
+"""Changes of feedback a page holds as they came; beyond, a node's words change ten times a second at most."""
+
+_ABSENT = -(2**15)
+_FEEDBACK_PERIOD = 0.1
+
+
+def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
+    """Write the page of a recording, or of a recording's file, and return where it is.
+
+    Raises:
+        RecordingError: the file is not a recording.
+        OSError: the page cannot be written.
+    """
+    if not isinstance(recording, Recording):
+        recording = load_recording(recording)
+    path = Path(path)
+    path.write_text(replay_html(recording), encoding="utf-8")
+    return path
+
+
+def replay_html(recording: Recording) -> str:
+    """The page: field, robots, ball, timeline, and the tree of the robot that is selected."""
+    page = files("robobt.match").joinpath("replay.html").read_text(encoding="utf-8")
+    header = recording.header
+    title = html.escape(f"{header.scenario or 'match'}, trial {header.trial + 1} · robobt replay")
+    # Cut the page before anything is put in: what a recording says may look like a place to fill.
+    head, rest = page.split("{{title}}")
+    middle, tail = rest.split("{{data}}")
+    return f"{head}{title}{middle}{_for_script(page_data(recording))}{tail}"
+
+
+def _for_script(data: dict[str, Any]) -> str:
+    """JSON that a script element can hold: it has no tag, no comment and no entity in it."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def page_data(recording: Recording) -> dict[str, Any]:
+    """What the page is given, as JSON can hold it.
+
+    Arrays are little-endian and in base64: ``times`` float32 [s]; ``ball`` int16 x, y [mm],
+    speed [mm/s]; a robot's ``rows`` int16 x, y [mm], heading [mrad], speed [mm/s]; -32768 off
+    the field. Changes are flat lists whose frame numbers count from the change before.
+    """
+    header = recording.header
+    stride = max(1, -(-len(recording) // MOST_FRAMES))
+    texts, letters = _Table(), _Table()
+    thin = sum(len(said) for tree in recording.feedback for _, said in tree) > MOST_FEEDBACK
+    frames = len(recording.times[::stride])
+    robots = []
+    for slot, robot in enumerate(header.robots):
+        rows = recording.robots[::stride, slot]
+        speed = np.hypot(rows[:, 3], rows[:, 4])
+        feedback = _thinned(recording, slot) if thin else recording.feedback[slot]
+        robots.append(
+            {
+                "team": robot.team,
+                "number": robot.number,
+                "play": robot.play,
+                "radius": robot.radius,
+                "mouth": robot.mouth,
+                "tree": [
+                    [node.name, node.type, node.kind, node.depth, node.glyph, node.detail]
+                    for node in robot.tree
+                ],
+                "rows": _int16(np.column_stack((rows[:, 0], rows[:, 1], rows[:, 2], speed)) * 1000.0),
+                "flags": _steps(_runs(recording.flags[::stride, slot].tolist()), frames, 1),
+                "statuses": _steps(
+                    ((tick, letters[word]) for tick, word in recording.statuses[slot]), frames, stride
+                ),
+                "feedback": _feedback_steps(feedback, texts, frames, stride),
+            }
+        )
+    ball = recording.ball[::stride]
+    ball_rows = np.column_stack((ball[:, 0], ball[:, 1], np.hypot(ball[:, 2], ball[:, 3])))
+    return {
+        "scenario": header.scenario,
+        "trial": header.trial,
+        # As text: a seed may have more digits than a script's numbers hold.
+        "seed": str(header.seed),
+        "robobt": header.robobt,
+        "outcome": _finite(recording.outcome),
+        "field": header.field.model_dump(mode="json"),
+        "teams": dict(header.teams),
+        "frames": frames,
+        "times": _base64(recording.times[::stride].astype("<f4").tobytes()),
+        "ball": _int16(ball_rows * 1000.0),
+        "robots": robots,
+        "games": _steps(((tick, _game(game)) for tick, game in recording.games), frames, stride),
+        "events": [
+            [
+                event.time,
+                event.kind,
+                event.team,
+                None if event.robot is None else event.robot.number,
+                event.text,
+            ]
+            for event in sorted(recording.events, key=lambda event: event.time)
+        ],
+        "texts": texts.entries,
+        "letters": letters.entries,
+    }
+
+
+class _Table:
+    """Texts that come again and again, by number."""
+
+    def __init__(self) -> None:
+        self.entries: list[str] = []
+        self._places: dict[str, int] = {}
+
+    def __getitem__(self, text: str) -> int:
+        place = self._places.setdefault(text, len(self.entries))
+        if place == len(self.entries):
+            self.entries.append(text)
+        return place
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+def _int16(values: FloatArray) -> str:
+    most = 2.0**15 - 1.0
+    known = np.isfinite(values).all(axis=-1, keepdims=True)
+    whole = np.rint(np.clip(np.nan_to_num(values), -most, most))
+    return _base64(np.where(known, whole, _ABSENT).astype("<i2").tobytes())
+
+
+def _runs(values: list[int]) -> Iterable[tuple[int, int]]:
+    before = None
+    for place, value in enumerate(values):
+        if value != before:
+            before = value
+            yield place, value
+
+
+def _steps(changes: Iterable[tuple[int, Any]], frames: int, stride: int) -> list[Any]:
+    """(tick, value) as a flat list of frame differences and values; the last of a frame counts."""
+    by_frame: dict[int, Any] = {}
+    for tick, value in changes:
+        # A change between two shown frames is seen from the second one on.
+        by_frame[min(frames - 1, -(-tick // stride))] = value
+    flat, before = [], 0
+    for frame, value in by_frame.items():
+        flat += [frame - before, value]
+        before = frame
+    return flat
+
+
+def _feedback_steps(
+    changes: Iterable[tuple[int, dict[int, str]]], texts: _Table, frames: int, stride: int
+) -> list[int]:
+    by_frame: dict[int, dict[int, str]] = {}
+    for tick, said in changes:
+        by_frame.setdefault(min(frames - 1, -(-tick // stride)), {}).update(said)
+    flat, before = [], 0
+    for frame, said in by_frame.items():
+        for node, text in said.items():
+            flat += [frame - before, node, texts[text]]
+            before = frame
+    return flat
+
+
+def _thinned(recording: Recording, slot: int) -> list[tuple[int, dict[int, str]]]:
+    """The feedback of one tree, a node's words ten times a second unless the tree changed as well."""
+    turns = {tick for tick, _ in recording.statuses[slot]}
+    times = recording.times.tolist()
+    shown: dict[int, float] = {}
+    kept = []
+    for tick, said in recording.feedback[slot]:
+        now = times[tick]
+        fresh = {
+            node: text
+            for node, text in said.items()
+            if tick in turns or now - shown.get(node, -1.0) >= _FEEDBACK_PERIOD
+        }
+        if fresh:
+            shown.update(dict.fromkeys(fresh, now))
+            kept.append((tick, fresh))
+    return kept
+
+
+def _game(game: GameState) -> dict[str, Any]:
+    return {
+        "command": game.command.name,
+        "blue": game.blue_score,
+        "yellow": game.yellow_score,
+        "restart": game.restart,
+        "team": game.restart_team,
+        "placement": _finite(game.placement),
+    }
+
+
+def _finite(value: Any) -> Any:
+    """The same without NaN and infinity, which JSON does not have."""
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    if isinstance(value, dict):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
