@@ -6,7 +6,7 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.raters import ShotRater, make_rater
 from robobt.skills.store import Shot
 from robobt.tree import Status
-from robobt.world.geometry import direction, distance, wrap_angle
+from robobt.world.geometry import Point, direction, distance, wrap_angle
 
 
 @skill
@@ -55,22 +55,20 @@ class SelectShot(Skill):
         shots = self.rater.rate_all(frame, origin, self.me)
         if not shots:
             return self.fail("no way to the goal is free")
-        shot = shots[0]
-        if last is not None:
-            aim = direction(origin, last.target)
-            for other in shots[1:]:
-                if other.score < shot.score - self.keep:
-                    break
-                if _in_opening(aim, shot, origin):
-                    break
-                if _in_opening(aim, other, origin):
-                    shot = other
-                    break
-        if shot.score < self.min_score:
-            return self.fail(f"the best shot scores {shot.score:.2f}")
+        best = shots[0].score
+        if best < self.min_score:
+            return self.fail(f"the best shot scores {best:.2f}")
+        shot = shots[0] if last is None else _stay(shots, last, origin, max(self.min_score, best - self.keep))
         self.store.shot = shot
         return self.succeed(f"score {shot.score:.2f}")
 
 
-def _in_opening(aim: float, shot: Shot, origin: tuple[float, float]) -> bool:
-    return abs(wrap_angle(direction(origin, shot.target) - aim)) <= shot.tolerance
+def _stay(shots: list[Shot], last: Shot, origin: Point, worst: float) -> Shot:
+    """The best shot, unless ``last`` aims into another opening that scores at least ``worst``."""
+    aim = direction(origin, last.target)
+    for shot in shots:
+        if shot.score < worst:
+            break
+        if abs(wrap_angle(direction(origin, shot.target) - aim)) <= shot.tolerance:
+            return shot
+    return shots[0]
