@@ -6,9 +6,11 @@ from math import hypot, radians
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.path_planner import allowed_target, slowed, travel
+from robobt.skills.pace import Pace
+from robobt.skills.path_planner import allowed_target, travel
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
+from robobt.world.limits import RobotLimits
 
 _STANDING = 0.1
 """Speed below which a robot has arrived [m/s]."""
@@ -29,7 +31,8 @@ class GoToPose(Skill):
         face_ball: turn to the ball instead of to ``heading``.
         tolerance: distance that counts as there [m].
         heading_tolerance: angle that counts as there [rad].
-        max_speed: top speed [m/s]; None is the robot's own.
+        limits: how to drive; None is the robot's own.
+        speed: factor on the top speed.
         avoid_robots, avoid_ball: what must not be touched on the way.
         goalkeeper: may enter the own defence area.
     """
@@ -44,7 +47,8 @@ class GoToPose(Skill):
         face_ball: bool = False,
         tolerance: float = 0.01,
         heading_tolerance: float = radians(2.0),
-        max_speed: float | None = None,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
         avoid_robots: bool = True,
         avoid_ball: bool = False,
         goalkeeper: bool = False,
@@ -56,7 +60,7 @@ class GoToPose(Skill):
         self.face_ball = face_ball
         self.tolerance = tolerance
         self.heading_tolerance = heading_tolerance
-        self.max_speed = max_speed
+        self.pace = Pace(limits, speed)
         self.avoid_robots = avoid_robots
         self.avoid_ball = avoid_ball
         self.goalkeeper = goalkeeper
@@ -73,13 +77,12 @@ class GoToPose(Skill):
             return self.fail("no target")
         me, frame = self.me, self.frame
         heading = self._heading()
-        limits = me.limits if self.max_speed is None else slowed(me.limits, self.max_speed)
         self.store.command = travel(
             frame,
             me,
             target,
             heading,
-            limits,
+            self.pace.of(me.limits),
             avoid_robots=self.avoid_robots,
             avoid_ball=self.avoid_ball,
             goalkeeper=self.goalkeeper,

@@ -1,0 +1,25 @@
+"""Is the ball in the own defence area?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+
+
+@skill
+class BallInOwnDefenseArea(Skill):
+    """Succeeds while the ball's centre is in the own defence area.
+
+    Args:
+        margin: how much the area is grown at its front and sides [m].
+    """
+
+    def __init__(self, *, margin: float = 0.0, name: str = "") -> None:
+        super().__init__(name)
+        self.margin = margin
+
+    def on_running(self) -> Status:
+        """Look where the ball is."""
+        if self.frame.field.in_our_defense(self.ball.x, self.ball.y, self.margin):
+            return self.succeed()
+        return self.fail("the ball is not in the own defence area")

@@ -1,0 +1,23 @@
+"""Is the ball in the own half?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+
+
+@skill
+class BallInOwnHalf(Skill):
+    """Succeeds while the ball is on the own side of the line ``x``.
+
+    Args:
+        x: where the own side ends [m]; 0 is the half-way line.
+    """
+
+    def __init__(self, *, x: float = 0.0, name: str = "") -> None:
+        super().__init__(name)
+        self.x = x
+
+    def on_running(self) -> Status:
+        """Compare the ball's x."""
+        return self.succeed() if self.ball.x < self.x else self.fail("the ball is on their side")

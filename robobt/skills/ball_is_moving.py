@@ -1,0 +1,23 @@
+"""Does the ball move?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+
+
+@skill
+class BallIsMoving(Skill):
+    """Succeeds while the ball is faster than ``speed``.
+
+    Args:
+        speed: below this it counts as resting [m/s].
+    """
+
+    def __init__(self, *, speed: float = 0.2, name: str = "") -> None:
+        super().__init__(name)
+        self.speed = speed
+
+    def on_running(self) -> Status:
+        """Compare the ball's speed."""
+        return self.succeed() if self.ball.speed > self.speed else self.fail("the ball rests")

@@ -1,0 +1,37 @@
+"""Does the mouth point at the target?"""
+
+from __future__ import annotations
+
+from math import radians
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import Point, direction, wrap_angle
+
+
+@skill
+class FacesTarget(Skill):
+    """Succeeds while the mouth points at the target; fails without one.
+
+    Args:
+        target: what to face [m]; None takes ``store.target``.
+        tolerance: angle that still counts as facing it [rad].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(
+        self, *, target: Point | None = None, tolerance: float = radians(5.0), name: str = ""
+    ) -> None:
+        super().__init__(name)
+        self.target = target
+        self.tolerance = tolerance
+
+    def on_running(self) -> Status:
+        """Compare the heading."""
+        target = self.store.target if self.target is None else self.target
+        if target is None:
+            return self.fail("no target")
+        error = wrap_angle(direction(self.me.position, target) - self.me.heading)
+        return self.succeed() if abs(error) <= self.tolerance else self.fail("it faces elsewhere")

@@ -1,0 +1,31 @@
+"""Is this robot the nearest to the ball?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import distance
+
+
+@skill
+class IsClosestToBall(Skill):
+    """Succeeds while no other robot of the team is nearer to the ball.
+
+    Args:
+        margin: how much nearer another may be and this one still counts [m].
+        of_all: compare with the opponents too.
+    """
+
+    def __init__(self, *, margin: float = 0.0, of_all: bool = False, name: str = "") -> None:
+        super().__init__(name)
+        self.margin = margin
+        self.of_all = of_all
+
+    def on_running(self) -> Status:
+        """Compare the distances."""
+        frame, ball = self.frame, self.ball.position
+        limit = distance(self.me.position, ball) - self.margin
+        rivals = frame.others(self.me.id) if self.of_all else frame.teammates(self.me.id)
+        if any(distance(rival.position, ball) < limit for rival in rivals):
+            return self.fail("another robot is nearer to the ball")
+        return self.succeed()

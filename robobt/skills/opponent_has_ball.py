@@ -1,0 +1,19 @@
+"""Do the opponents have the ball?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import owner
+from robobt.tree import Status
+
+
+@skill
+class OpponentHasBall(Skill):
+    """Succeeds while a robot of the other team has the ball."""
+
+    def on_running(self) -> Status:
+        """See who owns the ball."""
+        holder = owner(self.frame)
+        if holder is None or holder.team is self.frame.team:
+            return self.fail("no opponent has the ball")
+        return self.succeed()

@@ -1,0 +1,29 @@
+"""Stand still."""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.command import RobotCommand
+
+_STANDING = 0.01
+
+
+@skill
+class Stop(Skill):
+    """Brake and stand where that ends; running until the robot is at rest, then succeeding.
+
+    Args:
+        dribbler: whether the dribbler turns meanwhile.
+    """
+
+    def __init__(self, *, dribbler: bool = False, name: str = "") -> None:
+        super().__init__(name)
+        self.dribbler = dribbler
+
+    def on_running(self) -> Status:
+        """Ask for no velocity."""
+        self.store.command = RobotCommand(dribbler=self.dribbler)
+        me = self.me
+        still = me.speed < _STANDING and abs(me.omega) < _STANDING
+        return self.succeed("standing") if still else self.run("braking")

@@ -1,0 +1,31 @@
+"""Does the own team have the ball?"""
+
+from __future__ import annotations
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import owner
+from robobt.tree import Status
+
+
+@skill
+class TeamHasBall(Skill):
+    """Succeeds while a robot of the own team has the ball.
+
+    Args:
+        others_only: this robot itself does not count.
+    """
+
+    def __init__(self, *, others_only: bool = False, name: str = "") -> None:
+        super().__init__(name)
+        self.others_only = others_only
+
+    def on_running(self) -> Status:
+        """See who owns the ball."""
+        holder = owner(self.frame)
+        if holder is None:
+            return self.fail("nobody has the ball")
+        if holder.team is not self.frame.team:
+            return self.fail("the opponents have the ball")
+        if self.others_only and holder.number == self.me.id:
+            return self.fail("it has the ball itself")
+        return self.succeed()
