@@ -233,6 +233,10 @@ class Scenario(Part):
         """An error about this scenario."""
         return ScenarioError(self.source, problem, field)
 
+    def lasting(self, time_limit: float) -> Scenario:
+        """The same scenario with another time limit [s]."""
+        return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
+
     def goalkeepers(self) -> dict[Team, int]:
         """Numbers of the teams' goalkeepers, for teams that have one."""
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}
