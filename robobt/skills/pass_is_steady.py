@@ -1,0 +1,45 @@
+"""Condition: the selected pass has been there for a while."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.steadiness import Steadiness
+from robobt.skills.store import Pass
+from robobt.tree import Status
+
+
+@skill
+class PassIsSteady(Skill):
+    """SUCCESS while the store's ``pass_`` is there and no flicker; else FAILURE.
+
+    In a short gap the last pass is put back into the store. To be ticked every
+    tick after :class:`SelectPass`.
+
+    Source: RoboBulls' published code, AttackMain, whose times are 0.9 s.
+
+    Args:
+        rise: how long there must be a pass before it counts [s].
+        fall: longest gap in a pass that has stood as long [s].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("pass_",)
+    writes: ClassVar[tuple[str, ...]] = ("pass_",)
+
+    def __init__(self, *, rise: float = 0.1, fall: float = 0.2, name: str = "") -> None:
+        super().__init__(name)
+        self._steady = Steadiness(rise, fall)
+        self._last: Pass | None = None
+
+    def on_running(self) -> Status:
+        """Weigh what was selected in this tick."""
+        pass_ = self.store.pass_
+        if pass_ is not None:
+            self._last = pass_
+        if not self._steady.update(pass_ is not None, self.frame.time):
+            return self.fail("no pass for long enough")
+        if self._last is None:
+            return self.fail("no pass yet")
+        self.store.pass_ = self._last
+        return self.succeed()

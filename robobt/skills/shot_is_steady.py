@@ -1,0 +1,45 @@
+"""Condition: the selected shot has been there for a while."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.steadiness import Steadiness
+from robobt.skills.store import Shot
+from robobt.tree import Status
+
+
+@skill
+class ShotIsSteady(Skill):
+    """SUCCESS while the store's ``shot`` is there and no flicker; else FAILURE.
+
+    In a short gap the last shot is put back into the store. To be ticked every
+    tick after :class:`SelectShot`.
+
+    Source: RoboBulls' published code, AttackMain, whose times are 0.9 s.
+
+    Args:
+        rise: how long there must be a shot before it counts [s].
+        fall: longest gap in a shot that has stood as long [s].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot",)
+    writes: ClassVar[tuple[str, ...]] = ("shot",)
+
+    def __init__(self, *, rise: float = 0.1, fall: float = 0.2, name: str = "") -> None:
+        super().__init__(name)
+        self._steady = Steadiness(rise, fall)
+        self._last: Shot | None = None
+
+    def on_running(self) -> Status:
+        """Weigh what was selected in this tick."""
+        shot = self.store.shot
+        if shot is not None:
+            self._last = shot
+        if not self._steady.update(shot is not None, self.frame.time):
+            return self.fail("no shot for long enough")
+        if self._last is None:
+            return self.fail("no shot yet")
+        self.store.shot = self._last
+        return self.succeed()

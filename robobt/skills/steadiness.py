@@ -1,0 +1,49 @@
+"""A yes or no that does not flicker: it turns only when the other answer has held for a while."""
+
+from __future__ import annotations
+
+
+class Steadiness:
+    """Follows a flickering answer slowly, in the world's own time.
+
+    While off it counts the time for the answer yes, less the time for no, and
+    turns on at ``rise``; while on it counts the same way up to ``fall`` and turns
+    off once it has lost all of it. So an answer that has stood for long survives
+    a gap as long as ``fall``, and one that has just come survives none.
+
+    Source: the counters of RoboBulls' published code, AttackMain, as times.
+
+    Args:
+        rise: how long yes must outweigh no to turn on [s].
+        fall: longest gap it survives [s].
+
+    Attributes:
+        on: the steady answer; yes at the start.
+    """
+
+    __slots__ = ("_balance", "_last", "fall", "on", "rise")
+
+    def __init__(self, rise: float, fall: float) -> None:
+        if not (rise >= 0.0 and fall >= 0.0):
+            raise ValueError(f"rise and fall must be 0 or more seconds, not {rise} and {fall}")
+        self.rise = rise
+        self.fall = fall
+        self.on = True
+        self._balance = 0.0
+        self._last: float | None = None
+
+    def update(self, answer: bool, time: float) -> bool:
+        """Take the answer at ``time`` [s]; returns ``on``. A clock that runs backwards starts anew."""
+        if self._last is not None and time < self._last:
+            self.on, self._balance, self._last = True, 0.0, None
+        passed = 0.0 if self._last is None else time - self._last
+        self._last = time
+        if self.on:
+            self._balance = min(self.fall, self._balance + passed) if answer else self._balance - passed
+            if not answer and self._balance <= 0.0:
+                self.on, self._balance = False, 0.0
+        else:
+            self._balance = max(0.0, self._balance + (passed if answer else -passed))
+            if answer and self._balance >= self.rise:
+                self.on, self._balance = True, 0.0
+        return self.on
