@@ -163,7 +163,7 @@ _CARRY_SLACK = 2.0
 """A kicker that never lets go commits a double touch at this many in-play distances."""
 
 _SPEED_SLACK = 0.02
-"""Measuring tolerance of the ball's speed [m/s]."""
+"""Measuring tolerance of speeds [m/s]."""
 
 _PENALTY_GAP = 1.0
 """Everybody but kicker and keeper stays this far behind the ball at a penalty kick [m]."""
@@ -588,7 +588,7 @@ class Referee:
             return
         most, least, ball = self.settings.stop_speed, self.settings.stop_distance, frame.ball
         for identity, robot in _everybody(frame):
-            if most is not None and robot.speed > most:
+            if most is not None and robot.speed > most + _SPEED_SLACK:
                 self._note_once(frame, EventKind.STOP_SPEED, identity)
             if least is not None and _hull_gap(robot, ball) < least:
                 self._note_once(frame, EventKind.STOP_DISTANCE, identity)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, pi, sin
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.path_planner import STOP_DISTANCE, travel
+from robobt.skills.path_planner import STOP_DISTANCE, allowed_target, travel
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction
 from robobt.world.state import ROBOT_RADIUS
 
 _MARGIN = 0.05
+_TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 2.5, -2.5, pi)
 
 
 @skill
@@ -38,23 +39,22 @@ class KeepDistance(Skill):
         if frame.game.placement is not None and not frame.game.in_play:
             places.append(frame.game.placement)
         nearest = min(places, key=lambda place: hypot(me.x - place[0], me.y - place[1]))
-        dx, dy = me.x - nearest[0], me.y - nearest[1]
-        gap = hypot(dx, dy)
+        gap = hypot(me.x - nearest[0], me.y - nearest[1])
         if gap >= keep:
             return self.succeed("far enough")
-        if gap < 1e-3:
-            dx, dy, gap = -1.0, 0.0, 1.0
         # Aimed farther than needed, so that the robot does not creep up to the limit.
-        reach = keep + 2.0 * _MARGIN
-        target = (
-            _inside(frame.field.half_length, nearest[0] + dx * reach / gap),
-            _inside(frame.field.half_width, nearest[1] + dy * reach / gap),
-        )
+        target = self._way_out(nearest, keep + 2.0 * _MARGIN)
         self.store.command = travel(
             frame, me, target, direction(me.position, nearest), me.limits, goalkeeper=self.goalkeeper
         )
         return self.run("clearing the ball")
 
-
-def _inside(half: float, value: float) -> float:
-    return min(half, max(-half, value))
+    def _way_out(self, place: Point, reach: float) -> Point:
+        """Straight away from ``place`` or, where no robot may stand there, as little aside as need be."""
+        frame, me = self.frame, self.me
+        away = direction(place, me.position)
+        for turn in _TURNS:
+            target = (place[0] + reach * cos(away + turn), place[1] + reach * sin(away + turn))
+            if allowed_target(frame, me, target, goalkeeper=self.goalkeeper) == target:
+                return target
+        return (0.0, 0.0)
