@@ -40,6 +40,21 @@ class BallModel(BaseModel):
             return inf
         return (speed - rolling) / slide + (rolling - sqrt(at_end)) / roll
 
+    def way_in(self, time: float, speed: float, rolling: float | None = None) -> float:
+        """Way [m] within ``time`` [s] of a ball seen at ``speed`` [m/s].
+
+        Args:
+            rolling: speed from which on it rolls [m/s]; None when it rolls already.
+        """
+        way = 0.0
+        if rolling is not None and rolling < speed:
+            sliding = min(time, (speed - rolling) / self.slide_deceleration)
+            way = (speed - 0.5 * self.slide_deceleration * sliding) * sliding
+            speed -= self.slide_deceleration * sliding
+            time -= sliding
+        rolled = min(time, speed / self.roll_deceleration)
+        return way + (speed - 0.5 * self.roll_deceleration * rolled) * rolled
+
     def speed_at(self, distance: float, speed: float) -> float:
         """Speed [m/s] after ``distance`` [m] of a ball kicked at ``speed`` [m/s]; 0 where it has stopped."""
         if distance <= 0.0:

@@ -1,0 +1,169 @@
+"""Get to the ball so that it can be picked up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import atan2, cos, hypot, radians, sin
+from typing import ClassVar, Literal
+
+from robobt.skills.ball_model import DEFAULT_BALL
+from robobt.skills.base import Skill, skill
+from robobt.skills.pace import Pace
+from robobt.skills.path_planner import allowed_target, travel
+from robobt.skills.pick_up_ball import LOST_DISTANCE
+from robobt.skills.pilot import travel_time
+from robobt.skills.possession import has_ball
+from robobt.skills.store import Store
+from robobt.tree import Registry, Status
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point, direction, distance, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+
+HANDOVER_DISTANCE = 0.2
+"""Distance to the ball's centre at which the approach ends [m]. Source: the paper's Go-To-Ball."""
+
+_FACING = radians(30.0)
+_FACING_STILL = radians(60.0)
+_CLOSE = 0.16
+"""How far from the ball's centre the approach aims [m]: the planner's ball detour is just narrower."""
+_ARRIVAL_SPEED = 0.5
+"""Speed at the end of the approach [m/s], kept by the pick-up."""
+_REACHABLE = 0.03
+_ROUND = radians(30.0)
+_TURN_DISTANCE = 1.0
+_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+
+Policy = Callable[[Store, Point, float | None, RobotLimits], RobotCommand]
+"""What decides an approach.
+
+It is given the store, the point where the ball can be met [m], the direction in
+which to come to it [rad] or None for any, and the limits to drive with.
+"""
+
+POLICIES: Registry[Policy] = Registry("go-to-ball policy")
+"""Every way to get to the ball by its name."""
+
+
+@skill
+class GoToBall(Skill):
+    """Approach the ball until it is within 0.2 m and ahead; then :class:`PickUpBall` takes over.
+
+    A moving ball is met where it will be. Once handed over, the skill goes on
+    succeeding until the ball is 0.3 m away or more than 60 degrees off the
+    heading, so that approach and pick-up do not take turns.
+
+    Args:
+        policy: what decides the motion, by name: "geometric", or another of ``POLICIES``.
+        approach: "nearest" drives straight at the ball; "behind_target" comes
+            from the side opposite to ``store.shot``, else ``store.target``, else
+            the attacked goal.
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+
+    Raises:
+        ValueError: no policy has that name, or no such approach.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot", "target")
+
+    def __init__(
+        self,
+        *,
+        policy: str = "geometric",
+        approach: Literal["nearest", "behind_target"] = "nearest",
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        if policy not in POLICIES:
+            raise ValueError(f"no go-to-ball policy is called {policy!r}; there are {', '.join(POLICIES)}")
+        if approach not in ("nearest", "behind_target"):
+            raise ValueError(f"approach must be 'nearest' or 'behind_target', not {approach!r}")
+        self.policy = policy
+        self.approach = approach
+        self.pace = Pace(limits, speed)
+        self._decide = POLICIES[policy]
+        self._handed_over = False
+
+    def on_running(self) -> Status:
+        """Drive one tick."""
+        me, ball = self.me, self.ball
+        limits = self.pace.of(me.limits)
+        meeting = meeting_point(self.frame, me, limits)
+        facing = self._facing(meeting)
+        self.store.command = self._decide(self.store, meeting, facing, limits)
+        self._handed_over = has_ball(me, ball) or self._near(me, ball, facing)
+        return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
+
+    def _near(self, me: RobotState, ball: BallState, facing: float | None) -> bool:
+        within, off = HANDOVER_DISTANCE, _FACING
+        if self._handed_over:
+            within, off = LOST_DISTANCE, _FACING_STILL
+        dx, dy = ball.x - me.x, ball.y - me.y
+        bearing = atan2(dy, dx)
+        return (
+            hypot(dx, dy) <= within
+            and abs(wrap_angle(bearing - me.heading)) <= off
+            and (facing is None or abs(wrap_angle(bearing - facing)) <= off)
+        )
+
+    def _facing(self, meeting: Point) -> float | None:
+        """The direction in which to come to the ball; None for any, as to a ball that lies at a wall."""
+        if self.approach == "nearest":
+            return None
+        store = self.store
+        if store.shot is not None:
+            aim = store.shot.target
+        else:
+            aim = self.frame.field.their_goal if store.target is None else store.target
+        facing = direction(meeting, aim)
+        place = beside(meeting, facing)
+        reachable = distance(allowed_target(self.frame, self.me, place), place) < _REACHABLE
+        return facing if reachable else None
+
+
+@POLICIES.register("geometric")
+def geometric(store: Store, meeting: Point, facing: float | None, limits: RobotLimits) -> RobotCommand:
+    """Drive to the place beside the ball by the planned way, facing it."""
+    frame, me = store.frame, store.me
+    bearing = direction(me.position, meeting)
+    heading = direction(me.position, frame.ball.position)
+    if facing is None:
+        place = beside(meeting, bearing)
+        return travel(frame, me, place, heading, limits, final_speed=_ARRIVAL_SPEED)
+    round_it = abs(wrap_angle(bearing - facing)) > _ROUND
+    if distance(me.position, meeting) < _TURN_DISTANCE:
+        heading = facing
+    return travel(
+        frame,
+        me,
+        beside(meeting, facing),
+        heading,
+        limits,
+        avoid_ball=round_it,
+        final_speed=0.0 if round_it else _ARRIVAL_SPEED,
+    )
+
+
+def beside(ball: Point, facing: float) -> Point:
+    """Where a robot stands that looks at ``ball`` along ``facing`` [rad], before it takes it [m]."""
+    return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))
+
+
+def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
+    """Where the ball will be when the robot gets there, as if it rolled [m]."""
+    ball = frame.ball
+    speed = ball.speed
+    if speed < 0.05:
+        return ball.position
+    ux, uy = ball.vx / speed, ball.vy / speed
+    x, y = ball.position
+    for _ in range(2):
+        dx, dy = x - me.x, y - me.y
+        gap = hypot(dx, dy)
+        towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
+        way = DEFAULT_BALL.way_in(travel_time(max(0.0, gap - _TOUCHING), towards, limits), speed)
+        x, y = ball.x + ux * way, ball.y + uy * way
+    return (x, y)
