@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import atan2, cos, hypot, radians, sin
 from typing import ClassVar, Literal
 
@@ -34,12 +35,26 @@ _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 
-Policy = Callable[[Store, Point, float | None, RobotLimits], RobotCommand]
-"""What decides an approach.
 
-It is given the store, the point where the ball can be met [m], the direction in
-which to come to it [rad] or None for any, and the limits to drive with.
-"""
+@dataclass(slots=True, frozen=True)
+class Approach:
+    """What an approach is asked for.
+
+    Attributes:
+        meeting: where the ball can be met [m].
+        facing: direction in which to come to it [rad]; None for any.
+        limits: how to drive.
+        goalkeeper: may enter the own defence area.
+    """
+
+    meeting: Point
+    facing: float | None
+    limits: RobotLimits
+    goalkeeper: bool
+
+
+Policy = Callable[[Store, Approach], RobotCommand]
+"""What decides an approach, tick by tick."""
 
 POLICIES: Registry[Policy] = Registry("go-to-ball policy")
 """Every way to get to the ball by its name."""
@@ -60,6 +75,7 @@ class GoToBall(Skill):
             the attacked goal.
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
+        goalkeeper: may enter the own defence area.
 
     Raises:
         ValueError: no policy has that name, or no such approach.
@@ -74,6 +90,7 @@ class GoToBall(Skill):
         approach: Literal["nearest", "behind_target"] = "nearest",
         limits: RobotLimits | None = None,
         speed: float = 1.0,
+        goalkeeper: bool = False,
         name: str = "",
     ) -> None:
         super().__init__(name)
@@ -83,6 +100,7 @@ class GoToBall(Skill):
             raise ValueError(f"approach must be 'nearest' or 'behind_target', not {approach!r}")
         self.policy = policy
         self.approach = approach
+        self.goalkeeper = goalkeeper
         self.pace = Pace(limits, speed)
         self._decide = POLICIES[policy]
         self._handed_over = False
@@ -93,7 +111,7 @@ class GoToBall(Skill):
         limits = self.pace.of(me.limits)
         meeting = meeting_point(self.frame, me, limits)
         facing = self._facing(meeting)
-        self.store.command = self._decide(self.store, meeting, facing, limits)
+        self.store.command = self._decide(self.store, Approach(meeting, facing, limits, self.goalkeeper))
         self._handed_over = has_ball(me, ball) or self._near(me, ball, facing)
         return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
 
@@ -120,29 +138,28 @@ class GoToBall(Skill):
             aim = self.frame.field.their_goal if store.target is None else store.target
         facing = direction(meeting, aim)
         place = beside(meeting, facing)
-        reachable = distance(allowed_target(self.frame, self.me, place), place) < _REACHABLE
-        return facing if reachable else None
+        allowed = allowed_target(self.frame, self.me, place, goalkeeper=self.goalkeeper)
+        return facing if distance(allowed, place) < _REACHABLE else None
 
 
 @POLICIES.register("geometric")
-def geometric(store: Store, meeting: Point, facing: float | None, limits: RobotLimits) -> RobotCommand:
+def geometric(store: Store, wanted: Approach) -> RobotCommand:
     """Drive to the place beside the ball by the planned way, facing it."""
     frame, me = store.frame, store.me
+    meeting, facing = wanted.meeting, wanted.facing
     bearing = direction(me.position, meeting)
     heading = direction(me.position, frame.ball.position)
-    if facing is None:
-        place = beside(meeting, bearing)
-        return travel(frame, me, place, heading, limits, final_speed=_ARRIVAL_SPEED)
-    round_it = abs(wrap_angle(bearing - facing)) > _ROUND
-    if distance(me.position, meeting) < _TURN_DISTANCE:
+    round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
+    if facing is not None and distance(me.position, meeting) < _TURN_DISTANCE:
         heading = facing
     return travel(
         frame,
         me,
-        beside(meeting, facing),
+        beside(meeting, bearing if facing is None else facing),
         heading,
-        limits,
+        wanted.limits,
         avoid_ball=round_it,
+        goalkeeper=wanted.goalkeeper,
         final_speed=0.0 if round_it else _ARRIVAL_SPEED,
     )
 
