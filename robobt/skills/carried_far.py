@@ -1,0 +1,43 @@
+"""Condition: this robot has carried the ball nearly as far as the rules allow."""
+
+from __future__ import annotations
+
+from math import hypot, inf
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.geometry import Point
+
+
+@skill
+class CarriedFar(Skill):
+    """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
+
+    The way is as the crow flies from where it got the ball, as referees measure
+    it: they allow 1 m. To be ticked every tick; after a pause it counts anew.
+
+    Args:
+        limit: [m].
+    """
+
+    def __init__(self, *, limit: float = 0.8, name: str = "") -> None:
+        super().__init__(name)
+        self.limit = limit
+        self._start: Point | None = None
+        self._seen = -inf
+
+    def on_running(self) -> Status:
+        """Measure."""
+        frame, ball = self.frame, self.ball
+        paused = not 0.0 <= frame.time - self._seen < 2.5 * frame.period
+        self._seen = frame.time
+        if not has_ball(self.me, ball):
+            self._start = None
+            return self.fail("it has no ball")
+        if self._start is None or paused:
+            self._start = ball.position
+        way = hypot(ball.x - self._start[0], ball.y - self._start[1])
+        if way < self.limit:
+            return self.fail(f"{way:.2f} m")
+        return self.succeed(f"{way:.2f} m")
