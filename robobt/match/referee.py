@@ -271,7 +271,6 @@ class Referee:
         if not self._ball_lies(frame):
             if self._spot_free(frame) or elapsed > settings.placement_delay + _SPOT_PATIENCE:
                 self._place = self._next.spot
-                self._touches.forget()
             return
         if elapsed < settings.stop_time:
             return
@@ -327,12 +326,12 @@ class Referee:
     def _say(self, game: GameState, time: float) -> None:
         self.game = game
         self._since = time
+        self._noted.clear()
 
     def _stop(self, frame: Frame, resumption: _Resumption) -> None:
         """STOP, and play goes on with ``resumption``."""
         self._next = resumption
         self._kicker = None
-        self._noted.clear()
         self._say(
             replace(
                 self.game,
@@ -348,7 +347,6 @@ class Referee:
     def _prepare(self, frame: Frame, restart: Restart, team: Team) -> None:
         """Everybody takes position for a kick-off or a penalty kick."""
         commands = _PREPARE_KICKOFF if restart is Restart.KICKOFF else _PREPARE_PENALTY
-        self._noted.clear()
         self._say(
             replace(
                 self.game,
@@ -363,7 +361,6 @@ class Referee:
 
     def _allow(self, frame: Frame, command: RefereeCommand) -> None:
         """The restart may be taken now."""
-        self._noted.clear()
         self._say(
             replace(
                 self.game,
@@ -376,7 +373,6 @@ class Referee:
 
     def _play(self, frame: Frame, command: RefereeCommand) -> None:
         """The ball is free for both teams."""
-        self._noted.clear()
         self._crashing.clear()
         self._rest_point, self._rest_since = frame.ball.position, frame.time
         self._area_since = None

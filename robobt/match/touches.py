@@ -54,11 +54,6 @@ class Touches:
             self.last = told
         self._follow_carrier(ball.position, carrier)
 
-    def forget(self) -> None:
-        """Start anew where the ball has been put down by hand."""
-        self.carrier = None
-        self.carried = 0.0
-
     def _follow_carrier(self, ball: Point, carrier: RobotState | None) -> None:
         if carrier is not None and self.last == self.carrier:
             gap = hypot(carrier.x - ball[0], carrier.y - ball[1]) - ROBOT_RADIUS - BALL_RADIUS

@@ -112,6 +112,12 @@ def approx(point: tuple[float, float]) -> object:
     return pytest.approx(point, abs=1e-9)
 
 
+def test_a_match_can_begin_with_the_ball_in_play(us: Team) -> None:
+    story = Story(us).tick()
+    assert (story.game.command, story.game.stage) == (RefereeCommand.FORCE_START, Stage.NORMAL_FIRST_HALF)
+    assert story.game.in_play
+
+
 # Goals.
 
 
@@ -188,6 +194,11 @@ def test_a_ball_fully_over_the_touch_line_gives_the_others_a_free_kick_there(sto
 def test_a_ball_that_still_overlaps_the_touch_line_is_in(story: Story) -> None:
     story.touch(1).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + BALL_RADIUS - 0.001)
     assert story.events == []
+
+
+def test_a_ball_over_the_touch_line_beside_the_corner_is_no_goal_kick(story: Story) -> None:
+    story.touch(1).roll(GOAL_LINE - 0.01, TOUCH_LINE - 0.05).roll(GOAL_LINE, TOUCH_LINE + 0.05)
+    assert story.game.placement == approx((GOAL_LINE - 0.2, TOUCH_LINE - 0.2))
 
 
 def test_a_ball_out_that_nobody_touched_is_free_for_both(story: Story) -> None:
@@ -355,6 +366,19 @@ def test_a_kick_is_no_double_touch_while_the_ball_leaves_the_mouth(story: Story)
     assert EventKind.DOUBLE_TOUCH not in story.kinds
 
 
+def test_a_ball_kicked_straight_out_in_one_frame_is_out(story: Story) -> None:
+    throw_in(story).touch(1).roll(SPOT[0], TOUCH_LINE + 0.05)
+    assert story.events[-1] == (EventKind.BALL_OUT, story.us)
+    assert story.game.restart_team is story.them
+
+
+def test_the_second_touch_can_be_allowed(us: Team) -> None:
+    story = throw_in(Story(us, OPEN.model_copy(update={"double_touch": False})).tick())
+    story.touch(1).roll(0.5, 2.0).roll(0.4, 2.0)
+    story.ours(1, 0.4 - ROBOT_RADIUS - BALL_RADIUS, 2.0, heading=3.0).tick()
+    assert EventKind.DOUBLE_TOUCH not in story.kinds
+
+
 # Kick-off.
 
 
@@ -454,6 +478,10 @@ def test_a_ball_kicked_too_fast_is_noted_once_and_play_goes_on(story: Story) -> 
     assert story.game.in_play
 
 
+def test_the_speed_counts_in_every_direction(story: Story) -> None:
+    assert story.touch(1).roll(0.1, 0.0, 4.0, -5.4).kinds == [EventKind.BALL_SPEED]
+
+
 def test_a_kick_at_the_limit_is_fair(story: Story) -> None:
     assert story.touch(1).roll(0.1, 0.0, 3.9, 5.2).events == []
 
@@ -476,6 +504,17 @@ def test_the_keeper_may_touch_in_its_own_area(story: Story) -> None:
     x = -GOAL_LINE + 0.5
     story.ours(0, x, 0.3).touch(0).roll(x + 0.098, 0.3)
     assert story.events == []
+
+
+def test_the_keeper_is_the_robot_the_settings_name(us: Team) -> None:
+    settings = OPEN.model_copy(update={f"{us.value}_keeper": 3, f"{us.other.value}_keeper": 4})
+    story = Story(us, settings).tick()
+    story.ours(3, -GOAL_LINE + 0.5, 0.3).touch(3).roll(-GOAL_LINE + 0.598, 0.3)
+    assert story.events == []
+    story.theirs(4, GOAL_LINE - 0.5, 0.3).touch(4, story.them).roll(GOAL_LINE - 0.402, 0.3)
+    assert story.events == []
+    story.ours(0, -GOAL_LINE + 0.5, -0.3).touch(0).roll(-GOAL_LINE + 0.598, -0.3)
+    assert story.kinds == [EventKind.OWN_AREA_TOUCH]
 
 
 def test_an_attacker_that_touches_partly_inside_their_area_fouls_without_stopping_play(story: Story) -> None:
@@ -524,7 +563,7 @@ def test_a_ball_that_creeps_on_makes_progress(story: Story) -> None:
 
 def test_the_ball_may_not_stay_in_a_defence_area(us: Team) -> None:
     story = Story(us, OPEN.model_copy(update={"keeper_hold_time": 3.0})).tick()
-    story.touch(0).roll(-4.0, 0.5).wait(2.9)
+    story.wait(2.0).touch(0).roll(-4.0, 0.5).wait(2.9)
     assert story.events == []
     story.wait(0.2)
     assert story.events == [(EventKind.KEEPER_HELD, us)]
@@ -540,6 +579,14 @@ def test_checks_can_be_switched_off(us: Team) -> None:
     story.theirs(1, -3.82, 0.0).touch(3).roll(-3.9, 0.0, 9.0)
     story.ours(3, 4.0, 0.0, ball_contact=True).roll(4.097, 0.0)
     assert story.events == []
+
+
+def test_a_new_crash_is_noted_after_a_restart(us: Team) -> None:
+    story = Story(us, OPEN.model_copy(update={"stop_time": 0.0, "kick_timeout": 0.5})).tick()
+    story.ours(1, 0.0, 1.0, vx=1.6).theirs(1, 0.18, 1.0).tick()
+    story.touch(3).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(2.0)
+    assert story.game.in_play
+    assert story.events.count((EventKind.CRASH, us)) == 2
 
 
 # STOP.
@@ -600,6 +647,19 @@ def test_the_other_team_kicks_off_the_second_half_and_the_match_ends(us: Team) -
     assert (story.game.command, story.game.stage) == (RefereeCommand.HALT, Stage.POST_GAME)
     story.wait(1.0)
     assert story.game.halted
+
+
+def test_a_goal_at_the_end_of_a_half_still_counts(us: Team) -> None:
+    settings = OPEN.model_copy(update={"half_length": 1.0})
+    story = Story(us, settings).tick().touch(1).roll(4.4, 0.0).wait(0.94).roll(GOAL_LINE + 0.05, 0.0)
+    story.wait(0.1)
+    assert story.score == (1, 0)
+    assert story.game.stage is not Stage.NORMAL_HALF_TIME
+    late = Story(us, OPEN.model_copy(update={"half_length": 1.0})).tick().touch(1).roll(4.4, 0.0)
+    late.time = 1.0
+    late.roll(GOAL_LINE + 0.05, 0.0)
+    assert late.score == (1, 0)
+    assert late.game.stage is Stage.NORMAL_HALF_TIME
 
 
 def test_the_same_frames_give_the_same_decisions(us: Team) -> None:
