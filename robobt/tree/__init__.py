@@ -8,6 +8,7 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, Repeat, Retry, SuccessIsFailure
 
+from robobt.tree.engine import FastTree, compile_tree
 from robobt.tree.leaf import Leaf, bind
 from robobt.tree.registry import Registry
 from robobt.tree.runner import TreeRunner, node_path, preorder
@@ -15,6 +16,7 @@ from robobt.tree.runner import TreeRunner, node_path, preorder
 __all__ = [
     "Behaviour",
     "FailureIsSuccess",
+    "FastTree",
     "Inverter",
     "Leaf",
     "OneShot",
@@ -28,6 +30,7 @@ __all__ = [
     "SuccessIsFailure",
     "TreeRunner",
     "bind",
+    "compile_tree",
     "node_path",
     "preorder",
 ]

@@ -7,6 +7,7 @@ import logging
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from robobt.tree.engine import compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -37,13 +38,13 @@ class TreeRunner:
         self.error: str | None = None
         self.nodes = preorder(root)
         bind(root, store)
+        self._tick = compile_tree(root)
 
     def tick(self) -> Status:
         """Tick the tree once; INVALID when a node raised."""
         self.error = None
         try:
-            for _ in self.root.tick():
-                pass
+            self._tick()
         except Exception as error:
             self.error = f"{self._raiser(error)}: {type(error).__name__}: {error}"
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
@@ -62,7 +63,8 @@ class TreeRunner:
         trace = error.__traceback__
         path = node_path(self.root)
         while trace is not None:
-            candidate = trace.tb_frame.f_locals.get("self")
+            local = trace.tb_frame.f_locals
+            candidate = local.get("self", local.get("node"))
             if isinstance(candidate, Behaviour):
                 path = node_path(candidate)
             trace = trace.tb_next

@@ -1,0 +1,194 @@
+"""The compiled tick does to a tree exactly what py_trees' own tick does."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import py_trees
+import pytest
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Selector, Sequence
+from py_trees.trees import BehaviourTree
+from py_trees.visitors import SnapshotVisitor
+
+from robobt.tree import engine
+from robobt.tree.engine import FastTree, compile_tree
+from tests.tree.random_trees import Log, Told, random_tree
+
+S, F, R, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
+
+
+@pytest.fixture(autouse=True)
+def _quiet_and_clean(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.setattr("py_trees.decorators.time.monotonic", lambda: 1000.0)
+    monkeypatch.setattr("py_trees.logging.Logger.error", lambda *_: None)
+    yield
+    py_trees.blackboard.Blackboard.clear()
+
+
+def state(root: Behaviour) -> list[Any]:
+    """Everything that can be seen of a tree after a tick."""
+    tip = root.tip()
+    nodes = [
+        (
+            node.name,
+            node.status,
+            node.feedback_message,
+            getattr(getattr(node, "current_child", None), "name", None),
+        )
+        for node in root.iterate()
+    ]
+    return [tip.name if tip is not None else None, *nodes]
+
+
+def first_difference(seed: int, ticks: int) -> str | None:
+    """Tick two copies of a random tree, one by each engine; where they first differ."""
+    rng = random.Random(seed)
+    recipe = random_tree(rng, "n")
+    logs: list[Log] = [[], []]
+    stock, compiled = recipe(logs[0], f"a{seed}"), recipe(logs[1], f"b{seed}")
+    visits: list[Log] = [[], []]
+    tick = compile_tree(compiled, lambda node: visits[1].append((node.name, node.status)))
+    for count in range(ticks):
+        for node in stock.tick():
+            visits[0].append((node.name, node.status))
+        tick()
+        if rng.random() < 0.05:
+            stock.stop(INVALID)
+            compiled.stop(INVALID)
+        pairs = [("visits", visits), ("calls", logs), ("states", [state(stock), state(compiled)])]
+        for what, (expected, found) in pairs:
+            if expected != found:
+                return f"seed {seed}, tick {count}, {what}: {expected} != {found}"
+        for told in (*visits, *logs):
+            told.clear()
+    return None
+
+
+@pytest.mark.parametrize("block", range(8))
+def test_random_trees_live_the_same_life(block: int) -> None:
+    """200 000 ticks over all blocks: 8 x 1000 trees x 25 ticks."""
+    for seed in range(1000 * block, 1000 * (block + 1)):
+        difference = first_difference(seed, 25)
+        assert difference is None, difference
+
+
+FAULTS = {
+    "a restarted sequence does not reset its children": (
+        "_sequence",
+        "if child.status is not _I:\n                    stop_child(_I)\n            if init",
+        "if False:\n                    stop_child(_I)\n            if init",
+    ),
+    "a reactive sequence leaves later siblings running": ("_sequence", "if not node.memory:", "if False:"),
+    "a selector does not interrupt lower priorities": ("_selector", "if previous is not child:", "if False:"),
+    "a selector forgets its place": ("_selector", "if node.memory and children:", "if False:"),
+    "a parallel leaves children running": ("_parallel", "if child.status is _R:", "if False:"),
+    "a parallel ignores synchronise": (
+        "_parallel",
+        "if not (synchronise and child.status is _S):",
+        "if True:",
+    ),
+    "a decorator does not stop its child": ("_decorator", "if decorated.status is _R:", "if False:"),
+    "a leaf is not terminated": ("_leaf", "if terminate is not None and status is not _R:", "if False:"),
+    "a leaf is initialised at every tick": (
+        "_leaf",
+        "if initialise is not None and node.status is not _R:",
+        "if initialise is not None:",
+    ),
+    "a guard is not checked": ("_eternal_guard", "if result:", "if True:"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    import inspect
+
+    function, old, new = FAULTS[fault]
+    source = inspect.getsource(getattr(engine, function))
+    assert source.count(old) >= 1
+    scope = dict(vars(engine))
+    exec(source.replace(old, new), scope)
+    known = [
+        (tick, stop, scope[function] if make.__name__ == function else make)
+        for tick, stop, make in engine._KNOWN
+    ]
+    monkeypatch.setattr(engine, "_KNOWN", known)
+    if function in ("_decorator",):
+        monkeypatch.setattr(engine, function, scope[function])
+    assert any(first_difference(seed, 25) is not None for seed in range(300))
+
+
+def test_children_may_come_and_go_between_ticks() -> None:
+    logs: list[Log] = [[], []]
+    roots = [Selector("root", memory=False, children=[Told("a", [F], log)]) for log in logs]
+    tick = compile_tree(roots[1])
+
+    def both() -> None:
+        roots[0].tick_once()
+        tick()
+        assert logs[0] == logs[1]
+        assert state(roots[0]) == state(roots[1])
+
+    both()
+    for root, log in zip(roots, logs, strict=True):
+        root.add_child(Told("b", [R], log))
+    both()
+    for root, log in zip(roots, logs, strict=True):
+        root.prepend_child(Told("c", [R, F], log))
+    both()
+    both()
+    for root in roots:
+        root.remove_child(root.children[0])
+    both()
+
+
+def test_visitors_handlers_and_count_work_as_in_py_trees() -> None:
+    def build(kind: type[BehaviourTree]) -> tuple[BehaviourTree, SnapshotVisitor, list[str]]:
+        log: Log = []
+        root = Selector(
+            "root",
+            memory=False,
+            children=[
+                Sequence("s", memory=False, children=[Told("a", [S], log), Told("b", [F, R], log)]),
+                Told("c", [R], log),
+            ],
+        )
+        tree, seen, calls = kind(root), SnapshotVisitor(), []
+        tree.visitors.append(seen)
+        tree.add_pre_tick_handler(lambda _: calls.append("pre"))
+        tree.add_post_tick_handler(lambda _: calls.append("post"))
+        return tree, seen, calls
+
+    (stock, stock_seen, stock_calls), (fast, fast_seen, fast_calls) = build(BehaviourTree), build(FastTree)
+    for _ in range(4):
+        stock.tick()
+        fast.tick()
+        names = [{node.id: node.name for node in tree.root.iterate()} for tree in (stock, fast)]
+        seen = [
+            {names[i][key]: status for key, status in visitor.visited.items()}
+            for i, visitor in enumerate((stock_seen, fast_seen))
+        ]
+        assert seen[0] == seen[1]
+        assert py_trees.display.unicode_tree(fast.root, show_status=True) == py_trees.display.unicode_tree(
+            stock.root, show_status=True
+        )
+    assert stock_calls == fast_calls
+    assert stock.count == fast.count == 4
+
+
+def test_an_interrupted_tree_stops_tick_tocking() -> None:
+    tree = FastTree(Told("a", [R], []))
+    tree.add_post_tick_handler(lambda t: t.interrupt() if t.count >= 2 else None)
+    tree.tick_tock(period_ms=1, number_of_iterations=50)
+    assert tree.count == 3
+
+
+def test_an_exception_comes_through_as_it_is() -> None:
+    class Bad(Behaviour):
+        def update(self) -> Status:
+            raise KeyError("x")
+
+    with pytest.raises(KeyError):
+        compile_tree(Sequence("s", memory=False, children=[Bad("bad")]))()
