@@ -300,7 +300,7 @@ def tree(
     """Show the tree of a play."""
     from robobt.match.parameters import ParameterError, check_parameters
     from robobt.plays import PLAYS
-    from robobt.tree.drawing import to_dot, to_svg, to_text
+    from robobt.tree.drawing import tree_dot, tree_svg, tree_text
 
     if play not in PLAYS:
         raise _unknown("play", play, PLAYS)
@@ -308,12 +308,12 @@ def tree(
         root = PLAYS[play](**check_parameters(play, PLAYS[play], _parse_parameters(param or [])))
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
-    for path, draw in ((svg, to_svg), (dot, to_dot)):
+    for path, draw in ((svg, tree_svg), (dot, tree_dot)):
         if path is not None:
             path.write_text(draw(root), encoding="utf-8")
             _say(f"Tree: {path}")
     if svg is None and dot is None:
-        _say(to_text(root))
+        _say(tree_text(root))
 
 
 @bench.command("sim")

@@ -12,8 +12,8 @@ from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
-_SURELY_KICKED = 2.0
-"""A ball that leaves the mouth this fast was kicked, however hard a kick was asked for [m/s]."""
+_KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
+"""A ball was kicked that leaves its robot with this share of the speed asked for, or this fast [m/s]."""
 
 
 @dataclass(slots=True)
@@ -82,7 +82,7 @@ class Measures:
         away = _leaving(robot, truth.ball)
         before = self._outgoing.get(identity, 0.0)
         self._outgoing[identity] = away
-        enough = min(0.5 * speed, _SURELY_KICKED)
+        enough = min(_KICKED_SHARE * speed, _SURELY_KICKED)
         if away < enough or before >= enough or truth.last_touch not in (None, identity):
             return
         reach = 0.15 + (away + robot.speed) * truth.period

@@ -105,7 +105,7 @@ def _convert(parameter: Parameter, value: Any) -> Any:
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
         place = ".".join([parameter.name, *[str(part) for part in problem["loc"]]])
-        raise ParameterError(place, f"{problem['msg']}, not {say_value(value)}") from error
+        raise ParameterError(place, f"{problem['msg']}, not {say_value(problem['input'])}") from error
 
 
 _FINITE = ConfigDict(allow_inf_nan=False)

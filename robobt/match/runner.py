@@ -22,6 +22,8 @@ from robobt.match.loop import WorldFactory, play_match
 from robobt.match.results import MatchResult
 from robobt.match.results_file import ResultsFile
 from robobt.match.scenario import MAX_TRIALS, Scenario, ScenarioError
+from robobt.plays import PLAYS
+from robobt.plays.base import Play
 
 MAX_WORKERS = 256
 """Most worker processes of a run."""
@@ -92,7 +94,13 @@ def run_trials(
     for trial in record:
         if not 0 <= trial < trials:
             raise ValueError(f"there is no trial {trial} to record; they are 0 to {trials - 1}")
-    job = _Job(scenario, world_factory, seed, {trial: Path(path) for trial, path in record.items()})
+    job = _Job(
+        scenario,
+        world_factory,
+        seed,
+        {trial: Path(path) for trial, path in record.items()},
+        tuple({PLAYS[setup.play] for _, setup in scenario.robots}),
+    )
     file = None if out is None else ResultsFile(out, scenario, seed)
     results: dict[int, MatchResult] = {}
     interrupted = False
@@ -121,12 +129,17 @@ def run_trials(
 
 @dataclass(slots=True, frozen=True)
 class _Job:
-    """What a worker needs to play any of the trials."""
+    """What a worker needs to play any of the trials.
+
+    The plays are there because they are sent by name: a worker that receives
+    them has imported the modules that register them.
+    """
 
     scenario: Scenario
     world_factory: WorldFactory
     seed: int
     record: Mapping[int, Path]
+    plays: tuple[Play, ...]
 
     def play(self, trial: int) -> MatchResult:
         try:

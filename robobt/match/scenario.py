@@ -469,7 +469,7 @@ def _first_problem(error: ValidationError, data: object) -> tuple[str, str]:
     problem = problems[0]
     place = _real_place(problem["loc"], data)
     cause = problem.get("ctx", {}).get("error")
-    message = problem["msg"]
+    message = problem["msg"].replace("valid array", "list").replace("an object", "a mapping")
     if isinstance(cause, Exception):
         message = _message(cause)
         if isinstance(cause, _FieldError):

@@ -1,0 +1,222 @@
+from pathlib import Path
+from typing import Any, ClassVar
+
+import pytest
+
+from robobt.match import Match, MatchResult, play_match
+from robobt.match.recording import load_recording
+from robobt.match.scenario import Scenario, scenario_from
+from robobt.world import RobotCommand, RobotId, Team
+from robobt.worlds import sim_world
+from tests.match.scripted import PlainWorld, data
+
+BLUE_0, YELLOW_0 = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 0)
+
+
+def robot(number: int = 0, x: float = -2.0, y: float = 0.0, **params: Any) -> dict[str, Any]:
+    return {
+        "number": number,
+        "play": "scripted",
+        "params": params,
+        "start": {"position": [x, y], "heading": "towards goal"},
+    }
+
+
+def scenario(**changes: Any) -> Scenario:
+    return scenario_from(data(**changes), "test.yaml")
+
+
+def play(seed: int = 1, **changes: Any) -> MatchResult:
+    return play_match(scenario(**changes), seed, PlainWorld)
+
+
+def test_a_robot_that_reaches_the_ball_and_kicks_it_scores():
+    result = play()
+    assert result.outcome == "goal_blue"
+    assert (result.blue_score, result.yellow_score) == (1, 0)
+    figures = result.robots["blue 0"]
+    # 1.9 m at 1 m/s and up to a tenth more, then one tick until the ball has left.
+    assert figures.go_to_ball == pytest.approx(1.9 / 1.05, rel=0.05)
+    assert figures.shoot == pytest.approx(0.02)
+    assert figures.total == pytest.approx(figures.go_to_ball + 0.02)
+    assert (figures.kicks, figures.errors) == (1, 0)
+
+
+def test_yellow_attacks_the_other_goal():
+    result = play(robots={"yellow": [robot(kick=4.0)]})
+    assert (result.outcome, result.yellow_score) == ("goal_yellow", 1)
+
+
+def test_each_team_is_shown_the_field_from_its_own_side():
+    both = scenario(robots={"blue": [robot()], "yellow": [robot()]}, ball={"position": [0.0, 1.0]})
+    match = Match(both, 1, PlainWorld)
+    match.tick()
+    blue, yellow = [player.store for player in match.players]
+    assert (blue.frame.team, yellow.frame.team) == (Team.BLUE, Team.YELLOW)
+    assert (blue.me.x, yellow.me.x) == (-2.0, -2.0)
+    assert (blue.frame.ball.y, yellow.frame.ball.y) == (1.0, -1.0)
+    assert blue.frame.opponents[0].x == yellow.frame.opponents[0].x == 2.0
+
+
+def test_team_mates_share_a_store_and_opponents_do_not():
+    match = Match(scenario(robots={"blue": [robot(), robot(1, y=1.0)], "yellow": [robot()]}), 1, PlainWorld)
+    first, second, other = [player.store.team for player in match.players]
+    assert first is second
+    assert first is not other
+
+
+def test_every_tick_observes_and_acts_once():
+    match = Match(scenario(), 1, PlainWorld)
+    for _ in range(5):
+        match.tick()
+    assert isinstance(match.world, PlainWorld)
+    assert [list(commands) for commands in match.world.acts] == [[BLUE_0]] * 5
+    assert match.measures.ticks == 5
+
+
+@pytest.mark.parametrize(
+    ("breaks", "said"), [("raise", "RuntimeError: broken on purpose"), ("nan", "command is not finite")]
+)
+def test_a_tree_that_fails_stops_its_robot_and_nobody_else(breaks: str, said: str):
+    broken = robot(1, y=1.0, breaks=breaks)
+    match = Match(scenario(robots={"blue": [robot(kick=4.0), broken]}), 1, PlainWorld)
+    while match.tick():
+        pass
+    result = match.result()
+    assert result.outcome == "goal_blue"
+    assert isinstance(match.world, PlainWorld)
+    assert all(commands[RobotId(Team.BLUE, 1)] == RobotCommand() for commands in match.world.acts)
+    figures = result.robots["blue 1"]
+    assert figures.errors == len(match.world.acts)
+    assert figures.first_error is not None
+    assert said in figures.first_error
+    assert figures.first_error.startswith("Scripted")
+    assert result.robots["blue 0"].errors == 0
+
+
+def test_a_robot_that_is_not_seen_is_not_ticked():
+    class Blind(PlainWorld):
+        def observe(self):
+            frame = self.truth()
+            frame.own = ()
+            return frame
+
+    result = play_match(scenario(robots={"blue": [robot(breaks="raise")]}).lasting(0.2), 1, Blind)
+    assert result.robots["blue 0"].errors == 0
+    assert result.outcome == "time"
+
+
+class TestEnds:
+    def test_the_time_limit(self):
+        result = play(robots={"blue": [robot(speed=0.0)]}, ends={"time_limit": 0.5})
+        assert (result.outcome, result.ticks) == ("time", 26)
+        assert result.time == pytest.approx(0.5)
+
+    @pytest.mark.parametrize(
+        ("ball", "outcome"),
+        [
+            ({"position": [4.0, 0.4], "velocity": [5.0, 0.0]}, "goal_blue"),
+            ({"position": [-4.0, 0.4], "velocity": [-5.0, 0.0]}, "goal_yellow"),
+            ({"position": [4.0, 0.6], "velocity": [5.0, 0.0]}, "out"),
+            ({"position": [0.0, 2.5], "velocity": [0.0, 5.0]}, "out"),
+            # Over the touch line first and past the goal line within the same tick.
+            ({"position": [4.47, 2.97], "velocity": [5.0, 5.0]}, "out"),
+        ],
+    )
+    def test_a_goal_or_the_ball_out(self, ball: dict[str, Any], outcome: str):
+        assert play(ball=ball, robots={"blue": [robot(speed=0.0)]}).outcome == outcome
+
+    def test_what_does_not_end_it_does_not(self):
+        ball = {"position": [4.0, 0.0], "velocity": [5.0, 0.0]}
+        result = play(
+            ball=ball,
+            robots={"blue": [robot(speed=0.0)]},
+            ends={"time_limit": 1.0, "goal": False, "ball_out": False},
+        )
+        assert (result.outcome, result.blue_score) == ("time", 1)
+
+    def test_a_ball_that_a_goalkeeper_has_is_saved(self):
+        keeper = {**robot(speed=0.0), "goalkeeper": True}
+        ends = {"time_limit": 5.0, "held_by_goalkeeper": 0.5}
+        saved = play(robots={"yellow": [keeper]}, ball={"held_by": "yellow 0"}, ends=ends)
+        assert saved.outcome == "saved"
+        assert saved.time == pytest.approx(0.5)
+        nobody = play(robots={"yellow": [robot(speed=0.0)]}, ball={"held_by": "yellow 0"}, ends=ends)
+        assert nobody.outcome == "time"
+
+    def test_a_ball_at_rest_ends_it_only_after_a_kick(self):
+        ends = {"time_limit": 3.0, "ball_at_rest": 0.3}
+        assert play(robots={"blue": [robot(speed=0.0)]}, ends=ends).outcome == "time"
+
+        class Sticky(PlainWorld):
+            """The ball stops a moment after it was kicked."""
+
+            def act(self, commands):
+                super().act(commands)
+                if self.ball[0] > 1.0:
+                    self.ball = (*self.ball[:2], 0.0, 0.0)
+
+        assert play_match(scenario(ends=ends), 1, Sticky).outcome == "rest"
+
+    def test_the_referee_counts_goals_and_restarts_until_the_score_limit(self):
+        ends = {"time_limit": 60.0, "score_limit": 2}
+        quick = {"kickoff_wait": 0.1, "stop_time": 0.1, "placement_delay": 0.1, "double_touch": False}
+        result = play(
+            robots={"blue": [robot(kick=4.0, x=-1.0)]},
+            ball={"position": [0.0, 0.0]},
+            ends=ends,
+            referee={**quick, "opening": "force_start", "aimless_kick": False, "kick_timeout": 0.1},
+        )
+        assert (result.outcome, result.blue_score) == ("score", 2)
+        assert 0.0 < result.in_play < 1.0
+
+    def test_the_referee_ends_the_match(self):
+        result = play(
+            robots={"blue": [robot(speed=0.0)]},
+            referee={"half_length": 1.0, "half_time": 0.1, "kickoff_wait": 0.1, "kick_timeout": 0.1},
+        )
+        assert result.outcome == "full_time"
+
+
+class TestRepeatability:
+    RANDOM: ClassVar = {"ball": {"position": {"center": [0, 0], "radius": 1.0}}}
+
+    def test_one_seed_is_one_match_bit_for_bit(self):
+        first, second = (play_match(scenario(**self.RANDOM), 7, sim_world) for _ in range(2))
+        assert first.trace == second.trace
+        assert {**first.to_json(), "wall_time": 0} == {**second.to_json(), "wall_time": 0}
+
+    def test_another_seed_is_another_match(self):
+        assert play(1, **self.RANDOM).trace != play(2, **self.RANDOM).trace
+
+    def test_the_trace_sees_the_trees_random_numbers(self):
+        assert play(1).trace != play(2).trace
+
+    def test_another_robot_does_not_change_anybody_elses_random_numbers(self):
+        alone = Match(scenario(), 3, PlainWorld)
+        both = Match(scenario(robots={"blue": [robot(1, y=2.0), robot()]}), 3, PlainWorld)
+        assert alone.players[0].store.rng.random() == both.players[1].store.rng.random()
+
+    def test_recording_changes_nothing(self, tmp_path: Path):
+        path = tmp_path / "match.robobt.jsonl.gz"
+        recorded = play_match(scenario(**self.RANDOM), 7, sim_world, path)
+        assert recorded.trace == play_match(scenario(**self.RANDOM), 7, sim_world).trace
+
+    def test_a_recording_holds_every_tick_and_the_end(self, tmp_path: Path):
+        path = tmp_path / "match.robobt.jsonl"
+        result = play_match(scenario(), 7, PlainWorld, path, trial=3)
+        recording = load_recording(path)
+        assert recording.complete
+        assert recording.header.trial == 3
+        assert len(recording.times) == result.ticks
+        assert [event.kind for event in recording.events] == ["kick", "goal"]
+
+
+def test_kicks_are_those_the_simulator_reports():
+    match = Match(scenario(robots={"blue": [robot(kick=1.5)]}), 1, sim_world)
+    told, seen = [], []
+    while match.tick():
+        seen += match.measures.kicked
+        told += match.world.kicks
+    assert seen == told[: len(seen)]
+    assert len(seen) == len(told) > 0

@@ -1,0 +1,173 @@
+import os
+import signal
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.match import MatchResult, Run, RunError, ScenarioError, run_trials
+from robobt.match.recording import load_recording
+from robobt.match.results_file import ResultsFileError
+from robobt.match.runner import trial_seed
+from robobt.match.scenario import Scenario, scenario_from
+from robobt.worlds import sim_world
+from tests.match.scripted import PlainWorld, data
+
+
+def scenario(**changes: Any) -> Scenario:
+    ball = {"position": {"center": [0, 0], "radius": 1.0}}
+    return scenario_from(data(ball=ball, **changes), "test.yaml")
+
+
+def figures(run: Run) -> list[dict[str, Any]]:
+    """All that has to be the same in every run."""
+    return [{**result.to_json(), "wall_time": None} for result in run.results]
+
+
+class RaisingWorld(PlainWorld):
+    def act(self, commands: Any) -> None:
+        raise RuntimeError("the field is on fire")
+
+
+class DyingWorld(PlainWorld):
+    def act(self, commands: Any) -> None:
+        os._exit(3)
+
+
+def test_trials_have_seeds_of_their_own():
+    seeds = {trial_seed(run, trial) for run in range(20) for trial in range(20)}
+    assert len(seeds) == 400
+    assert all(0 <= seed < 2**53 for seed in seeds)
+
+
+def test_the_scenario_says_how_often_and_with_which_seed():
+    run = run_trials(scenario(trials=3, seed=5), PlainWorld)
+    assert [result.seed for result in run.results] == [trial_seed(5, trial) for trial in range(3)]
+    assert not run.interrupted
+
+
+def test_a_trial_does_not_depend_on_the_others():
+    few, many = run_trials(scenario(), PlainWorld, 2), run_trials(scenario(), PlainWorld, 4)
+    assert figures(few) == figures(many)[:2]
+    assert figures(run_trials(scenario(), PlainWorld, 2, seed=1)) != figures(few)
+
+
+def test_a_run_over_worker_processes_is_the_same_run():
+    """Determinism over processes, in the real simulator: traces and figures are identical."""
+    alone = run_trials(scenario(), sim_world, 5)
+    assert figures(run_trials(scenario(), sim_world, 5, workers=2)) == figures(alone)
+
+
+def test_every_result_is_reported_as_it_finishes():
+    seen: list[MatchResult] = []
+    run = run_trials(scenario(), PlainWorld, 4, on_result=seen.append)
+    assert seen == run.results
+
+
+class TestOut:
+    def test_finished_trials_are_not_played_again(self, tmp_path: Path):
+        out = tmp_path / "results.jsonl"
+        first = run_trials(scenario(), PlainWorld, 3, out=out)
+        again = run_trials(scenario(), RaisingWorld, 3, out=out)
+        assert again.results == first.results
+        assert figures(run_trials(scenario(), PlainWorld, 5, out=out)) == figures(
+            run_trials(scenario(), PlainWorld, 5)
+        )
+
+    def test_a_run_that_failed_keeps_what_was_finished(self, tmp_path: Path):
+        out = tmp_path / "results.jsonl"
+        with pytest.raises(RunError):
+            run_trials(scenario(), _fails_at_trial_2, 5, out=out)
+        assert len(out.read_text().splitlines()) == 1 + 2
+
+    def test_results_of_another_seed_are_not_mixed_in(self, tmp_path: Path):
+        out = tmp_path / "results.jsonl"
+        run_trials(scenario(), PlainWorld, 1, out=out)
+        with pytest.raises(ResultsFileError, match="seed"):
+            run_trials(scenario(), PlainWorld, 1, seed=9, out=out)
+
+
+class _FailsAtTrial2(PlainWorld):
+    def reset(self, placement: Any, seed: int) -> None:
+        super().reset(placement, seed)
+        self.placed = placement
+
+    def act(self, commands: Any) -> None:
+        if self.placed == scenario().place(_placement_rng(2)):
+            raise RuntimeError("not this one")
+        super().act(commands)
+
+
+def _placement_rng(trial: int) -> Any:
+    import numpy as np
+
+    return np.random.default_rng(np.random.SeedSequence(trial_seed(0, trial)).spawn(3)[0])
+
+
+_fails_at_trial_2 = _FailsAtTrial2
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+class TestFailures:
+    def test_a_world_that_raises_is_one_clear_error(self, workers: int):
+        with pytest.raises(RunError, match=r"test\.yaml: trial \d: RuntimeError: the field is on fire"):
+            run_trials(scenario(), RaisingWorld, 2, workers)
+
+    def test_a_scenario_that_does_not_fit_the_world_is_its_own_error(self, workers: int):
+        wrong = scenario(simulator={"preset": "nothing"})
+        with pytest.raises(
+            ScenarioError, match=r"test\.yaml: simulator: no simulator preset is called 'nothing'"
+        ):
+            run_trials(wrong, sim_world, 2, workers)
+
+    def test_trials_are_recorded_whoever_plays_them(self, workers: int, tmp_path: Path):
+        path = tmp_path / "second.robobt.jsonl"
+        run_trials(scenario(), PlainWorld, 2, workers, record={1: path})
+        assert load_recording(path).header.trial == 1
+
+
+def test_a_worker_that_dies_is_named_with_its_trial():
+    with pytest.raises(RunError, match=r"a worker process died in trial \d \(exit code 3\)"):
+        run_trials(scenario(), DyingWorld, 2, workers=2)
+
+
+def test_a_world_that_cannot_be_sent_to_workers_is_said_so():
+    with pytest.raises(RunError, match="cannot be sent to worker processes"):
+        run_trials(scenario(), lambda it: PlainWorld(it), 2, workers=2)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_interrupt_keeps_what_is_finished(workers: int):
+    def stop_after_two(result: MatchResult) -> None:
+        if len(seen) == 1:
+            signal.raise_signal(signal.SIGINT)
+        seen.append(result)
+
+    seen: list[MatchResult] = []
+    run = run_trials(scenario(), PlainWorld, 1000, workers, on_result=stop_after_two)
+    assert run.interrupted
+    assert len(run.results) == 2
+
+
+def test_a_run_works_outside_the_main_thread():
+    runs: list[Run] = []
+    thread = threading.Thread(target=lambda: runs.append(run_trials(scenario(), PlainWorld, 2, workers=2)))
+    thread.start()
+    thread.join()
+    assert figures(runs[0]) == figures(run_trials(scenario(), PlainWorld, 2))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"trials": 0}, "trials must be"),
+        ({"trials": 10**9}, "trials must be"),
+        ({"workers": 0}, "workers must be"),
+        ({"workers": 10**6}, "workers must be"),
+        ({"trials": 2, "record": {2: "x"}}, "no trial 2 to record"),
+    ],
+)
+def test_arguments_out_of_range_are_refused(arguments: dict[str, Any], said: str):
+    with pytest.raises(ValueError, match=said):
+        run_trials(scenario(), PlainWorld, **arguments)
