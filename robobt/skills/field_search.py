@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from math import inf
+from typing import ClassVar
 
 from robobt.skills.base import Skill
 from robobt.skills.cadence import Cadence
@@ -24,7 +25,7 @@ class FieldSearch(Skill):
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
-    writes = ("target",)
+    writes: ClassVar[tuple[str, ...]] = ("target",)
 
     def __init__(self, *, spacing: float, every: float, keep: float, name: str) -> None:
         super().__init__(name)

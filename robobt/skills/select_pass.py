@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from robobt.skills.base import Skill, skill
 from robobt.skills.cadence import Cadence
 from robobt.skills.pass_rater import PassRater
@@ -24,8 +26,8 @@ class SelectPass(Skill):
         every: time from one look to the next [s]; in between the choice stands.
     """
 
-    reads = ("pass_",)
-    writes = ("pass_",)
+    reads: ClassVar[tuple[str, ...]] = ("pass_",)
+    writes: ClassVar[tuple[str, ...]] = ("pass_",)
 
     def __init__(
         self,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from robobt.skills.base import Skill, skill
 from robobt.skills.raters import ShotRater, make_rater
 from robobt.skills.store import Shot
@@ -26,8 +28,8 @@ class SelectShot(Skill):
             like ones.
     """
 
-    reads = ("shot",)
-    writes = ("shot",)
+    reads: ClassVar[tuple[str, ...]] = ("shot",)
+    writes: ClassVar[tuple[str, ...]] = ("shot",)
 
     def __init__(
         self,
