@@ -288,10 +288,10 @@ def test_a_stop_lasts_its_time_before_a_free_kick(story: Story) -> None:
 
 
 def test_the_ball_is_not_put_down_into_a_robot(story: Story) -> None:
-    story.touch(3, story.them).ours(1, 1.0, TOUCH_LINE - 0.25)
+    story.touch(3, story.them).ours(1, 1.0 - 0.11, SPOT[1])
     story.roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(1.0)
     assert story.placed is None
-    story.ours(1, 0.0, 0.0).wait(0.1)
+    story.ours(1, 1.0 - 0.14, SPOT[1]).wait(0.1)
     assert story.placed == approx(SPOT)
 
 
@@ -535,6 +535,11 @@ def test_a_fast_robot_that_runs_into_a_slow_one_crashes(story: Story) -> None:
     assert story.game.in_play
 
 
+def test_a_crash_counts_in_every_direction(story: Story) -> None:
+    story.ours(1, 0.0, 1.0, vx=-0.2, vy=0.0).theirs(1, -0.12, 1.12, vx=1.2, vy=-1.2).tick()
+    assert story.events == [(EventKind.CRASH, story.them)]
+
+
 def test_both_are_at_fault_when_they_meet_at_like_speeds(story: Story) -> None:
     story.ours(1, 0.0, 1.0, vx=1.0).theirs(1, 0.18, 1.0, vx=-0.9).tick()
     assert {team for _, team in story.events} == {story.us, story.them}
@@ -600,15 +605,31 @@ def test_fast_robots_in_stop_are_noted_after_the_grace_time(us: Team) -> None:
     assert story.events.count((EventKind.STOP_SPEED, us)) == 1
 
 
-def test_robots_too_near_the_ball_in_stop_are_noted(us: Team) -> None:
+@pytest.mark.parametrize(("gap", "near"), [(0.49, True), (0.51, False)])
+def test_robots_too_near_the_ball_in_stop_are_noted(us: Team, gap: float, near: bool) -> None:
     story = Story(us, OPEN.model_copy(update={"stop_time": 4.0})).tick()
-    story.ours(1, 1.0, SPOT[1] - 0.58).ours(2, 1.0 - 0.6, SPOT[1])
+    story.ours(1, 1.0, SPOT[1] - gap - ROBOT_RADIUS)
     story.touch(3, story.them).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(3.0)
-    assert story.events.count((EventKind.STOP_DISTANCE, us)) == 1
+    assert story.events.count((EventKind.STOP_DISTANCE, us)) == (1 if near else 0)
+
+
+def test_robots_at_the_speed_allowed_in_stop_are_not_noted(us: Team) -> None:
+    story = Story(us, OPEN.model_copy(update={"stop_time": 4.0})).tick().ours(1, 0.0, 0.0, vx=1.5)
+    story.touch(3, story.them).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(3.0)
+    assert EventKind.STOP_SPEED not in story.kinds
+
+
+def test_the_limits_of_a_stop_can_be_switched_off(us: Team) -> None:
+    free = {"stop_time": 4.0, "stop_speed": None, "stop_distance": None}
+    story = Story(us, OPEN.model_copy(update=free)).tick().ours(1, 1.0, SPOT[1] - 0.2, vx=3.0)
+    story.touch(3, story.them).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(8.0)
+    assert story.kinds == [EventKind.BALL_OUT]
 
 
 def test_opponents_too_near_a_free_kick_are_noted_and_the_kickers_team_is_not(story: Story) -> None:
-    throw_in(story).ours(1, 1.0, SPOT[1] - 0.2).theirs(2, 1.0, SPOT[1] - 0.5).wait(2.5)
+    throw_in(story).ours(1, 1.0, SPOT[1] - 0.2).theirs(2, 1.0, SPOT[1] - 0.5).wait(1.5)
+    assert EventKind.STOP_DISTANCE not in story.kinds
+    story.wait(1.0)
     assert story.kinds.count(EventKind.STOP_DISTANCE) == 1
     assert story.events[-1] == (EventKind.STOP_DISTANCE, story.them)
 
