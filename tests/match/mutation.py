@@ -1,0 +1,256 @@
+"""Makes broken and odd scenario files out of valid ones, for the fuzz test.
+
+``mutated(rng, texts)`` gives the bytes of one file: some stay valid, some are
+wrong in a field, some are no YAML at all.
+"""
+
+from __future__ import annotations
+
+import copy
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import yaml
+
+NUMBERS: tuple[float, ...] = (
+    0, -1, 1, 2, 0.5, -0.0, 1e-9, 5e-324, 1e308, -1e308, 10**9, 2**53, 2**63, -(2**64), 10**30,
+    float("nan"), float("inf"), float("-inf"),
+)  # fmt: skip
+STRINGS = (
+    "", " ", "x", "ball", "towards ball", "towards goal", "blue 0", "yellow 0", "blue 99", "blue -1",
+    "null", "~", "division_a", "division_b", "grsim", "erforce", "default", "nan", "1e5", "0x10", "[]",
+    "{}", "&a", "*a", "!!int", "é", "球", "🤖", "\u202e", "\x00", "\x07", "\ud7ff", "a\nb", "a: b", "'", '"',
+    "#", "../../etc/passwd", "x" * 5000,
+)  # fmt: skip
+FRAGMENTS = (
+    b"\x00", b"\xff", b"\xfe\xff", b"\xef\xbb\xbf", b"\t", b"\r", b"\n\n", b"- ", b": ", b"? ", b"&a ",
+    b"*a ", b"!!python/name:os.system ", b"!!binary ", b"!<x> ", b"%YAML 9.9\n", b"---\n", b"...\n",
+    b"<<: ", b"[", b"]", b"{", b"}", b"|\n", b">\n", b"'", b'"', b"\\x", b"#", b"@", b"`", b"2001-13-45",
+    b"1:99:99", b"0b2", b"0o9", b".inf", b".nan", b"9" * 5000, b"[" * 3000, b"{a: " * 500,
+)  # fmt: skip
+
+
+def mutated(rng: random.Random, texts: Sequence[str]) -> bytes:
+    """The bytes of one mutated scenario file."""
+    data = yaml.safe_load(rng.choice(texts))
+    for _ in range(rng.choice((0, 1, 1, 1, 2, 2, 3, 5, 8))):
+        data = rng.choice(_DATA_MUTATIONS)(rng, data)
+    content = _dump(rng, data)
+    if rng.random() < 0.25:
+        for _ in range(rng.choice((1, 1, 2, 4))):
+            content = rng.choice(_TEXT_MUTATIONS)(rng, content)
+    return content
+
+
+def _dump(rng: random.Random, data: Any) -> bytes:
+    text = yaml.safe_dump(
+        data, allow_unicode=rng.random() < 0.5, default_flow_style=rng.choice((None, True, False))
+    )
+    return text.encode(rng.choice(("utf-8", "utf-8", "utf-8", "utf-16", "latin-1")), "replace")
+
+
+def _spots(data: Any) -> list[tuple[Any, Any]]:
+    """Every (container, key) in the data."""
+    spots: list[tuple[Any, Any]] = []
+    keys: Any = data.keys() if isinstance(data, dict) else range(len(data)) if isinstance(data, list) else ()
+    for key in list(keys):
+        spots.append((data, key))
+        spots += _spots(data[key])
+    return spots
+
+
+def _at_a_spot(change: Any) -> Any:
+    def mutate(rng: random.Random, data: Any) -> Any:
+        spots = _spots(data)
+        if spots:
+            change(rng, *rng.choice(spots), data)
+        return data
+
+    return mutate
+
+
+def _drop(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    del container[key]
+
+
+def _duplicate(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    twin = copy.deepcopy(container[key])
+    if isinstance(container, list):
+        container.insert(key, twin)
+    else:
+        container[rng.choice(STRINGS)] = twin
+
+
+def _rename(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    if isinstance(container, dict):
+        value = container.pop(key)
+        container[rng.choice((*STRINGS, str(key)[:-1], str(key).upper(), 7, None, True, 1.5))] = value
+
+
+def _number(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    container[key] = rng.choice(NUMBERS)
+
+
+def _nudge(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    value = container[key]
+    if isinstance(value, bool):
+        container[key] = not value
+    elif isinstance(value, int):
+        container[key] = value + rng.randint(-3, 3)
+    elif isinstance(value, float):
+        container[key] = value * rng.choice((-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 10.0))
+
+
+def _string(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    container[key] = rng.choice(STRINGS)
+
+
+def _another_type(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    value = container[key]
+    container[key] = rng.choice((None, True, False, [], {}, [value], {"a": value}, str(value), [value] * 30))
+
+
+def _transplant(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    other, at = rng.choice(_spots(data))
+    container[key] = copy.deepcopy(other[at])
+
+
+def _nest(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    for _ in range(rng.choice((3, 15, 19, 25, 60))):
+        container[key] = [container[key]] if rng.random() < 0.5 else {"a": container[key]}
+
+
+def _multiply(rng: random.Random, container: Any, key: Any, data: Any) -> None:
+    if isinstance(container[key], list):
+        container[key] = [copy.deepcopy(entry) for entry in container[key] * rng.choice((2, 3, 12))]
+
+
+def _setting(rng: random.Random, data: Any) -> Any:
+    """A top-level field with a value of the right kind, often a valid one."""
+    if not isinstance(data, dict):
+        return data
+    field, values = rng.choice(_SETTINGS)
+    data[field] = copy.deepcopy(rng.choice(values))
+    return data
+
+
+_SETTINGS: tuple[tuple[str, tuple[Any, ...]], ...] = (
+    (
+        "field",
+        (
+            "division_a",
+            "division_b",
+            {"length": 6.0, "width": 4.5, "goal_width": 0.8, "defense_width": 1.5, "defense_depth": 0.7},
+            {
+                "length": 2.0,
+                "width": 1.5,
+                "goal_width": 0.5,
+                "defense_width": 0.6,
+                "defense_depth": 0.3,
+                "center_radius": 5.0,
+            },
+            {"length": 50, "width": 50, "goal_width": 20, "defense_width": 50, "defense_depth": 25},
+        ),
+    ),
+    (
+        "simulator",
+        (
+            "default",
+            "grsim",
+            "rsim",
+            "erforce",
+            "sumatra",
+            "robobulls",
+            {"realism": "realistic"},
+            {"preset": "grsim", "realism": "friendly"},
+            {"ball": {"mass": 0.01}},
+            {"kicker": {"max_speed": 20}},
+            {"sub_step": 0.001},
+            {"realism": {"missing_robot": 1.0, "missing_ball": 1.0, "command_loss": 1.0}},
+            {"realism": {"vision_delay": 0.5, "ball_noise": 1.0, "robot_noise": 1.0, "heading_noise": 3.0}},
+            {"ball": 3},
+            {"ball": {"mass": "heavy"}},
+            {"preset": 3},
+            {"preset": None},
+            {"realism": None},
+        ),
+    ),
+    ("period", (0.005, 0.01, 1 / 60, 0.03, 0.1, 0.0049)),
+    (
+        "referee",
+        (
+            True,
+            False,
+            {},
+            {"opening": "force_start"},
+            {"stop_time": 0, "placement_delay": 0, "kickoff_wait": 0, "grace": 0},
+            {"half_length": 0.05, "half_time": 0},
+            {"max_dribble": None},
+        ),
+    ),
+    (
+        "ball",
+        (
+            {"position": [0, 0]},
+            {"position": {"x": [-4, 4], "y": [-2, 2]}, "velocity": [20, -20]},
+            {"position": {"center": [1, 1], "radius": 0.3}},
+            {"held_by": "blue 0"},
+            {"held_by": "yellow 1"},
+            {"position": [4.5, 3]},
+        ),
+    ),
+    (
+        "ends",
+        (
+            {"time_limit": 5},
+            {"time_limit": 5, "held_by_goalkeeper": 0, "ball_at_rest": 0},
+            {"time_limit": 0.001},
+            {"time_limit": 60, "score_limit": 1},
+        ),
+    ),
+    ("clearance", (0, 0.5, 2)),
+    ("seed", (0, 1, 2**53 - 1)),
+)
+
+_DATA_MUTATIONS: tuple[Any, ...] = (
+    *(_at_a_spot(change) for change in (_drop, _duplicate, _rename, _number, _nudge, _nudge, _nudge, _string,
+                                         _another_type, _transplant, _nest, _multiply)),
+    _setting, _setting, _setting, _setting,
+)  # fmt: skip
+
+
+def _truncate(rng: random.Random, content: bytes) -> bytes:
+    return content[: rng.randrange(len(content) + 1)]
+
+
+def _insert(rng: random.Random, content: bytes) -> bytes:
+    at = rng.randrange(len(content) + 1)
+    return content[:at] + rng.choice(FRAGMENTS) + content[at:]
+
+
+def _flip(rng: random.Random, content: bytes) -> bytes:
+    if not content:
+        return content
+    at = rng.randrange(len(content))
+    return content[:at] + bytes([rng.randrange(256)]) + content[at + 1 :]
+
+
+def _cut_out(rng: random.Random, content: bytes) -> bytes:
+    start, end = sorted((rng.randrange(len(content) + 1), rng.randrange(len(content) + 1)))
+    return content[:start] + content[end:]
+
+
+def _repeat(rng: random.Random, content: bytes) -> bytes:
+    lines = content.split(b"\n")
+    at = rng.randrange(len(lines))
+    return b"\n".join([*lines[:at], *[lines[at]] * rng.choice((2, 3, 5000)), *lines[at + 1 :]])
+
+
+def _shuffle(rng: random.Random, content: bytes) -> bytes:
+    lines = content.split(b"\n")
+    rng.shuffle(lines)
+    return b"\n".join(lines)
+
+
+_TEXT_MUTATIONS: tuple[Any, ...] = (_truncate, _insert, _insert, _flip, _flip, _cut_out, _repeat, _shuffle)
