@@ -33,6 +33,9 @@ _BEHIND = 0.16
 _THROUGH = 0.06
 _ROUND = radians(25.0)
 _NEAR = 0.25
+_IN_MOUTH = 0.03
+"""A ball no farther than this from the heading's line meets the mouth [m]."""
+_CREEP = 0.5
 _GOT_AWAY = 0.7
 _RUN_UP = 1.0
 """Speed at which the robot drives into a ball that it is aimed through [m/s]."""
@@ -90,7 +93,7 @@ class KickToTarget(Skill):
         style: Literal["default", "robobulls"] = "default",
         kick_speed: float | None = None,
         tolerance: float | None = None,
-        max_turn: float = 3.5,
+        max_turn: float = 4.0,
         limits: RobotLimits | None = None,
         speed: float = 1.0,
         goalkeeper: bool = False,
@@ -133,7 +136,7 @@ class KickToTarget(Skill):
             self._was_near = True
         elif self._was_near and gap > _GOT_AWAY:
             return self.fail("the ball got away")
-        if has_ball(self.me, self.ball):
+        if self.me.ball_contact:
             self._turn_with_ball(order)
             doing = "aiming with the ball"
         else:
@@ -180,29 +183,30 @@ class KickToTarget(Skill):
         gap = distance(me.position, meeting)
         behind = (meeting[0] - _BEHIND * ux, meeting[1] - _BEHIND * uy)
         allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
-        if distance(allowed, behind) > _REACHABLE:
-            # The ball lies at a wall: take it from where one can and turn with it.
-            if gap < _NEAR:
-                self.store.command = grab(me, frame.ball, 0.5, frame.period)
-                return
-            facing = direction(me.position, meeting)
-            behind = (meeting[0] - _BEHIND * cos(facing), meeting[1] - _BEHIND * sin(facing))
-            off = 0.0
+        at_wall = distance(allowed, behind) > _REACHABLE
+        in_line = off < _ROUND and (gap > _NEAR or gap * sin(off) < _IN_MOUTH)
+        if not in_line and (has_ball(me, frame.ball) or (at_wall and gap < _NEAR)):
+            # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
+            self.store.command = grab(me, frame.ball, _CREEP, frame.period)
+            return
+        if at_wall:
+            bearing = direction(me.position, meeting)
+            behind = (meeting[0] - _BEHIND * cos(bearing), meeting[1] - _BEHIND * sin(bearing))
+            facing, in_line = bearing, True
         heading = facing if gap < _TURN_DISTANCE else direction(me.position, meeting)
-        if off > _ROUND:
-            place, final_speed = behind, 0.0
+        if in_line:
+            place = (meeting[0] - _THROUGH * cos(facing), meeting[1] - _THROUGH * sin(facing))
         else:
-            place = (meeting[0] - _THROUGH * ux, meeting[1] - _THROUGH * uy)
-            final_speed = _RUN_UP
+            place = behind
         self.store.command = travel(
             frame,
             me,
             place,
             heading,
             limits,
-            avoid_ball=off > _ROUND,
+            avoid_ball=not in_line,
             goalkeeper=self.goalkeeper,
-            final_speed=final_speed,
+            final_speed=_RUN_UP if in_line else 0.0,
         )
         self.store.command.dribbler = gap < _NEAR
 
