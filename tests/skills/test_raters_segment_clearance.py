@@ -38,17 +38,21 @@ coordinates = st.tuples(st.floats(-4.0, 4.5), st.floats(-3.0, 3.0))
 
 @settings(max_examples=50)
 @given(origin=coordinates, centres=st.lists(coordinates, min_size=1, max_size=6))
-def test_clearance_is_the_distance_from_the_lane_for_all_that_is_not_behind(
+def test_clearance_is_the_distance_from_the_lane_with_or_without_what_is_behind(
     origin: tuple[float, float], centres: list[tuple[float, float]]
 ) -> None:
     targets = np.array([(4.5, -0.4), (4.5, 0.0), (4.5, 0.3)])
     got = lane_clearances(origin, targets, np.array(centres))
+    counted = lane_clearances(origin, targets, np.array(centres), behind=True)
     for row, target in enumerate(targets.tolist()):
         for column, centre in enumerate(centres):
             ahead = (centre[0] - origin[0]) * (target[0] - origin[0])
             ahead += (centre[1] - origin[1]) * (target[1] - origin[1])
             expected = segment_distance(centre, origin, tuple(target)) if ahead > 0.0 else inf
             assert got[row, column] == pytest.approx(expected, abs=1e-6)
+            assert counted[row, column] == pytest.approx(
+                segment_distance(centre, origin, tuple(target)), abs=1e-6
+            )
 
 
 def test_the_target_is_the_middle_of_the_largest_group() -> None:
@@ -89,3 +93,9 @@ def test_motion_does_not_count() -> None:
     assert rater.rate_all(frame(me, ball, opponents=(still,)), ball, me) == rater.rate_all(
         frame(me, ball, opponents=(moving,)), ball, me
     )
+
+
+def test_a_robot_close_behind_the_ball_blocks_every_shot_as_in_the_paper() -> None:
+    me, ball = robot(1.9, 0.0), (2.0, 0.0)
+    blocked = frame(me, ball, opponents=(robot(1.95, 0.15),))
+    assert SegmentClearance(tolerance=0.1965).rate(blocked, ball, me) is None

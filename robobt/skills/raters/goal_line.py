@@ -45,11 +45,14 @@ def obstacles(frame: Frame, me: RobotState) -> FloatArray:
     return np.array([(robot.x, robot.y) for robot in frame.others(me.id)], dtype=np.float64).reshape(-1, 2)
 
 
-def lane_clearances(origin: Point, targets: FloatArray, centres: FloatArray) -> FloatArray:
+def lane_clearances(
+    origin: Point, targets: FloatArray, centres: FloatArray, *, behind: bool = False
+) -> FloatArray:
     """Distance of every obstacle from every straight lane origin -> target.
 
     An obstacle whose nearest point on the lane would lie behind the origin is
-    not in the ball's way: its distance is infinite.
+    not in the ball's way: its distance is infinite, unless those ``behind`` count,
+    with their distance from the origin.
 
     Args:
         origin: where the lanes start [m].
@@ -71,7 +74,8 @@ def lane_clearances(origin: Point, targets: FloatArray, centres: FloatArray) -> 
     if beyond.any():
         to_end = np.square(ox - dx) + np.square(oy - dy)
         across = np.where(beyond, to_end, across)
-    across[along <= 0.0] = np.inf
+    past = along <= 0.0
+    across = np.where(past, ox * ox + oy * oy, across) if behind else np.where(past, np.inf, across)
     distances: FloatArray = np.sqrt(across)
     return distances
 

@@ -19,6 +19,9 @@ from robobt.world.state import Frame, RobotState
 class SegmentClearance(ShotRater):
     """A target point is clear when every robot keeps ``tolerance`` from the lane to it.
 
+    The lane is the segment from the ball to the point, its ends included, so a
+    robot that stands close behind the ball blocks every shot, as in the paper.
+
     Neighbouring clear points form a group; each group is a shot at its middle,
     the largest the best. The score is the group's share of all target points, the
     shot's tolerance half the angle the group spans.
@@ -39,7 +42,7 @@ class SegmentClearance(ShotRater):
         if origin[0] >= goal_x:
             return []
         points = goal_candidates(frame.field, self.spacing)
-        distances = lane_clearances(origin, points, obstacles(frame, me))
+        distances = lane_clearances(origin, points, obstacles(frame, me), behind=True)
         clear: NDArray[np.bool_] = np.all(distances > self.tolerance, axis=1)
         shots = []
         for first, stop in runs(clear):
