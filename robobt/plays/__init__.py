@@ -1,10 +1,12 @@
-"""Trees composed of skills; a play is a function that returns a tree, registered by name."""
+"""Trees composed of skills; a play is a function that returns a tree, registered by name.
 
-from __future__ import annotations
+Importing this package enters every one of them in :data:`PLAYS`.
+"""
 
-from collections.abc import Callable
+from robobt.plays.attack_main import attack_main
+from robobt.plays.attack_support import attack_support
+from robobt.plays.base import PLAYS, Play
+from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot
+from robobt.plays.goalkeeper import goalkeeper
 
-from robobt.tree import Behaviour, Registry
-
-PLAYS: Registry[Callable[..., Behaviour]] = Registry("play")
-"""Every play by its name."""
+__all__ = ["PLAYS", "Play", "attack_main", "attack_support", "go_to_ball_and_shoot", "goalkeeper"]

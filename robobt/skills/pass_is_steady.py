@@ -12,7 +12,7 @@ from robobt.tree import Status
 
 @skill
 class PassIsSteady(Skill):
-    """SUCCESS while the store's ``pass_`` is there and no flicker; else FAILURE.
+    """SUCCESS while the store's ``pass_`` is there and no flicker; else FAILURE, and it is None.
 
     In a short gap the last pass is put back into the store. To be ticked every
     tick after :class:`SelectPass`.
@@ -38,6 +38,7 @@ class PassIsSteady(Skill):
         if pass_ is not None:
             self._last = pass_
         if not self._steady.update(pass_ is not None, self.frame.time):
+            self.store.pass_ = None
             return self.fail("no pass for long enough")
         if self._last is None:
             return self.fail("no pass yet")

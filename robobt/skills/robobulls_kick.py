@@ -7,7 +7,7 @@ are times here, so that the skill does the same at any control period.
 from __future__ import annotations
 
 from enum import StrEnum
-from math import atan2, cos, hypot, inf, radians, sin
+from math import atan2, cos, hypot, radians, sin
 
 from robobt.skills.pilot import ROBOBULLS_LIMITS
 from robobt.skills.robobulls_detour import RADIUS, allowed, first_waypoint
@@ -70,9 +70,7 @@ class RobobullsKick:
 
     Args:
         tolerance: largest angle between heading and target at the kick [rad].
-        kick_speed: what the ball shall leave with [m/s]; None for RoboBulls' fit
-            over the distance to the target.
-        reach: farthest target that is kicked at [m].
+        kick_speed: what the ball shall leave with [m/s].
         limits: how to drive.
         goalkeeper: whether it may drive in its own defence area.
 
@@ -84,14 +82,12 @@ class RobobullsKick:
         self,
         *,
         tolerance: float = radians(1.0),
-        kick_speed: float | None = ROBOBULLS_KICK_SPEED,
-        reach: float = inf,
+        kick_speed: float = ROBOBULLS_KICK_SPEED,
         limits: RobotLimits = ROBOBULLS_LIMITS,
         goalkeeper: bool = False,
     ) -> None:
         self.tolerance = tolerance
         self.kick_speed = kick_speed
-        self.reach = reach
         self.limits = limits
         self.goalkeeper = goalkeeper
         self.start()
@@ -129,7 +125,6 @@ class RobobullsKick:
             and not at_point
             and abs(_off_heading(me, ball.position)) < _BALL_AHEAD
             and abs(_off_heading(me, target)) < self.tolerance
-            and distance(me.position, target) <= self.reach
         )
 
         if self.stage is Stage.KICK:
@@ -165,7 +160,7 @@ class RobobullsKick:
             store.command = self._drive(me, ahead, heading, period)
             store.command.dribbler = True
             if self.stage is Stage.KICK:
-                store.command.kick_speed = self._power(ball, target)
+                store.command.kick_speed = self.kick_speed
                 store.command.kick_trigger = KickTrigger.NOW
         return Status.RUNNING
 
@@ -185,12 +180,6 @@ class RobobullsKick:
 
     def _drive(self, me: RobotState, goal: Point, heading: float, period: float) -> RobotCommand:
         return robobulls_drive(me, goal, heading, period, self.limits)
-
-    def _power(self, ball: BallState, target: Point) -> float:
-        if self.kick_speed is not None:
-            return self.kick_speed
-        gap = distance(ball.position, target)
-        return -0.0386164 * gap * gap + 0.808328 * gap + 0.716488
 
 
 def _from_ball(ball: BallState, heading: float, way: float) -> Point:

@@ -12,7 +12,7 @@ from robobt.tree import Status
 
 @skill
 class ShotIsSteady(Skill):
-    """SUCCESS while the store's ``shot`` is there and no flicker; else FAILURE.
+    """SUCCESS while the store's ``shot`` is there and no flicker; else FAILURE, and it is None.
 
     In a short gap the last shot is put back into the store. To be ticked every
     tick after :class:`SelectShot`.
@@ -38,6 +38,7 @@ class ShotIsSteady(Skill):
         if shot is not None:
             self._last = shot
         if not self._steady.update(shot is not None, self.frame.time):
+            self.store.shot = None
             return self.fail("no shot for long enough")
         if self._last is None:
             return self.fail("no shot yet")

@@ -16,26 +16,27 @@ class Steadiness:
     Args:
         rise: how long yes must outweigh no to turn on [s].
         fall: longest gap it survives [s].
+        on: the answer at the start.
 
     Attributes:
-        on: the steady answer; yes at the start.
+        on: the steady answer.
     """
 
-    __slots__ = ("_balance", "_last", "fall", "on", "rise")
+    __slots__ = ("_balance", "_first", "_last", "fall", "on", "rise")
 
-    def __init__(self, rise: float, fall: float) -> None:
+    def __init__(self, rise: float, fall: float, *, on: bool = True) -> None:
         if not (rise >= 0.0 and fall >= 0.0):
             raise ValueError(f"rise and fall must be 0 or more seconds, not {rise} and {fall}")
         self.rise = rise
         self.fall = fall
-        self.on = True
+        self.on = self._first = on
         self._balance = 0.0
         self._last: float | None = None
 
     def update(self, answer: bool, time: float) -> bool:
         """Take the answer at ``time`` [s]; returns ``on``. A clock that runs backwards starts anew."""
         if self._last is not None and time < self._last:
-            self.on, self._balance, self._last = True, 0.0, None
+            self.on, self._balance, self._last = self._first, 0.0, None
         passed = 0.0 if self._last is None else time - self._last
         self._last = time
         if self.on:

@@ -74,19 +74,6 @@ def test_it_does_not_kick_beside_the_target() -> None:
     assert store.command.kick_speed == 0.0
 
 
-def test_it_does_not_kick_out_of_reach() -> None:
-    kick = RobobullsKick(reach=2.0)
-    tick(kick, robot(-2.0, 0.0), (0.0, 0.0))
-    assert kick.stage is Stage.BEHIND
-
-
-def test_without_a_speed_of_its_own_the_kick_is_fitted_to_the_distance() -> None:
-    kick = RobobullsKick(kick_speed=None)
-    drive_until(kick, robot(-0.3, 0.0), (0.0, 0.0), Stage.FORWARD)
-    _, store = tick(kick, robot(-0.11, 0.0), (0.0, 0.0))
-    assert store.command.kick_speed == pytest.approx(3.5720, abs=1e-3)
-
-
 def test_it_is_done_once_the_ball_has_left() -> None:
     kick = lined_up()
     tick(kick, robot(-0.11, 0.0), (0.0, 0.0))

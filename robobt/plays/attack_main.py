@@ -1,0 +1,90 @@
+"""The robot that goes for the goal."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from robobt.plays.base import PLAYS
+from robobt.skills.best_field_position import BestFieldPosition
+from robobt.skills.dribble_to import DribbleTo
+from robobt.skills.go_to_ball import GoToBall
+from robobt.skills.has_ball import HasBall
+from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.pass_is_steady import PassIsSteady
+from robobt.skills.pick_up_ball import PickUpBall
+from robobt.skills.pilot import ROBOBULLS_LIMITS
+from robobt.skills.select_pass import SelectPass
+from robobt.skills.select_shot import SelectShot
+from robobt.skills.shot_is_steady import ShotIsSteady
+from robobt.tree import Behaviour, FailureIsSuccess, Selector, Sequence
+
+
+@PLAYS.register("attack_main")
+def attack_main(
+    *,
+    rater: str = "segment_clearance",
+    tolerance: float | None = None,
+    min_score: float = 0.0,
+    max_distance: float | None = None,
+    kick: Literal["default", "robobulls"] = "default",
+    speed: float = 1.0,
+    dribble_speed: float = 2.0,
+    steady: float = 0.1,
+) -> Behaviour:
+    """Score, else pass, else dribble to where a shot would be better; first of all get the ball.
+
+    Without team-mates there is never a pass. A shot or pass must have been open
+    for ``steady`` before it is begun, and then survives gaps as long as it has
+    been open, up to that time.
+
+    Source: RoboBulls' published code, AttackMain.
+
+    Args:
+        rater: name of the shot rater.
+        tolerance: of the ``segment_clearance`` rater [m]; None is its default.
+        min_score: worst shot taken, 0 to 1.
+        max_distance: no shots from farther than this from the goal [m]; None is any.
+        kick: "default", or "robobulls" for the paper's baseline, which also gets
+            to the ball with RoboBulls' pilot.
+        speed: factor on the top speed without the ball.
+        dribble_speed: top speed with the ball [m/s].
+        steady: see above [s]; RoboBulls' own is 0.9.
+    """
+    limits = ROBOBULLS_LIMITS if kick == "robobulls" else None
+    return Selector(
+        "attack main",
+        memory=False,
+        children=[
+            Sequence(
+                "score",
+                memory=False,
+                children=[
+                    FailureIsSuccess(
+                        "look for a shot",
+                        SelectShot(
+                            rater=rater, tolerance=tolerance, min_score=min_score, max_distance=max_distance
+                        ),
+                    ),
+                    ShotIsSteady(rise=steady, fall=steady),
+                    KickToTarget(style=kick, limits=limits, speed=speed),
+                ],
+            ),
+            Sequence(
+                "pass",
+                memory=False,
+                children=[
+                    FailureIsSuccess("look for a pass", SelectPass()),
+                    PassIsSteady(rise=steady, fall=steady),
+                    KickToTarget(style=kick, limits=limits, speed=speed),
+                ],
+            ),
+            Sequence(
+                "dribble",
+                memory=False,
+                children=[HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed)],
+            ),
+            Sequence(
+                "get the ball", memory=False, children=[GoToBall(limits=limits, speed=speed), PickUpBall()]
+            ),
+        ],
+    )

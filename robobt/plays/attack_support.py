@@ -1,0 +1,32 @@
+"""The robot that helps the one with the ball."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS
+from robobt.skills.face_ball import FaceBall
+from robobt.skills.go_to_pose import GoToPose
+from robobt.skills.intercept import Intercept
+from robobt.skills.mate_aims_at_me import MateAimsAtMe
+from robobt.skills.pass_is_coming import PassIsComing
+from robobt.skills.select_support_position import SelectSupportPosition
+from robobt.tree import Behaviour, Selector, Sequence
+
+
+@PLAYS.register("attack_support")
+def attack_support(*, speed: float = 1.0) -> Behaviour:
+    """Receive a pass, else stand still for one, else wait where a pass and a shot are possible.
+
+    Source: RoboBulls' published code, AttackSupport.
+
+    Args:
+        speed: factor on the top speed to a pass.
+    """
+    return Selector(
+        "attack support",
+        memory=False,
+        children=[
+            Sequence("receive", memory=False, children=[PassIsComing(), Intercept(speed=speed)]),
+            Sequence("expect", memory=False, children=[MateAimsAtMe(), FaceBall(dribbler=True)]),
+            Sequence("position", memory=False, children=[SelectSupportPosition(), GoToPose(face_ball=True)]),
+        ],
+    )

@@ -1,0 +1,91 @@
+"""The goalkeeper."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from robobt.plays.base import PLAYS
+from robobt.skills.aim_upfield import AimUpfield
+from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
+from robobt.skills.ball_at_defense_edge import BallAtDefenseEdge
+from robobt.skills.ball_rests_in_defense import BallRestsInDefense
+from robobt.skills.block_shot import BlockShot
+from robobt.skills.cover_angle import CoverAngle
+from robobt.skills.cover_near_post import CoverNearPost
+from robobt.skills.fetch_ball import FetchBall
+from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.pilot import ROBOBULLS_LIMITS
+from robobt.skills.return_to_goal import ReturnToGoal
+from robobt.skills.select_clearance import SelectClearance
+from robobt.skills.shot_coming import ShotComing
+from robobt.tree import Behaviour, Selector, Sequence
+from robobt.world.limits import RobotLimits
+
+
+@PLAYS.register("goalkeeper")
+def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
+    """Keep the ball out of the own goal; the first case that holds is played.
+
+    1. Somebody aims at the goal: onto the line of the shot to come.
+    2. A shot comes: onto its line.
+    3. The ball rests on the edge of the defence area, no opponent near: fetch it.
+    4. The ball rests in the defence area: clear it to a team-mate or upfield.
+    5. The ball is before the goal: between the two.
+    6. Otherwise home.
+
+    Source: RoboBulls' published code, Goalie.
+
+    Args:
+        speed: factor on its top speed, with and without the ball; 0.5 is the
+            paper's half-speed goalkeeper.
+        style: "default" drives as the robot can, and covers the angle between the
+            posts. "robobulls" is the paper's goalkeeper: it covers the near post,
+            drives at most at 2.25 m/s, 1.5 m/s when there is no danger, with
+            RoboBulls' accelerations, and clears with RoboBulls' kick.
+    """
+    if style == "robobulls":
+        quick, calm = robobulls_limits(1.5 * speed), robobulls_limits(speed)
+        return Selector(
+            "goalkeeper",
+            memory=False,
+            children=[
+                case("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False)),
+                case("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False)),
+                case("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
+                case(
+                    "clear",
+                    BallRestsInDefense(),
+                    where_to_clear(),
+                    KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
+                ),
+                CoverNearPost(limits=quick),
+                ReturnToGoal(limits=calm),
+            ],
+        )
+    return Selector(
+        "goalkeeper",
+        memory=False,
+        children=[
+            case("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
+            case("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
+            case("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)),
+            case("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
+            CoverAngle(speed=speed),
+            ReturnToGoal(speed=speed),
+        ],
+    )
+
+
+def case(name: str, *steps: Behaviour) -> Behaviour:
+    """One of the goalkeeper's cases: conditions, then what to do, looked at anew every tick."""
+    return Sequence(name, memory=False, children=list(steps))
+
+
+def where_to_clear() -> Behaviour:
+    """To a team-mate, else to where there is room."""
+    return Selector("where to", memory=False, children=[SelectClearance(), AimUpfield()])
+
+
+def robobulls_limits(factor: float) -> RobotLimits:
+    """RoboBulls' pilot with its velocity multiplier: it scales the top speed and nothing else."""
+    return ROBOBULLS_LIMITS.model_copy(update={"max_speed": ROBOBULLS_LIMITS.max_speed * factor})

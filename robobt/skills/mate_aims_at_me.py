@@ -1,0 +1,52 @@
+"""Condition: a team-mate that has the ball points it at this robot."""
+
+from __future__ import annotations
+
+from math import radians
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.skills.steadiness import Steadiness
+from robobt.tree import Status
+from robobt.world.geometry import direction, distance, wrap_angle
+
+
+@skill
+class MateAimsAtMe(Skill):
+    """SUCCESS while a team-mate with the ball faces this robot from far enough for a pass.
+
+    Source: RoboBulls' published code, AttackSupport, which waits 0.9 s.
+
+    Args:
+        tolerance: angle between its heading and the way to this robot [rad].
+        nearest: closer than this it may as well aim elsewhere [m].
+        rise: how long it must have faced this robot [s].
+    """
+
+    def __init__(
+        self,
+        *,
+        tolerance: float = radians(10.0),
+        nearest: float = 1.0,
+        rise: float = 0.2,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.tolerance = tolerance
+        self.nearest = nearest
+        self._steady = Steadiness(rise, rise, on=False)
+
+    def on_running(self) -> Status:
+        """Look at the team-mate with the ball."""
+        if self._steady.update(self._aimed_at(), self.frame.time):
+            return self.succeed()
+        return self.fail("no team-mate aims here")
+
+    def _aimed_at(self) -> bool:
+        here = self.me.position
+        return any(
+            has_ball(mate, self.ball)
+            and distance(mate.position, here) >= self.nearest
+            and abs(wrap_angle(direction(mate.position, here) - mate.heading)) <= self.tolerance
+            for mate in self.frame.teammates(self.me.id)
+        )

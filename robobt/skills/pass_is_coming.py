@@ -1,0 +1,44 @@
+"""Condition: a pass is on its way to this robot."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+
+_LEAVING = 0.3
+"""Time in which a kicked ball must have left the passer [s]."""
+
+
+@skill
+class PassIsComing(Skill):
+    """SUCCESS from the kick of a pass to this robot until somebody has the ball or it comes no nearer.
+
+    Args:
+        slowest: ball that still comes [m/s].
+        patience: longest time a pass takes [s].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
+
+    def __init__(self, *, slowest: float = 0.2, patience: float = 4.0, name: str = "") -> None:
+        super().__init__(name)
+        self.slowest = slowest
+        self.patience = patience
+
+    def on_running(self) -> Status:
+        """Look after the ball."""
+        team, me, ball, frame = self.store.team, self.me, self.ball, self.frame
+        age = frame.time - team.pass_time
+        if team.receiver != me.id or not 0.0 <= age <= self.patience:
+            return self.fail("no pass to this robot")
+        if age < _LEAVING:
+            return self.succeed("kicked")
+        for robot in (*frame.own, *frame.opponents):
+            if has_ball(robot, ball):
+                return self.fail("it has arrived somewhere")
+        if ball.vx * (me.x - ball.x) + ball.vy * (me.y - ball.y) <= 0.0 or ball.speed < self.slowest:
+            return self.fail("it comes no nearer")
+        return self.succeed("on its way")
