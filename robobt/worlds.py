@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from pydantic import ValidationError
 
+from robobt.match.problems import first_problem, message_of
 from robobt.match.scenario import Scenario
-from robobt.sim import SimWorld, settings_from
+from robobt.sim import SimSettings, SimWorld, settings_from
 
 
 def sim_world(scenario: Scenario) -> SimWorld:
@@ -20,10 +21,9 @@ def sim_world(scenario: Scenario) -> SimWorld:
     try:
         settings = settings_from(scenario.simulator)
     except ValidationError as error:
-        problem = error.errors(include_url=False)[0]
-        place = ".".join(["simulator", *[str(part) for part in problem["loc"]]])
-        raise scenario.error(problem["msg"], place) from error
+        field, problem = first_problem(error, SimSettings, scenario.simulator)
+        raise scenario.error(problem, f"simulator.{field}") from error
     except (KeyError, TypeError, ValueError) as error:
-        raise scenario.error(str(error.args[0]), "simulator") from error
+        raise scenario.error(message_of(error), "simulator") from error
     limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     return SimWorld(scenario.field, limits, settings, scenario.period)

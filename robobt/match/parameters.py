@@ -12,6 +12,8 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
+from robobt.match.problems import say_value
+
 
 class ParameterError(ValueError):
     """A parameter that does not fit.
@@ -109,12 +111,6 @@ def _convert(parameter: Parameter, value: Any) -> Any:
 
 
 _FINITE = ConfigDict(allow_inf_nan=False)
-
-
-def say_value(value: object) -> str:
-    """A value for a message: on one line and not long."""
-    said = repr(value)
-    return said if len(said) <= 60 else said[:57] + "..."
 
 
 def _say_hint(hint: Any) -> str:

@@ -3,38 +3,33 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from math import cos, hypot, pi, sin
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Self, get_args
+from typing import Any, Self
 
 import numpy as np
-from pydantic import BaseModel, Field, PrivateAttr, ValidationError, field_validator, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.match.parameters import ParameterError, check_parameters, say_value
+from robobt.match.parameters import ParameterError, check_parameters
+from robobt.match.placing import Placer, check_starts
+from robobt.match.problems import FieldError, first_problem, message_of, one_line, say_value
 from robobt.match.referee import RefereeSettings
-from robobt.match.starts import Around, BallStart, Box, Disc, Part, RobotStart
+from robobt.match.starts import BallStart, Part, RobotStart
 from robobt.match.yaml_reader import YamlError, read_yaml
 from robobt.plays import PLAYS
 from robobt.resources import bundled_scenarios
 from robobt.tree import Behaviour
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
-from robobt.world.geometry import Point, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.protocol import Placement
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
+from robobt.world.state import RobotId
 
 MAX_TRIALS = 100_000
 """Most trials a scenario or a run may ask for."""
 
 MAX_SEED = 2**53 - 1
 """Largest seed: what every JSON reader still reads exactly."""
-
-HELD_DISTANCE = 0.098
-"""Centre of a robot to the centre of the ball in its mouth at the start [m]."""
-
-_TRIES = 1000
 
 
 class ScenarioError(ValueError):
@@ -48,7 +43,7 @@ class ScenarioError(ValueError):
     def __init__(self, source: str, problem: str, field: str = "") -> None:
         self.source, self.field = source, field
         parts = [source, field, problem] if field else [source, problem]
-        super().__init__(_one_line(": ".join(parts)))
+        super().__init__(one_line(": ".join(parts)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_restore, (self.source, self.field, str(self)))
@@ -59,14 +54,6 @@ def _restore(source: str, field: str, message: str) -> ScenarioError:
     error = ScenarioError(source, "", field)
     error.args = (message,)
     return error
-
-
-class _FieldError(ValueError):
-    """A problem with a field further down than the one that is being validated."""
-
-    def __init__(self, field: str, problem: str) -> None:
-        super().__init__(problem)
-        self.field = field
 
 
 class RobotSetup(Part):
@@ -93,9 +80,9 @@ class RobotSetup(Part):
         try:
             self.build_tree()
         except ParameterError as error:
-            raise _FieldError(f"params.{error.parameter}", str(error)) from error
+            raise FieldError(f"params.{error.parameter}", str(error)) from error
         except Exception as error:
-            raise _FieldError("params", _message(error)) from error
+            raise FieldError("params", message_of(error)) from error
         return self
 
     def build_tree(self) -> Behaviour:
@@ -122,15 +109,13 @@ class Robots(Part):
             numbers: set[int] = set()
             for index, robot in enumerate(self.of(team)):
                 if robot.number in numbers:
-                    raise _FieldError(
+                    raise FieldError(
                         f"{team.value}.{index}.number", f"{team.value} has two robots {robot.number}"
                     )
                 numbers.add(robot.number)
             keepers = [index for index, robot in enumerate(self.of(team)) if robot.goalkeeper]
             if len(keepers) > 1:
-                raise _FieldError(
-                    f"{team.value}.{keepers[1]}.goalkeeper", f"{team.value} has two goalkeepers"
-                )
+                raise FieldError(f"{team.value}.{keepers[1]}.goalkeeper", f"{team.value} has two goalkeepers")
         if not self.blue and not self.yellow:
             raise ValueError("there is no robot")
         return self
@@ -219,10 +204,17 @@ class Scenario(Part):
     @model_validator(mode="after")
     def _startable(self) -> Self:
         if self.ends.score_limit is not None and self.referee is None:
-            raise _FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
-        _check_places(self)
-        _Placer(self, np.random.default_rng(0)).place()
+            raise FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
+        check_starts(self.field, self._starts, self.ball)
+        self._placer(np.random.default_rng(0)).place()
         return self
+
+    @property
+    def _starts(self) -> dict[RobotId, RobotStart]:
+        return {robot: setup.start for robot, setup in self.robots}
+
+    def _placer(self, rng: np.random.Generator) -> Placer:
+        return Placer(self.field, self._starts, self.ball, self.clearance, rng)
 
     @property
     def source(self) -> str:
@@ -248,8 +240,8 @@ class Scenario(Part):
             ScenarioError: an object found no free place in a bounded number of tries.
         """
         try:
-            return _Placer(self, rng).place()
-        except _FieldError as error:
+            return self._placer(rng).place()
+        except FieldError as error:
             raise self.error(str(error), error.field) from error
 
 
@@ -263,7 +255,7 @@ def load_scenario(source: str | Path) -> Scenario:
     bundled = bundled_scenarios()
     if isinstance(source, str) and source in bundled and not path.exists():
         path = bundled[source]
-    where = _one_line(str(source if path.name == path.stem else path))
+    where = one_line(str(source if path.name == path.stem else path))
     try:
         missing = not path.exists()
     except (OSError, ValueError):
@@ -293,7 +285,7 @@ def scenario_from(data: object, source: str) -> Scenario:
         # Strict JSON: lists fit tuples, integers fit floats, and nothing else is converted.
         scenario = Scenario.model_validate_json(json.dumps(data), strict=True)
     except ValidationError as error:
-        field, problem = _first_problem(error, data)
+        field, problem = first_problem(error, Scenario, data)
         raise ScenarioError(source, problem, field) from error
     scenario._source = source
     return scenario
@@ -303,225 +295,3 @@ def _named(scenario: Scenario, name: str) -> Scenario:
     named = scenario.model_copy(update={"name": name})
     named._source = scenario._source
     return named
-
-
-class _Placer:
-    """Samples one placement: what is fixed first, then the ball, then the other robots."""
-
-    def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
-        self.scenario, self.rng, self.field = scenario, rng, scenario.field
-        self.taken: list[tuple[float, float, float]] = []
-        self.robots: dict[RobotId, tuple[float, float, float]] = {}
-        self.ball: Point | None = None
-        self.setups = dict(scenario.robots)
-
-    def place(self) -> Placement:
-        ball = self.scenario.ball
-        holder = _robot_called(ball.held_by)
-        fixed = [robot for robot, setup in self.setups.items() if setup.start.fixed]
-        if isinstance(ball.position, tuple):
-            self.ball = ball.position
-            self.taken.append((*self.ball, BALL_RADIUS))
-        for robot in fixed:
-            self._take(robot, self._world(robot, self._fixed_place(robot)))
-        if holder is not None:
-            if holder not in fixed:
-                self._sample_robot(holder)
-            self._face(holder)
-            x, y, heading = self.robots[holder]
-            self.ball = (x + HELD_DISTANCE * cos(heading), y + HELD_DISTANCE * sin(heading))
-            self.taken.append((*self.ball, BALL_RADIUS))
-        elif self.ball is None:
-            self._sample_ball()
-        for robot in self.setups:
-            if robot not in self.robots:
-                self._sample_robot(robot)
-            if robot != holder:
-                self._face(robot)
-        assert self.ball is not None
-        return Placement({robot: self.robots[robot] for robot in self.setups}, (*self.ball, *ball.velocity))
-
-    def _fixed_place(self, robot: RobotId) -> Point:
-        place = self.setups[robot].start.position
-        assert isinstance(place, tuple)
-        return place
-
-    def _sample_robot(self, robot: RobotId) -> None:
-        position = self.setups[robot].start.position
-        holds = _robot_called(self.scenario.ball.held_by) == robot
-        for _ in range(_TRIES):
-            if isinstance(position, Around):
-                own_ball = None if self.ball is None else self._world(robot, self.ball)
-                middle = {"own goal": self.field.our_goal, "their goal": self.field.their_goal}.get(
-                    position.around, own_ball
-                )
-                assert middle is not None
-                place = position.sample(self.rng, middle)
-            else:
-                assert isinstance(position, Box | Disc)
-                place = position.sample(self.rng)
-            x, y = self._world(robot, place)
-            # The ball in its mouth needs room too, whichever way it looks.
-            if self._free(x, y, ROBOT_RADIUS + (2 * BALL_RADIUS if holds else 0.0)):
-                self._take(robot, (x, y))
-                return
-        raise _FieldError(f"robots.{_index(self.scenario, robot)}.start", _full(position))
-
-    def _sample_ball(self) -> None:
-        position = self.scenario.ball.position
-        assert isinstance(position, Box | Disc)
-        for _ in range(_TRIES):
-            x, y = position.sample(self.rng)
-            if self._free(x, y, BALL_RADIUS):
-                self.ball = (x, y)
-                self.taken.append((x, y, BALL_RADIUS))
-                return
-        raise _FieldError("ball.position", _full(position))
-
-    def _free(self, x: float, y: float, radius: float) -> bool:
-        gap = radius + self.scenario.clearance
-        return self.field.contains(x, y) and all(
-            hypot(x - other_x, y - other_y) >= gap + other for other_x, other_y, other in self.taken
-        )
-
-    def _take(self, robot: RobotId, place: Point) -> None:
-        self.robots[robot] = (*place, 0.0)
-        self.taken.append((*place, ROBOT_RADIUS))
-
-    def _face(self, robot: RobotId) -> None:
-        x, y, _ = self.robots[robot]
-        own_ball = None if self.ball is None else self._world(robot, self.ball)
-        heading = self.setups[robot].start.sample_heading(
-            self.rng, self._world(robot, (x, y)), own_ball, self.field
-        )
-        self.robots[robot] = (x, y, wrap_angle(heading + (pi if robot.team is Team.YELLOW else 0.0)))
-
-    def _world(self, robot: RobotId, place: Point) -> Point:
-        """From the robot's view to the world's, or back: half a turn is its own inverse."""
-        return place if robot.team is Team.BLUE else (-place[0], -place[1])
-
-
-def _full(position: object) -> str:
-    return f"no free place {position} found in {_TRIES} tries"
-
-
-def _check_places(scenario: Scenario) -> None:
-    """Raise on what no random number can help: places off the field, fixed starts that overlap."""
-    field = scenario.field
-    taken: list[tuple[str, float, float, float]] = []
-    ball = scenario.ball
-    holder = _robot_called(ball.held_by)
-    if ball.position is not None:
-        _check_inside(ball.position, field, "ball.position")
-        if isinstance(ball.position, tuple):
-            taken.append(("the ball", *ball.position, BALL_RADIUS))
-    elif holder is None or holder not in dict(scenario.robots):
-        there = ", ".join([str(robot) for robot, _ in scenario.robots])
-        raise _FieldError("ball.held_by", f"no robot is called {say_value(ball.held_by)}; there are {there}")
-    for robot, setup in scenario.robots:
-        where = f"robots.{_index(scenario, robot)}.start"
-        position = setup.start.position
-        _check_inside(position, field, f"{where}.position")
-        if robot == holder and isinstance(position, Around) and position.around == "ball":
-            raise _FieldError(f"{where}.position", "it holds the ball, so it cannot start around the ball")
-        if robot == holder and setup.start.heading == "towards ball":
-            raise _FieldError(f"{where}.heading", "it holds the ball, so it cannot turn towards the ball")
-        if isinstance(position, tuple):
-            sign = 1.0 if robot.team is Team.BLUE else -1.0
-            x, y = sign * position[0], sign * position[1]
-            for other, other_x, other_y, radius in taken:
-                if hypot(x - other_x, y - other_y) < ROBOT_RADIUS + radius:
-                    hint = " (to start with it in the mouth, use held_by)" if other == "the ball" else ""
-                    raise _FieldError(where, f"{robot} would overlap {other}{hint}")
-            taken.append((str(robot), x, y, ROBOT_RADIUS))
-
-
-def _check_inside(position: object, field: FieldGeometry, where: str) -> None:
-    points: Sequence[Point] = ()
-    if isinstance(position, Box):
-        points = [(x, y) for x in position.x for y in position.y]
-    elif isinstance(position, Disc):
-        points = [position.center]
-    elif isinstance(position, tuple):
-        points = [position]
-    for x, y in points:
-        if not field.contains(x, y):
-            size = f"{field.length:g} m x {field.width:g} m"
-            raise _FieldError(where, f"({x:g}, {y:g}) lies outside the field, which is {size} around (0, 0)")
-
-
-def _robot_called(name: str | None) -> RobotId | None:
-    team, _, number = (name or "").partition(" ")
-    return RobotId(Team(team), int(number)) if team in set(Team) and number in _NUMBERS else None
-
-
-_NUMBERS = frozenset(str(number) for number in range(16))
-
-
-def _index(scenario: Scenario, robot: RobotId) -> str:
-    numbers = [setup.number for setup in scenario.robots.of(robot.team)]
-    return f"{robot.team.value}.{numbers.index(robot.number)}"
-
-
-def _first_problem(error: ValidationError, data: object) -> tuple[str, str]:
-    """Field and message of the first problem, and how many more there are."""
-    problems = error.errors(include_url=False)
-    problem = problems[0]
-    place = _real_place(problem["loc"], data)
-    cause = problem.get("ctx", {}).get("error")
-    message = problem["msg"].replace("valid array", "list").replace("an object", "a mapping")
-    if isinstance(cause, Exception):
-        message = _message(cause)
-        if isinstance(cause, _FieldError):
-            place += cause.field.split(".")
-    elif problem["type"] == "missing":
-        message = "is missing"
-    elif problem["type"] == "extra_forbidden":
-        message = f"there is no such field; there are {', '.join(_fields_at(problem['loc'][:-1]))}"
-    elif not isinstance(problem["input"], Mapping | list):
-        message = f"{message}, not {say_value(problem['input'])}"
-    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-    return ".".join(place), message[:1].lower() + message[1:] + more
-
-
-def _real_place(loc: tuple[int | str, ...], data: object) -> list[str]:
-    """The way to the field without the names of the union's members that pydantic puts in."""
-    place: list[str] = []
-    for depth, part in enumerate(loc):
-        inside = isinstance(data, dict) and part in data
-        if inside or (isinstance(data, list) and isinstance(part, int) and part < len(data)):
-            place.append(str(part))
-            data = data[part]  # type: ignore[index]
-        elif depth == len(loc) - 1 and isinstance(data, dict | list):
-            place.append(str(part))
-    return place
-
-
-def _fields_at(loc: tuple[int | str, ...]) -> list[str]:
-    """The fields that the part of a scenario at ``loc`` may have."""
-    models: list[type[BaseModel]] = [Scenario]
-    for part in loc:
-        below = [hint.annotation for model in models if (hint := model.model_fields.get(str(part)))]
-        if below:
-            models = [model for hint in below for model in _models_in(hint)]
-        else:
-            # A place in a list, or the name of a union's member.
-            models = [model for model in models if model.__name__.lower() == part] or models
-    return [name for model in models for name in model.model_fields]
-
-
-def _models_in(hint: object) -> list[type[BaseModel]]:
-    if isinstance(hint, type) and issubclass(hint, BaseModel):
-        return [hint]
-    return [model for part in get_args(hint) for model in _models_in(part)]
-
-
-def _message(error: Exception) -> str:
-    # str(KeyError) is the repr of its message.
-    return str(error.args[0]) if error.args else type(error).__name__
-
-
-def _one_line(text: str) -> str:
-    words = " ".join(text.split())
-    said = "".join([character if character.isprintable() else "?" for character in words])
-    return said if len(said) <= 500 else said[:497] + "..."

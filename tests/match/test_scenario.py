@@ -10,7 +10,8 @@ import pytest
 import yaml
 
 from robobt.match import ScenarioError, load_scenario
-from robobt.match.scenario import HELD_DISTANCE, Scenario, scenario_from
+from robobt.match.placing import HELD_DISTANCE
+from robobt.match.scenario import Scenario, scenario_from
 from robobt.match.yaml_reader import MAX_BYTES, MAX_DEPTH
 from robobt.resources import bundled_scenarios
 from robobt.world import BALL_RADIUS, ROBOT_RADIUS, RobotId, RobotLimits, Team

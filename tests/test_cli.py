@@ -1,0 +1,267 @@
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from typer.testing import CliRunner, Result
+
+from robobt import __version__
+from robobt.cli import app
+from robobt.match.recording import load_recording
+from robobt.plays import PLAYS
+from robobt.resources import bundled_scenarios, models_folder
+from robobt.skills import SKILLS
+from tests.match.scripted import data
+
+COMMANDS = ("match", "replay", "scenarios", "plays", "skills", "tree", "bench sim", "bench match")
+
+
+def robobt(*arguments: str | Path, code: int = 0) -> Result:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    return result
+
+
+def told(*arguments: str | Path) -> dict[str, Any]:
+    """What a command prints with --json: exactly one object."""
+    printed = json.loads(robobt(*arguments, "--json").stdout)
+    assert isinstance(printed, dict)
+    return printed
+
+
+def complaint(*arguments: str | Path, code: int = 1) -> str:
+    """The one line on stderr of a command that fails."""
+    result = robobt(*arguments, code=code)
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    if code == 1:
+        assert len(result.stderr.splitlines()) == 1
+    return result.stderr
+
+
+def help_of(command: str) -> str:
+    return " ".join(robobt(*command.split(), "--help").stdout.replace("│", " ").split())
+
+
+@pytest.fixture
+def scenario(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data(ball={"position": {"center": [0, 0], "radius": 0.5}})))
+    return path
+
+
+class TestHelp:
+    def test_without_a_command_the_commands_are_listed(self):
+        listed = CliRunner().invoke(app, []).output
+        assert all(command.split()[0] in listed for command in COMMANDS)
+
+    @pytest.mark.parametrize("command", COMMANDS)
+    def test_every_command_has_help(self, command: str):
+        assert command.rpartition(" ")[2] in help_of(command)
+
+    def test_the_version(self):
+        assert robobt("--version").stdout == f"robobt {__version__}\n"
+
+    def test_nothing_heavy_is_loaded_for_help(self):
+        code = (
+            "import sys, robobt.cli; "
+            "print({'numpy', 'numba', 'torch', 'scipy', 'pymunk', 'pydantic'} & set(sys.modules))"
+        )
+        loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        assert loaded.stdout == "set()\n"
+
+
+class TestMatch:
+    def test_it_prints_outcomes_times_and_goals(self, scenario: Path):
+        printed = robobt("match", scenario, "--trials", "3").stdout
+        assert "3 trials, seed 0" in printed
+        assert "95 % interval" in printed
+        assert "blue 0" in printed
+        assert "Goals: blue" in printed
+
+    def test_json_is_one_object_with_the_keys_of_the_help(self, scenario: Path):
+        printed = told("match", scenario, "--trials", "3", "--seed", "4")
+        assert (printed["trials"], printed["requested"], printed["seed"]) == (3, 3, 4)
+        assert printed["interrupted"] is False
+        assert printed["replay"] is None
+        explained = help_of("match")
+        for key in (*printed, *printed["robots"]["blue 0"], *next(iter(printed["outcomes"].values()))):
+            assert key in explained
+
+    def test_the_same_seed_is_the_same_run_over_any_number_of_workers(self, scenario: Path):
+        one = told("match", scenario, "-n", "4", "-w", "1")
+        two = told("match", scenario, "-n", "4", "-w", "2")
+        assert one["trace"] == two["trace"] != told("match", scenario, "-n", "4", "-s", "1")["trace"]
+
+    def test_a_replay_can_be_a_page_at_once(self, scenario: Path, tmp_path: Path):
+        page = tmp_path / "replay.html"
+        assert told("match", scenario, "--replay", page)["replay"] == str(page)
+        assert page.read_text().startswith("<!doctype html>")
+
+    def test_a_trial_can_be_chosen_for_recording(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "second.robobt.jsonl.gz"
+        printed = robobt("match", scenario, "-n", "3", "--record", "1", "--replay", recording).stdout
+        assert f"Replay of trial 1: {recording}" in printed
+        assert load_recording(recording).header.trial == 1
+
+    def test_a_recording_has_a_name_of_its_own(
+        self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        monkeypatch.chdir(tmp_path)
+        robobt("match", scenario, "--record", "0")
+        assert (tmp_path / "test-0.robobt.jsonl.gz").exists()
+
+    def test_results_are_kept_and_a_run_goes_on_from_there(self, scenario: Path, tmp_path: Path):
+        out = tmp_path / "results.jsonl"
+        robobt("match", scenario, "-n", "2", "--out", out)
+        assert told("match", scenario, "-n", "4", "--out", out)["trials"] == 4
+        assert len(out.read_text().splitlines()) == 5
+
+    def test_a_tree_that_fails_is_told(self, scenario: Path):
+        broken = data()
+        broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
+        scenario.write_text(yaml.safe_dump({**broken, "ends": {"time_limit": 0.1}}))
+        result = robobt("match", scenario)
+        assert (
+            "blue 0: its tree failed in 5 ticks; the first: Scripted: RuntimeError: broken" in result.stderr
+        )
+
+
+class TestReplay:
+    def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "a.robobt.jsonl.gz"
+        robobt("match", scenario, "--replay", recording)
+        assert robobt("replay", recording).stdout == f"Replay: {tmp_path / 'a.html'}\n"
+        robobt("replay", recording, "--html", tmp_path / "b.html")
+        assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
+
+
+class TestLists:
+    def test_every_bundled_scenario_is_listed(self):
+        printed = robobt("scenarios").stdout
+        assert all(name in printed for name in bundled_scenarios())
+        listed = told("scenarios")["scenarios"]
+        assert [entry["name"] for entry in listed] == list(bundled_scenarios())
+        explained = help_of("scenarios")
+        assert all(key in explained for entry in listed for key in (*entry, *entry["robots"][0]))
+
+    def test_every_play_is_listed_with_its_parameters(self):
+        printed = robobt("plays").stdout
+        assert "speed: float = 1.0" in printed
+        listed = {entry["name"]: entry for entry in told("plays")["plays"]}
+        assert list(listed) == list(PLAYS)
+        speed = listed["scripted"]["parameters"][0]
+        assert speed == {"name": "speed", "type": "float", "required": False, "default": 1.0}
+
+    def test_every_skill_is_listed_with_what_it_reads_and_writes(self):
+        robobt("skills")
+        listed = {entry["name"]: entry for entry in told("skills")["skills"]}
+        assert list(listed) == list(SKILLS)
+        assert listed["KickToTarget"]["reads"] == list(SKILLS["KickToTarget"].reads)
+        assert all(entry["description"] for entry in listed.values())
+
+    def test_one_can_be_looked_at_alone(self):
+        assert len(told("plays", "goalkeeper")["plays"]) == 1
+        printed = robobt("skills", "KickToTarget").stdout
+        assert "KickToTarget" in printed
+        assert "DribbleTo" not in printed
+
+
+class TestTree:
+    def test_it_is_shown_as_text(self):
+        printed = robobt("tree", "goalkeeper").stdout
+        assert "ShotComing" in printed
+
+    def test_it_is_drawn(self, tmp_path: Path):
+        svg, dot = tmp_path / "tree.svg", tmp_path / "tree.dot"
+        robobt("tree", "goalkeeper", "--svg", svg, "--dot", dot, "--param", "speed=0.5")
+        assert svg.read_text().startswith("<svg")
+        assert dot.read_text().startswith("digraph")
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            (["nothing"], "no play is called 'nothing'; there are"),
+            (["scripted", "-p", "speed"], "takes name=value"),
+            (["scripted", "-p", "sped=1"], "scripted has no such parameter"),
+            (["scripted", "-p", "speed=fast"], "should be a valid number"),
+            (["scripted", "-p", "speed=["], "speed: line 1"),
+        ],
+    )
+    def test_usage_errors_say_what_there_is(self, arguments: list[str], said: str):
+        assert said in " ".join(complaint("tree", *arguments, code=2).replace("│", " ").split())
+
+
+class TestBench:
+    def test_the_simulator(self):
+        printed = told("bench", "sim", "--seconds", "0.1")
+        assert list(printed) == ["one_v_one", "six_v_six", "eleven_v_eleven"]
+        explained = help_of("bench sim")
+        for case, figures in printed.items():
+            assert case in explained
+            assert all(key in explained for key in figures)
+            assert figures["steps_per_s"] > 0
+
+    def test_a_match(self, scenario: Path):
+        printed = told("bench", "match", scenario, "--seconds", "1")
+        explained = help_of("bench match")
+        assert all(key in explained for key in printed)
+        assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["wall_s"])
+        assert printed["recording"] is True
+        assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
+
+
+class TestErrors:
+    def test_a_missing_scenario_is_named_and_those_there_are(self):
+        assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
+
+    def test_a_wrong_field_is_named_with_its_file(self, scenario: Path):
+        scenario.write_text(yaml.safe_dump(data(period=5)))
+        assert complaint("match", scenario).startswith(f"robobt: {scenario}: period: input should be less")
+
+    @pytest.mark.parametrize(
+        ("simulator", "said"),
+        [
+            ("nothing", "simulator: no simulator preset is called 'nothing'; there are"),
+            ({"ball": {"mass": -1}}, "simulator.ball.mass: input should be greater"),
+            ({"bal": {}}, "simulator.bal: there is no such"),
+            ({"realism": "much"}, "simulator: no realism level is called 'much'; there are"),
+        ],
+    )
+    def test_wrong_settings_of_the_simulator_are_named(self, scenario: Path, simulator: Any, said: str):
+        scenario.write_text(yaml.safe_dump(data(simulator=simulator)))
+        assert complaint("match", scenario).startswith(f"robobt: {scenario}: {said}")
+
+    def test_square_brackets_survive(self, scenario: Path):
+        scenario.write_text("name: [red]\n")
+        assert "name" in complaint("match", scenario)
+
+    def test_a_file_that_is_no_recording(self, scenario: Path):
+        assert complaint("replay", scenario).startswith(f"robobt: {scenario}")
+
+    def test_a_file_that_is_not_there(self):
+        assert "nowhere.jsonl" in complaint("replay", "nowhere.jsonl")
+
+    def test_a_place_that_cannot_be_written(self, scenario: Path, tmp_path: Path):
+        (tmp_path / "file").write_text("")
+        assert str(tmp_path / "file") in complaint("match", scenario, "--out", tmp_path / "file" / "x.jsonl")
+
+    def test_a_trial_that_is_not_played_cannot_be_recorded(self, scenario: Path):
+        assert "there is no trial 7 to record" in complaint("match", scenario, "-n", "2", "--record", "7")
+
+    @pytest.mark.parametrize(
+        "arguments", [["--trials", "0"], ["--workers", "0"], ["--seed", "-1"], ["--what"]]
+    )
+    def test_wrong_options_are_usage_errors(self, scenario: Path, arguments: list[str]):
+        assert "Usage:" in complaint("match", scenario, *arguments, code=2)
+
+    def test_debug_shows_where(self):
+        result = CliRunner().invoke(app, ["--debug", "match", "nowhere"])
+        assert type(result.exception).__name__ == "ScenarioError"
+
+
+def test_models_lie_where_the_package_looks_for_them():
+    assert models_folder().is_dir()
