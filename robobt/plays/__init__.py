@@ -8,5 +8,16 @@ from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot
 from robobt.plays.goalkeeper import goalkeeper
+from robobt.plays.team import defender, field_player, keeper
 
-__all__ = ["PLAYS", "Play", "attack_main", "attack_support", "go_to_ball_and_shoot", "goalkeeper"]
+__all__ = [
+    "PLAYS",
+    "Play",
+    "attack_main",
+    "attack_support",
+    "defender",
+    "field_player",
+    "go_to_ball_and_shoot",
+    "goalkeeper",
+    "keeper",
+]

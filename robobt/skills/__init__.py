@@ -3,6 +3,7 @@
 Importing this package enters every one of them in :data:`SKILLS`.
 """
 
+from robobt.skills.aim_upfield import AimUpfield
 from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
 from robobt.skills.ball_at_defense_edge import BallAtDefenseEdge
 from robobt.skills.ball_in_own_defense_area import BallInOwnDefenseArea
@@ -55,6 +56,7 @@ from robobt.skills.wall import Wall
 
 __all__ = [
     "SKILLS",
+    "AimUpfield",
     "BallAimedAtGoal",
     "BallAtDefenseEdge",
     "BallInOwnDefenseArea",

@@ -8,6 +8,9 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_LET_GO = 0.06
 
 
 @skill
@@ -15,7 +18,10 @@ class CarriedFar(Skill):
     """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
 
     The way is as the crow flies from where it got the ball, as referees measure
-    it: they allow 1 m. To be ticked every tick; after a pause it counts anew.
+    it: they allow 1 m. A ball that has not come more than 60 mm off the hull has
+    not been let go. To be ticked every tick; after a pause it counts anew.
+
+    Source of the 60 mm: Sumatra's autoreferee.
 
     Args:
         limit: [m].
@@ -32,10 +38,13 @@ class CarriedFar(Skill):
         frame, ball = self.frame, self.ball
         paused = not 0.0 <= frame.time - self._seen < 2.5 * frame.period
         self._seen = frame.time
-        if not has_ball(self.me, ball):
+        gap = hypot(ball.x - self.me.x, ball.y - self.me.y) - ROBOT_RADIUS - BALL_RADIUS
+        if gap > _LET_GO:
             self._start = None
             return self.fail("it has no ball")
         if self._start is None or paused:
+            if not has_ball(self.me, ball):
+                return self.fail("it has no ball yet")
             self._start = ball.position
         way = hypot(ball.x - self._start[0], ball.y - self._start[1])
         if way < self.limit:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import hypot
+from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.skills.path_planner import STOP_DISTANCE, travel
 from robobt.tree import Status
-from robobt.world.game import Restart
 from robobt.world.geometry import Point, direction
 from robobt.world.state import ROBOT_RADIUS
 
@@ -16,14 +16,17 @@ _STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
 
 @skill
 class PrepareRestart(Skill):
-    """Stand behind the ball of the own restart, looking over it at the opponent's goal.
+    """Stand behind the ball of the own restart, looking over it at where it shall go.
 
-    In a stop it keeps to the rules' distance. SUCCESS once the restart may be
-    taken, FAILURE while the own team has none.
+    That is the target of ``shot``, else of ``pass_``, else the opponent's goal. In
+    a stop it keeps to the rules' distance. SUCCESS once the restart may be taken,
+    FAILURE while the own team has none.
 
     Args:
         gap: from the ball to the robot's centre [m].
     """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
 
     def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
         super().__init__(name)
@@ -37,17 +40,19 @@ class PrepareRestart(Skill):
         if game.may_touch and not game.stopped:
             return self.succeed("it may be taken")
         spot = game.placement or frame.ball.position
-        gap = _STOP_GAP if game.stopped else self.gap
-        looks_at = (
-            (frame.field.half_length, spot[1]) if game.restart is Restart.KICKOFF else frame.field.their_goal
-        )
-        x, y = _before(spot, looks_at, -gap)
+        x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
         if game.stopped and not frame.field.contains(x, y):
-            x, y = _before(spot, (0.0, 0.0), gap)
+            x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
         self.store.command = travel(
             frame, me, (x, y), direction(me.position, spot), me.limits, avoid_ball=True
         )
         return self.run("waiting for the whistle")
+
+    def _aim(self) -> Point:
+        store = self.store
+        if store.shot is not None:
+            return store.shot.target
+        return self.frame.field.their_goal if store.pass_ is None else store.pass_.target
 
 
 def _before(spot: Point, point: Point, gap: float) -> Point:

@@ -25,6 +25,9 @@ _DETOUR = 0.5
 _HELD = 1.0
 """How much nearer a robot counts that has the ball [m]."""
 
+_REACH = 0.06
+"""Nobody but a goalkeeper goes for a ball in a defence area or this near to one [m]."""
+
 _MARK_FROM = 0.5
 """Opponents are marked up to this x: the own half and a little more [m]."""
 
@@ -68,7 +71,9 @@ def _follow_restart(frame: Frame, team: TeamStore) -> None:
 
 
 def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
-    ball = frame.ball
+    ball, field = frame.ball, frame.field
+    if field.in_our_defense(ball.x, ball.y, _REACH) or field.in_their_defense(ball.x, ball.y, _REACH):
+        return None
     x, y = ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy
     if not frame.game.in_play and frame.game.placement is not None:
         x, y = frame.game.placement

@@ -1,0 +1,57 @@
+"""Choose a kick that wins ground when there is neither a shot nor a pass."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, radians, sin
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.store import Shot
+from robobt.tree import Status
+from robobt.world.geometry import Point, segment_distance
+
+_TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
+_ENOUGH = 0.5
+_TOLERANCE = radians(6.0)
+
+
+@skill
+class AimUpfield(Skill):
+    """Write to ``shot`` a kick that keeps the ball in the field and wins ground. Always SUCCESS.
+
+    Of the directions about the way to the opponent's goal it takes the one whose
+    lane is freest of opponents, half a metre being free enough, and stays inside
+    the lines; among like ones the straightest.
+
+    Args:
+        reach: length of the lane [m].
+    """
+
+    writes: ClassVar[tuple[str, ...]] = ("shot",)
+
+    def __init__(self, *, reach: float = 2.5, name: str = "") -> None:
+        super().__init__(name)
+        self.reach = reach
+
+    def on_running(self) -> Status:
+        """Compare the lanes."""
+        frame = self.frame
+        x, y = frame.ball.position
+        goal_x, goal_y = frame.field.their_goal
+        ahead = atan2(goal_y - y, goal_x - x)
+        opponents = [
+            robot.position
+            for robot in frame.opponents
+            if hypot(robot.x - x, robot.y - y) < self.reach + _ENOUGH
+        ]
+        best: Point = (goal_x, goal_y)
+        most = -inf
+        for turn in _TURNS:
+            end = (x + self.reach * cos(ahead + turn), y + self.reach * sin(ahead + turn))
+            room = min((segment_distance(other, (x, y), end) for other in opponents), default=_ENOUGH)
+            outside = max(0.0, abs(end[0]) - frame.field.half_length, abs(end[1]) - frame.field.half_width)
+            value = min(room, _ENOUGH) - 0.1 * abs(turn) - outside
+            if value > most:
+                best, most = end, value
+        self.store.shot = Shot(best, _TOLERANCE, 0.0)
+        return self.succeed("upfield")
