@@ -93,3 +93,8 @@ class Store:
     target: Point | None = None
     shot: Shot | None = None
     pass_: Pass | None = None
+
+    @property
+    def time(self) -> float:
+        """The frame's time: the only clock a tree has [s]."""
+        return self.frame.time

@@ -8,7 +8,8 @@ of visits, the same ``initialise``, ``update`` and ``terminate`` calls with the
 same arguments, the same ``status``, ``current_child`` and feedback. All state
 stays on the nodes, so ``tip()``, ``display`` and ``stop()`` work as ever, and
 ticks of both kinds may be mixed. A node whose class has a ``tick`` or ``stop``
-of its own is ticked through them.
+of its own is ticked through them, unless the class that defines them brings its
+own closures, see :class:`BringsClosures`.
 
 What differs: the attribute ``iterator`` of a node is not renewed, and nothing
 is logged at debug level.
@@ -16,8 +17,9 @@ is logged at debug level.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias, cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
@@ -25,10 +27,12 @@ from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import Decorator, EternalGuard, OneShot
 from py_trees.trees import BehaviourTree
 
+_log = logging.getLogger(__name__)
+
 Tick: TypeAlias = Callable[[], Status]
 Stop: TypeAlias = Callable[[Status], None]
 Visit: TypeAlias = Callable[[Behaviour], None]
-_Plan: TypeAlias = list[tuple[Behaviour, Tick, Stop]]
+Plan: TypeAlias = list[tuple[Behaviour, Tick, Stop]]
 
 _S, _F, _R, _I = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
 
@@ -42,11 +46,30 @@ def compile_tree(root: Behaviour, visit: Visit | None = None) -> Tick:
     Args:
         visit: called with every node as it has been ticked, in py_trees' order.
     """
-    return _compile(root, visit)[0]
+    return compile_node(root, visit)[0]
+
+
+class BringsClosures(Protocol):
+    """What a class with a ``tick`` of its own offers to be ticked without its generator."""
+
+    def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
+        """Functions that do to this node what its ``tick`` and its ``stop`` do.
+
+        Children are compiled by :func:`compile_node`. A subclass that overrides
+        ``tick`` or ``stop`` without ``closures`` is ticked through its generator.
+
+        Args:
+            visit: to be called with this node whenever it has been ticked; the
+                closures of its children do the same for them.
+        """
 
 
 class FastTree(BehaviourTree):
-    """A py_trees ``BehaviourTree`` ticked by :func:`compile_tree`; visitors and handlers as ever."""
+    """A py_trees ``BehaviourTree`` ticked by :func:`compile_tree`; visitors and handlers as ever.
+
+    When a node raises, the tree is abandoned and the visitors are finalised before the
+    exception goes on.
+    """
 
     def __init__(self, root: Behaviour) -> None:
         super().__init__(root)
@@ -69,7 +92,13 @@ class FastTree(BehaviourTree):
         if self._compiled is None or self._compiled_for != wanted:
             self._compiled = compile_tree(self.root, self._visit if wanted[1] else None)
             self._compiled_for = wanted
-        self._compiled()
+        try:
+            self._compiled()
+        except Exception:
+            abandon(self.root)
+            for visitor in self.visitors:
+                visitor.finalise()
+            raise
         full = [visitor for visitor in self.visitors if visitor.full]
         if full:
             for node in self.root.iterate():
@@ -89,14 +118,42 @@ class FastTree(BehaviourTree):
                 node.visit(visitor)
 
 
-def _compile(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
+def abandon(root: Behaviour) -> None:
+    """Bring a tree that an exception left half-ticked to rest: every node is INVALID afterwards.
+
+    Nodes that were running are stopped, so they hear of their interruption; what
+    they raise then is logged and keeps no other node from being stopped.
+    """
+    # Children first, as composites stop; each is asked for itself, for a half-ticked
+    # parent does not know that its child runs.
+    for node in root.iterate():
+        if node.status is _R:
+            try:
+                node.stop(_I)
+            except Exception:
+                _log.warning("%r raised again while its tree was being stopped", node.name, exc_info=True)
+        node.status = _I
+
+
+def compile_node(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
+    """Functions that tick and stop this node and everything below it."""
     cls = type(node)
     if "tick" in vars(node) or "stop" in vars(node):
         return _as_it_is(node, visit)
     for tick, stop, make in _KNOWN:
         if cls.tick is tick and cls.stop is stop:
             return make(node, visit)
+    if _brings_closures(cls):
+        return cast(BringsClosures, node).closures(visit)
     return _as_it_is(node, visit)
+
+
+def _brings_closures(cls: type[Behaviour]) -> bool:
+    """Whether the closures the class offers are those of its own ``tick`` and ``stop``."""
+    for base in cls.__mro__:
+        if "closures" in vars(base):
+            return cls.tick is base.tick and cls.stop is base.stop  # type: ignore[attr-defined]
+    return False
 
 
 def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
@@ -115,14 +172,14 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise, terminate = _own(node, "initialise"), _own(node, "terminate")
+    initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
 
     def tick() -> Status:
         if initialise is not None and node.status is not _R:
             initialise()
         status = node.update()
         if status.__class__ is not Status:
-            status = _not_a_status(node, status)
+            status = not_a_status(node, status)
         if terminate is not None and status is not _R:
             terminate(status)
         node.status = status
@@ -139,9 +196,9 @@ def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise, terminate = _own(node, "initialise"), _own(node, "terminate")
+    initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated
-    tick_child, stop_child = _compile(decorated, visit)
+    tick_child, stop_child = compile_node(decorated, visit)
 
     def tick() -> Status:
         if initialise is not None and node.status is not _R:
@@ -149,7 +206,7 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         tick_child()
         status: Status = node.update()
         if status.__class__ is not Status:
-            status = _not_a_status(node, status)
+            status = not_a_status(node, status)
         if status is not _R:
             stop(status)
         node.status = status
@@ -190,7 +247,7 @@ def _eternal_guard(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
     tick_child, stop = _decorator(node, visit)
-    initialise = _own(node, "initialise")
+    initialise = own_method(node, "initialise")
 
     def tick() -> Status:
         if not node.final_status:
@@ -199,7 +256,7 @@ def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
             initialise()
         status: Status = node.update()
         if status.__class__ is not Status:
-            status = _not_a_status(node, status)
+            status = not_a_status(node, status)
         if status is not _R:
             stop(status)
         node.status = status
@@ -211,14 +268,14 @@ def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise = _own(node, "initialise")
+    initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
-    plan: _Plan = []
-    stop = _composite_stop(node, visit, children, plan)
+    plan: Plan = []
+    stop = composite_stop(node, visit, children, plan)
 
     def tick() -> Status:
         if node.children != children:
-            _replan(node, visit, children, plan)
+            replan(node, visit, children, plan)
         start = 0
         if node.status is not _R:
             node.current_child = children[0] if children else None
@@ -258,14 +315,14 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise = _own(node, "initialise")
+    initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
-    plan: _Plan = []
-    stop = _composite_stop(node, visit, children, plan)
+    plan: Plan = []
+    stop = composite_stop(node, visit, children, plan)
 
     def tick() -> Status:
         if node.children != children:
-            _replan(node, visit, children, plan)
+            replan(node, visit, children, plan)
         if node.status is not _R:
             node.current_child = children[0] if children else None
             if initialise is not None:
@@ -305,14 +362,14 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise = _own(node, "initialise")
+    initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
-    plan: _Plan = []
-    stop_composite = _composite_stop(node, visit, children, plan)
+    plan: Plan = []
+    stop_composite = composite_stop(node, visit, children, plan)
 
     def stop(status: Status) -> None:
         if node.children != children:
-            _replan(node, visit, children, plan)
+            replan(node, visit, children, plan)
         for child, _, stop_child in plan:
             if child.status is _R:
                 stop_child(_I)
@@ -320,7 +377,7 @@ def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
     def tick() -> Status:
         if node.children != children:
-            _replan(node, visit, children, plan)
+            replan(node, visit, children, plan)
         policy = node.policy
         if isinstance(policy, ParallelPolicy.SuccessOnSelected):
             node.validate_policy_configuration()
@@ -374,14 +431,15 @@ def _parallel_status(node: Any, children: list[Behaviour], policy: Any) -> Statu
     raise RuntimeError(f"this parallel has been configured with an unrecognised policy [{type(policy)}]")
 
 
-def _composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], plan: _Plan) -> Stop:
-    terminate = _own(node, "terminate")
+def composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], plan: Plan) -> Stop:
+    """What ``Composite.stop`` does; ``children`` and ``plan`` are those that :func:`replan` keeps."""
+    terminate = own_method(node, "terminate")
 
     def stop(status: Status) -> None:
         if status is _I:
             node.current_child = None
             if node.children != children:
-                _replan(node, visit, children, plan)
+                replan(node, visit, children, plan)
             for child, _, stop_child in plan:
                 if child.status is not _I:
                     stop_child(_I)
@@ -392,21 +450,22 @@ def _composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], p
     return stop
 
 
-def _replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan: _Plan) -> None:
+def replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
     """Bring a composite's closures up to its children; in place, for the closures share them."""
     known = {id(child): (tick, stop) for child, tick, stop in plan}
     children[:] = node.children
-    plan[:] = [(child, *(known.get(id(child)) or _compile(child, visit))) for child in children]
+    plan[:] = [(child, *(known.get(id(child)) or compile_node(child, visit))) for child in children]
 
 
-def _own(node: Behaviour, method: str) -> Any:
+def own_method(node: Behaviour, method: str) -> Any:
     """The node's bound method, None where it is py_trees' own that does nothing."""
     if method not in vars(node) and getattr(type(node), method) is getattr(Behaviour, method):
         return None
     return getattr(node, method)
 
 
-def _not_a_status(node: Behaviour, status: object) -> Status:
+def not_a_status(node: Behaviour, status: object) -> Status:
+    """INVALID, after py_trees' complaint that ``update`` returned something else."""
     node.logger.error(f"A behaviour returned an invalid status, setting to INVALID [{status}][{node.name}]")
     return _I
 
@@ -422,4 +481,4 @@ _KNOWN: list[tuple[Any, Any, _Make]] = [
     (OneShot.tick, OneShot.stop, _one_shot),
 ]
 
-__all__ = ["FastTree", "compile_tree"]
+__all__ = ["BringsClosures", "FastTree", "abandon", "compile_node", "compile_tree"]

@@ -10,7 +10,17 @@ from py_trees.common import Status
 StoreT = TypeVar("StoreT")
 
 
-class Leaf(Behaviour, Generic[StoreT]):
+class Bound(Generic[StoreT]):
+    """What is given the store of the robot that runs the tree: leaves, and control nodes that need it.
+
+    Attributes:
+        store: the robot's store; set by :func:`bind` before the first tick.
+    """
+
+    store: StoreT
+
+
+class Leaf(Behaviour, Bound[StoreT]):
     """A leaf that works on a store shared by one robot's tree.
 
     Override :meth:`on_running`, and the others where needed:
@@ -28,13 +38,10 @@ class Leaf(Behaviour, Generic[StoreT]):
 
     Attributes:
         reads, writes: names of the store's entries the leaf uses.
-        store: the robot's store; set by :func:`bind` before the first tick.
     """
 
     reads: ClassVar[tuple[str, ...]] = ()
     writes: ClassVar[tuple[str, ...]] = ()
-
-    store: StoreT
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name or type(self).__name__)
@@ -88,7 +95,7 @@ class Leaf(Behaviour, Generic[StoreT]):
 
 
 def bind(root: Behaviour, store: object) -> None:
-    """Give every leaf below ``root`` the store of the robot that runs the tree."""
+    """Give every :class:`Bound` node below ``root`` the store of the robot that runs the tree."""
     for node in root.iterate():
-        if isinstance(node, Leaf):
+        if isinstance(node, Bound):
             node.store = store

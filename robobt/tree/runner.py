@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import logging
+from typing import Literal
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from robobt.tree.engine import compile_tree
+from robobt.tree.engine import abandon, compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -22,33 +23,51 @@ def node_path(node: Behaviour) -> str:
     return "/".join(reversed(names))
 
 
+class TreeError(RuntimeError):
+    """A node raised: the message starts with its path, ``__cause__`` is what it raised."""
+
+
 class TreeRunner:
     """A tree bound to one store.
 
-    An exception in a node stops this tree: every node becomes INVALID, ``error``
-    says what happened and where, and the next tick starts from the root again.
+    An exception in a node stops this tree: running nodes are interrupted, every
+    node becomes INVALID, ``error`` says what happened and where, and the next tick
+    starts from the root again.
+
+    Args:
+        root: the tree.
+        store: what its leaves work on.
+        on_error: what else an exception in a node does. "stop" logs it, for matches that
+            go on without this robot; "raise" raises :class:`TreeError`, for development.
 
     Attributes:
         nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
         error: what the last tick raised, None when it went well.
     """
 
-    def __init__(self, root: Behaviour, store: object) -> None:
+    def __init__(self, root: Behaviour, store: object, on_error: Literal["stop", "raise"] = "stop") -> None:
         self.root = root
+        self.on_error = on_error
         self.error: str | None = None
         self.nodes = preorder(root)
         bind(root, store)
         self._tick = compile_tree(root)
 
     def tick(self) -> Status:
-        """Tick the tree once; INVALID when a node raised."""
+        """Tick the tree once; INVALID when a node raised.
+
+        Raises:
+            TreeError: a node raised, and ``on_error`` is "raise".
+        """
         self.error = None
         try:
             self._tick()
         except Exception as error:
             self.error = f"{self._raiser(error)}: {type(error).__name__}: {error}"
+            abandon(self.root)
+            if self.on_error == "raise":
+                raise TreeError(self.error) from error
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
-            self._clear()
         return self.root.status
 
     def statuses(self) -> str:
@@ -69,15 +88,6 @@ class TreeRunner:
                 path = node_path(candidate)
             trace = trace.tb_next
         return path
-
-    def _clear(self) -> None:
-        try:
-            self.stop()
-        except Exception:
-            _log.warning("a node raised again while its tree was being stopped", exc_info=True)
-        for node in self.nodes:
-            # Whatever state the exception left behind, no node may stay RUNNING.
-            node.status = Status.INVALID
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:
