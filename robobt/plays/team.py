@@ -19,6 +19,7 @@ from robobt.skills.carried_far import CarriedFar
 from robobt.skills.cover_angle import CoverAngle
 from robobt.skills.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.go_to_penalty_position import GoToPenaltyPosition
+from robobt.skills.has_ball import HasBall
 from robobt.skills.is_attacker import IsAttacker
 from robobt.skills.is_halted import IsHalted
 from robobt.skills.is_restart import IsRestart
@@ -27,6 +28,7 @@ from robobt.skills.kick_to_target import KickToTarget
 from robobt.skills.mark_opponent import MarkOpponent
 from robobt.skills.may_touch_ball import MayTouchBall
 from robobt.skills.prepare_restart import PrepareRestart
+from robobt.skills.receive_ball import ReceiveBall
 from robobt.skills.select_pass import SelectPass
 from robobt.skills.select_shot import SelectShot
 from robobt.skills.stop import Stop
@@ -144,7 +146,8 @@ def on_the_ball(shot_distance: float, dribble_speed: float) -> Behaviour:
         "attack",
         memory=False,
         children=[
-            when("let go", CarriedFar(), Stop()),
+            when("let go", CarriedFar(limit=0.6), Stop()),
+            when("receive", Inverter("free ball", HasBall()), ReceiveBall()),
             attack_main(max_distance=shot_distance, dribble_speed=dribble_speed),
         ],
     )

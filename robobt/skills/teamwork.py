@@ -13,17 +13,24 @@ from robobt.skills.possession import has_ball, owner
 from robobt.skills.store import TeamStore
 from robobt.world.state import Frame, RobotId, RobotState
 
-SWITCH_GAIN = 0.3
-"""Another robot takes over when it is this much nearer [m]."""
+SWITCH_GAIN = 0.15
+"""Another robot goes for the ball when it is there so much sooner [s]."""
 
-_LEAD = 0.25
-"""The ball is looked for where it will be after this time [s]."""
+_PACE = 2.0
+"""Speed that a robot makes on its way to the ball, starts and stops included [m/s]."""
 
-_DETOUR = 0.5
-"""Most that is added to the way of a robot that has to get behind the ball first [m]."""
+_ROLLS = 0.3
+_AHEAD = (0.0, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0)
+"""When a rolling ball is looked for [s]."""
 
-_HELD = 1.0
-"""How much nearer a robot counts that has the ball [m]."""
+_DETOUR = 0.3
+"""Most that it takes a robot to get behind the ball first [s]."""
+
+_HELD = 0.5
+"""How much sooner a robot counts that has the ball [s]."""
+
+_MARK_GAIN = 0.3
+"""Another robot marks an opponent when it is so much nearer to it [m]."""
 
 _REACH = 0.06
 """Nobody but a goalkeeper goes for a ball in a defence area or this near to one [m]."""
@@ -74,22 +81,35 @@ def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
     ball, field = frame.ball, frame.field
     if field.in_our_defense(ball.x, ball.y, _REACH) or field.in_their_defense(ball.x, ball.y, _REACH):
         return None
-    x, y = ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy
-    if not frame.game.in_play and frame.game.placement is not None:
-        x, y = frame.game.placement
     best: int | None = None
     least = present = inf
     for robot in frame.own:
-        if robot.id == team.kicker or x > team.attackers.get(robot.id, -inf):
+        if robot.id == team.kicker or ball.x > team.attackers.get(robot.id, -inf):
             continue
-        way = hypot(robot.x - x, robot.y - y) + min(_DETOUR, max(0.0, robot.x - x))
-        if has_ball(robot, ball):
-            way -= _HELD
+        time = _time_to_ball(frame, robot)
         if robot.id == team.attacker:
-            present = way
-        if way < least:
-            best, least = robot.id, way
+            present = time
+        if time < least:
+            best, least = robot.id, time
     return team.attacker if present < least + SWITCH_GAIN else best
+
+
+def _time_to_ball(frame: Frame, robot: RobotState) -> float:
+    """About when the robot can be at the ball, wherever that will be, with the goal before it [s]."""
+    ball, game = frame.ball, frame.game
+    x, y = ball.x, ball.y
+    if not game.in_play and game.placement is not None:
+        x, y = game.placement
+    elif has_ball(robot, ball):
+        return -_HELD
+    elif abs(ball.vx) + abs(ball.vy) > _ROLLS:
+        return min(
+            [
+                max(ahead, hypot(x + ahead * ball.vx - robot.x, y + ahead * ball.vy - robot.y) / _PACE)
+                for ahead in _AHEAD
+            ]
+        )
+    return hypot(robot.x - x, robot.y - y) / _PACE + min(_DETOUR, max(0.0, robot.x - x))
 
 
 def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
@@ -114,7 +134,7 @@ def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
 
 
 def _mark_cost(team: TeamStore, mate: RobotState, threat: RobotState) -> float:
-    kept = SWITCH_GAIN if team.marks.get(mate.id) == threat.id else 0.0
+    kept = _MARK_GAIN if team.marks.get(mate.id) == threat.id else 0.0
     return hypot(mate.x - threat.x, mate.y - threat.y) - kept
 
 

@@ -83,5 +83,5 @@ def test_a_restart_is_taken_by_the_robot_nearest_to_its_place_not_to_the_ball() 
 
 @pytest.mark.parametrize(("vx", "expected"), [(0.0, [1]), (-4.0, [2])])
 def test_a_rolling_ball_is_met_where_it_will_be(vx: float, expected: list[int]) -> None:
-    robots = (robot(-0.6, 0.0, number=1), robot(-1.5, 0.0, number=2))
+    robots = (robot(-0.6, 1.4, number=1), robot(-2.0, 0.3, number=2))
     assert Team3().attackers(robots, (0.0, 0.0, vx, 0.0)) == expected
