@@ -9,5 +9,5 @@ from robobt.tree import Behaviour, Registry
 Play = Callable[..., Behaviour]
 """A function of keyword parameters, all with defaults, that returns a new tree."""
 
-PLAYS: Registry[Play] = Registry("play")
+PLAYS: Registry[Play] = Registry("play", group="robobt.plays", fits=callable)
 """Every play by name."""

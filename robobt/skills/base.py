@@ -30,7 +30,9 @@ class Skill(Leaf[Store]):
         return self.store.frame.ball
 
 
-SKILLS: Registry[type[Skill]] = Registry("skill")
+SKILLS: Registry[type[Skill]] = Registry(
+    "skill", group="robobt.skills", fits=lambda entry: isinstance(entry, type) and issubclass(entry, Skill)
+)
 """Every skill and condition by its class name."""
 
 

@@ -1,23 +1,47 @@
-"""Things by name: skills, plays, raters."""
+"""Things by name: skills, plays, raters, from this package and from others."""
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
+from importlib.metadata import EntryPoint, entry_points
+from types import ModuleType
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
+
+_log = logging.getLogger(__name__)
 
 
 class Registry(Generic[T]):
     """A mapping from names to things of one kind.
 
+    Other packages add to it through an entry point group. An entry point names
+    either the thing itself, which is then entered under the entry point's name,
+    or a module that enters things as it is imported. They are loaded when the
+    registry is first listed or asked for a name it does not know. What comes
+    first keeps its name: the package's own things, then those of the
+    distributions in alphabetical order. A distribution that cannot be loaded, or
+    claims a name that is taken, harms nobody else: what is wrong with it is in
+    :attr:`problems`.
+
     Args:
         kind: what it holds, for messages ("play").
+        group: entry point group that other packages add to, None for none.
+        fits: whether something is of that kind; asked of other packages' entries.
     """
 
-    def __init__(self, kind: str) -> None:
+    def __init__(
+        self, kind: str, group: str | None = None, fits: Callable[[object], bool] | None = None
+    ) -> None:
         self.kind = kind
+        self.group = group
+        self._fits = fits
         self._entries: dict[str, T] = {}
+        self._sources: dict[str, str] = {}
+        self._problems: dict[str, str] = {}
+        self._loaded = group is None
+        self._loading: str | None = None
 
     def register(self, name: str) -> Callable[[T], T]:
         """A decorator that enters the decorated thing under ``name``.
@@ -30,32 +54,101 @@ class Registry(Generic[T]):
             if name in self._entries:
                 raise ValueError(
                     f"{self.kind} {name!r} is registered twice: "
-                    f"{_where(self._entries[name])} and {_where(entry)}"
+                    f"{self._where(name, self._entries[name])} and {_say(entry, self._loading)}"
                 )
             self._entries[name] = entry
+            if self._loading is not None:
+                self._sources[name] = self._loading
             return entry
 
         return enter
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What is wrong with other packages' entries, a line each that names the distribution."""
+        self._load()
+        return tuple(self._problems.values())
+
+    def source(self, name: str) -> str | None:
+        """The distribution whose entry point brought an entry, None for the package's own."""
+        return self._sources.get(name)
 
     def __getitem__(self, name: str) -> T:
         """The entry.
 
         Raises:
-            KeyError: no such name; the message lists the names there are.
+            KeyError: no such name; the message lists the names there are, or says
+                why the entry of another package could not be loaded.
         """
         if name not in self._entries:
+            self._load()
+        if name not in self._entries:
+            if name in self._problems:
+                raise KeyError(self._problems[name])
             raise KeyError(f"no {self.kind} is called {name!r}; there are {', '.join(self)}")
         return self._entries[name]
 
     def __contains__(self, name: object) -> bool:
+        if name not in self._entries:
+            self._load()
         return name in self._entries
 
     def __iter__(self) -> Iterator[str]:
+        self._load()
         return iter(sorted(self._entries))
 
     def __len__(self) -> int:
+        self._load()
         return len(self._entries)
 
+    def _load(self) -> None:
+        if self._loaded:
+            return
+        # Set first: what is being loaded may look names up itself.
+        self._loaded = True
+        found = entry_points(group=self.group) if self.group is not None else ()
+        for point in sorted(found, key=lambda point: (_distribution(point), point.name)):
+            self._loading = _distribution(point)
+            before = set(self._entries)
+            try:
+                self._enter(point)
+            except (Exception, SystemExit) as error:
+                # A module that raises half-way has entered only half of what belongs together.
+                for name in set(self._entries) - before:
+                    del self._entries[name], self._sources[name]
+                self._refuse(point, f"{type(error).__name__}: {error}")
+            finally:
+                self._loading = None
 
-def _where(entry: object) -> str:
-    return f"{getattr(entry, '__module__', '?')}.{getattr(entry, '__qualname__', repr(entry))}"
+    def _enter(self, point: EntryPoint) -> None:
+        entry = point.load()
+        if isinstance(entry, ModuleType):
+            return
+        if self._fits is not None and not self._fits(entry):
+            raise TypeError(f"{_say(entry, None)} is no {self.kind}")
+        # Importing its module may have entered it already, through a decorator.
+        if point.name not in self._entries or self._entries[point.name] is not entry:
+            self.register(point.name)(entry)
+
+    def _refuse(self, point: EntryPoint, reason: str) -> None:
+        words = " ".join(reason.split())
+        problem = (
+            f"{self.kind} {point.name!r} ({point.value}) of the distribution "
+            f"{_distribution(point)} cannot be used: {words}"
+        )
+        # Two distributions may claim one name; neither report hides the other.
+        key = point.name if point.name not in self._problems else f"{point.name} of {_distribution(point)}"
+        self._problems[key] = problem
+        _log.warning("%s", problem)
+
+    def _where(self, name: str, entry: T) -> str:
+        return _say(entry, self._sources.get(name))
+
+
+def _distribution(point: EntryPoint) -> str:
+    return point.dist.name if point.dist is not None else "?"
+
+
+def _say(entry: object, source: str | None) -> str:
+    where = f"{getattr(entry, '__module__', '?')}.{getattr(entry, '__qualname__', repr(entry))}"
+    return where if source is None else f"{where} of the distribution {source}"

@@ -47,7 +47,11 @@ class ShotRater(BaseModel, ABC):
         return shots[0] if shots else None
 
 
-RATERS: Registry[type[ShotRater]] = Registry("shot rater")
+RATERS: Registry[type[ShotRater]] = Registry(
+    "shot rater",
+    group="robobt.raters",
+    fits=lambda entry: isinstance(entry, type) and issubclass(entry, ShotRater),
+)
 """The shot raters by name."""
 
 
