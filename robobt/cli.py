@@ -211,27 +211,35 @@ def replay(
 
 @app.command()
 @_one_line_errors
-def scenarios(as_json: _Json = False) -> None:
-    """List the bundled scenarios.
+def scenarios(
+    name: Annotated[
+        str | None, typer.Argument(help="One scenario, bundled or a file, with all of it.")
+    ] = None,
+    as_json: _Json = False,
+) -> None:
+    """List the bundled scenarios, or show one.
 
     Keys of --json: scenarios, a list with name, description, file, field (length
     and width in metres), period and time_limit (seconds), trials, referee
     (whether there is one), ball (where it starts) and robots (robot, play,
-    params, start).
+    params, start: in the own team's view, own goal at -x).
     """
     from robobt.match import load_scenario
     from robobt.resources import bundled_scenarios
 
-    loaded = [(path, load_scenario(path)) for path in bundled_scenarios().values()]
+    loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]
     if as_json:
-        _print_json({"scenarios": [_scenario_data(path, scenario) for path, scenario in loaded]})
+        _print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
+        return
+    if name is not None:
+        _print_scenario(loaded[0])
         return
     table = Table("scenario", "robots", "trials", "what it is", box=None, padding=(0, 2, 0, 0))
-    for _, scenario in loaded:
+    table.columns[0].no_wrap = True
+    for scenario in loaded:
         size = f"{len(scenario.robots.blue)} v {len(scenario.robots.yellow)}"
-        table.add_row(
-            escape(scenario.name), size, str(scenario.trials), escape(" ".join(scenario.description.split()))
-        )
+        about = " ".join(scenario.description.split()).partition(". ")[0].removesuffix(".")
+        table.add_row(escape(scenario.name), size, str(scenario.trials), escape(about))
     _console.print(table)
 
 
@@ -471,11 +479,26 @@ def _say_spread(spread: Any) -> str:
     return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (s² {spread.variance:.4f})")
 
 
-def _scenario_data(path: Path, scenario: Scenario) -> dict[str, Any]:
+def _print_scenario(scenario: Scenario) -> None:
+    _console.print(f"[bold]{escape(scenario.name)}[/bold]  {escape(scenario.source)}", soft_wrap=True)
+    _say(" ".join(scenario.description.split()))
+    table = Table("", "play", "start, in the own team's view", box=None, padding=(0, 2, 0, 0))
+    for robot, setup in scenario.robots:
+        given = ", ".join([f"{key}={value}" for key, value in setup.params.items()])
+        table.add_row(str(robot), escape(f"{setup.play}({given})"), escape(str(setup.start)))
+    table.add_row("ball", "", escape(str(scenario.ball)))
+    _console.print(table)
+    ends = scenario.ends.model_dump(exclude_none=True)
+    _say(f"Ends: {', '.join([f'{key} {value}' for key, value in ends.items()])}")
+    referee = "with a referee" if scenario.referee is not None else "no referee"
+    _say(f"Control every {scenario.period:g} s, {referee}, simulator {scenario.simulator}")
+
+
+def _scenario_data(scenario: Scenario) -> dict[str, Any]:
     return {
         "name": scenario.name,
         "description": " ".join(scenario.description.split()),
-        "file": str(path),
+        "file": scenario.source,
         "field": {"length": scenario.field.length, "width": scenario.field.width},
         "period": scenario.period,
         "trials": scenario.trials,

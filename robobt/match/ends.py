@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import StrEnum
 from math import ceil, hypot
 
@@ -9,7 +10,7 @@ from robobt.match.rules import between_posts, exit_point, left_over_goal_line, l
 from robobt.match.scenario import Scenario
 from robobt.world.game import GameState, Stage, Team
 from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
 
 _HELD_GAP = 0.02
 """A ball this close to the hull is the goalkeeper's. Source: Sumatra's referee [m]."""
@@ -24,7 +25,7 @@ class Outcome(StrEnum):
     GOAL_BLUE = "goal_blue"
     GOAL_YELLOW = "goal_yellow"
     SAVED = "saved"
-    """A goalkeeper has the ball."""
+    """A goalkeeper has the ball or has kicked it."""
     OUT = "out"
     REST = "rest"
     """The ball lies still after a kick."""
@@ -52,7 +53,7 @@ class EndJudge:
         self._ends = ends
         self._goal_ends = free if ends.goal is None else ends.goal
         self._out_ends = free if ends.ball_out is None else ends.ball_out
-        self._keepers = scenario.goalkeepers()
+        self._keepers = {RobotId(team, number) for team, number in scenario.goalkeepers().items()}
         self._last_tick = ceil(ends.time_limit / scenario.period - 1e-9)
         self._ticks = -1
         self._ball_before: Point | None = None
@@ -60,12 +61,15 @@ class EndJudge:
         self._held_since: float | None = None
         self._rest_since: float | None = None
 
-    def judge(self, truth: Frame, game: GameState, kicks: int) -> Outcome | None:
+    def judge(
+        self, truth: Frame, game: GameState, kicks: int, kicked: Sequence[RobotId] = ()
+    ) -> Outcome | None:
         """Whether the match is over at this frame.
 
         Args:
             game: the referee's word.
             kicks: how often the ball has been kicked so far.
+            kicked: who kicked it since the frame before.
         """
         self._ticks += 1
         scorer = self._scorer(truth, game)
@@ -79,6 +83,8 @@ class EndJudge:
         if self._was_out and self._out_ends and scorer is None:
             return Outcome.OUT
         if _lasted(self._since_held(truth), self._ends.held_by_goalkeeper, truth.time):
+            return Outcome.SAVED
+        if self._ends.held_by_goalkeeper is not None and any(robot in self._keepers for robot in kicked):
             return Outcome.SAVED
         if _lasted(self._since_rest(truth, kicks), self._ends.ball_at_rest, truth.time):
             return Outcome.REST
@@ -110,8 +116,8 @@ class EndJudge:
     def _since_held(self, truth: Frame) -> float | None:
         held = False
         for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
-            number = self._keepers.get(team)
-            held = held or any(robot.id == number and _has_ball(robot, truth) for robot in robots)
+            for robot in robots:
+                held = held or (RobotId(team, robot.id) in self._keepers and _has_ball(robot, truth))
         if not held:
             self._held_since = None
         elif self._held_since is None:

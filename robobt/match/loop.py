@@ -113,7 +113,7 @@ class Match:
         truth.game = self.game
         self.measures.update(truth, self.game, self._commands)
         self._trace.update(truth, self.game)
-        self.outcome = self._judge.judge(truth, self.game, self.measures.kicks)
+        self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         if self.outcome is None:
             frame = self.world.observe()
             frame.game = self.game

@@ -139,7 +139,7 @@ class Ends(Part):
         None, description="the ball has left the field in full; by default where there is no referee"
     )
     held_by_goalkeeper: float | None = Field(
-        None, ge=0, le=60, description="a goalkeeper has had the ball for this long [s]"
+        None, ge=0, le=60, description="a goalkeeper has had the ball for this long, or has kicked it [s]"
     )
     ball_at_rest: float | None = Field(
         None, ge=0, le=60, description="after a kick the ball has lain still for this long [s]"
