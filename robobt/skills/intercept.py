@@ -23,8 +23,8 @@ _FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
 _SLOW = 0.2
 """A ball slower than this is gone to, not waited for [m/s]."""
 _CLOSE = 0.2
-_SETTLED = 0.05
-"""Time by which the robot wants to be there before the ball [s]."""
+_NEAR_ENOUGH = 0.15
+"""A robot this near counts as there [m]: it would else back away before the ball for its last centimetres."""
 _STEP = 0.15
 _HORIZON = 4.0
 
@@ -138,8 +138,9 @@ class Intercept(Skill):
 def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLimits) -> float:
     dx, dy = point[0] + _FRONT * ux - me.x, point[1] + _FRONT * uy - me.y
     gap = hypot(dx, dy)
-    towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
-    return travel_time(gap, towards, limits) + _SETTLED
+    if gap <= _NEAR_ENOUGH:
+        return 0.0
+    return travel_time(gap - _NEAR_ENOUGH, (me.vx * dx + me.vy * dy) / gap, limits)
 
 
 def _way_to_border(field: FieldGeometry, ball: BallState, ux: float, uy: float) -> float:
