@@ -1,0 +1,55 @@
+"""What all skills have in common."""
+
+from __future__ import annotations
+
+import inspect
+import pkgutil
+from dataclasses import fields
+from importlib import import_module
+
+import pytest
+
+import robobt.skills
+from robobt.skills import SKILLS, Skill, Store
+
+
+@pytest.mark.parametrize("name", list(SKILLS))
+class TestEverySkill:
+    def test_is_exported_and_lives_in_a_file_of_its_own_name(self, name: str) -> None:
+        cls = SKILLS[name]
+        assert getattr(robobt.skills, name) is cls
+        assert name in robobt.skills.__all__
+        assert cls.__module__.rpartition(".")[2] == snake_case(name)
+
+    def test_is_made_without_arguments_and_by_keywords_only(self, name: str) -> None:
+        cls = SKILLS[name]
+        assert cls().name == name
+        assert cls(name="mine").name == "mine"
+        parameters = list(inspect.signature(cls).parameters.values())
+        assert all(parameter.kind is not parameter.POSITIONAL_OR_KEYWORD for parameter in parameters[:-1])
+        assert all(parameter.annotation is not parameter.empty for parameter in parameters)
+        assert parameters[-1].name == "name"
+
+    def test_says_what_it_does_and_what_its_parameters_mean(self, name: str) -> None:
+        cls = SKILLS[name]
+        assert cls.__doc__ is not None
+        for parameter in list(inspect.signature(cls).parameters)[:-1]:
+            assert parameter in cls.__doc__, f"{name} does not document {parameter}"
+
+    def test_declares_entries_that_the_store_has(self, name: str) -> None:
+        entries = {field.name for field in fields(Store)}
+        assert entries.issuperset(SKILLS[name].reads)
+        assert entries.issuperset(SKILLS[name].writes)
+
+
+def test_every_skill_in_the_room_is_entered() -> None:
+    found: set[type[Skill]] = set()
+    for module in pkgutil.iter_modules(robobt.skills.__path__):
+        contents = vars(import_module(f"robobt.skills.{module.name}")).values()
+        found |= {value for value in contents if isinstance(value, type) and issubclass(value, Skill)}
+    bases = {base for cls in found for base in cls.__mro__[1:]}
+    assert {cls.__name__ for cls in found - bases} == set(SKILLS)
+
+
+def snake_case(name: str) -> str:
+    return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
