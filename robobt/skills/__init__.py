@@ -35,12 +35,15 @@ from robobt.skills.is_restart import IsRestart
 from robobt.skills.keep_distance import KeepDistance
 from robobt.skills.kick_to_target import KickToTarget
 from robobt.skills.mark_opponent import MarkOpponent
+from robobt.skills.mate_aims_at_me import MateAimsAtMe
 from robobt.skills.may_touch_ball import MayTouchBall
 from robobt.skills.opponent_has_ball import OpponentHasBall
+from robobt.skills.pass_is_coming import PassIsComing
 from robobt.skills.pass_is_open import PassIsOpen
 from robobt.skills.pass_is_steady import PassIsSteady
 from robobt.skills.pick_up_ball import PickUpBall
 from robobt.skills.prepare_restart import PrepareRestart
+from robobt.skills.receive_ball import ReceiveBall
 from robobt.skills.return_to_goal import ReturnToGoal
 from robobt.skills.select_clearance import SelectClearance
 from robobt.skills.select_pass import SelectPass
@@ -87,13 +90,16 @@ __all__ = [
     "KeepDistance",
     "KickToTarget",
     "MarkOpponent",
+    "MateAimsAtMe",
     "MayTouchBall",
     "OpponentHasBall",
     "Pass",
+    "PassIsComing",
     "PassIsOpen",
     "PassIsSteady",
     "PickUpBall",
     "PrepareRestart",
+    "ReceiveBall",
     "ReturnToGoal",
     "SelectClearance",
     "SelectPass",
