@@ -1,4 +1,4 @@
-"""Random trees of everything py_trees has, built twice from one description, and their life told as a log."""
+"""Random trees of all stock and own nodes, built twice from one description, and their life as a log."""
 
 from __future__ import annotations
 
@@ -10,6 +10,20 @@ import py_trees
 from py_trees import behaviours, composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy, Status
+
+from robobt.tree.nodes import (
+    CommitFor,
+    CommittingSelector,
+    Cooldown,
+    Delay,
+    HoldSuccess,
+    ParallelCount,
+    SequenceWithMemory,
+    Switch,
+    TickDivider,
+    Timeout,
+    Wait,
+)
 
 STATUSES = [Status.SUCCESS, Status.FAILURE, Status.RUNNING]
 Log = list[Any]
@@ -86,6 +100,18 @@ class OwnStopLeaf(Told):
         super().stop(new_status)
 
 
+class Scheduled(Switch):
+    """A switch whose case follows a script."""
+
+    def __init__(self, name: str, script: list[str], cases: dict[str, Behaviour], otherwise: Any) -> None:
+        super().__init__(name, cases, otherwise=otherwise)
+        self.script, self.count = script, 0
+
+    def case(self) -> str:
+        self.count += 1
+        return self.script[self.count % len(self.script)]
+
+
 TELLING = {
     base: _telling(base)
     for base in (
@@ -95,6 +121,11 @@ TELLING = {
         decorators.Inverter,
         decorators.Repeat,
         decorators.OneShot,
+        Timeout,
+        ParallelCount,
+        CommittingSelector,
+        SequenceWithMemory,
+        Scheduled,
     )
 }
 
@@ -128,7 +159,7 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
         script.append("nonsense")
     if rng.random() < 0.03:
         script.append(Status.INVALID)
-    kind = rng.randrange(8)
+    kind = rng.randrange(9)
     period = rng.randint(1, 3)
     if kind < 4:
         return lambda log, word: Told(name, script, log)
@@ -138,6 +169,8 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
         return lambda log, word: Plain(name, script)
     if kind == 6:
         return lambda log, word: behaviours.Periodic(name, period)
+    if kind == 7:
+        return lambda log, word: Wait(name, seconds=0.1 * period)
     return lambda log, word: rng_free_stock(name, period)
 
 
@@ -156,7 +189,8 @@ def _composite(
     children = [_node(rng, prefix, depth - 1, counter) for _ in range(rng.choice([0, 1, 2, 2, 3, 3, 4]))]
     memory = rng.random() < 0.5
     telling = rng.random() < 0.3
-    kind = rng.choice(["sequence", "selector", "parallel", "sequence", "selector", "parallel", "own"])
+    kind = rng.choice(["sequence", "selector", "parallel"] * 3 + ["own", *_OWN_COMPOSITES])
+    chances = [rng.random() for _ in range(10)]
     policy = rng.randrange(5)
     selected = rng.randrange(len(children)) if children else 0
 
@@ -176,6 +210,8 @@ def _composite(
             ]
             chosen = policies[policy if made else policy % 3]
             node = (TELLING[composites.Parallel] if telling else composites.Parallel)(name, chosen, made)
+        elif kind in _OWN_COMPOSITES:
+            node = _OWN_COMPOSITES[kind](name, made, chances, telling)
         else:
             base = composites.Sequence if kind == "sequence" else composites.Selector
             node = (TELLING[base] if telling else base)(name, memory, made)
@@ -186,11 +222,48 @@ def _composite(
     return build
 
 
+def _told(base: Any, telling: bool) -> Any:
+    return TELLING[base] if telling else base
+
+
+def _parallel_count(name: str, made: list[Behaviour], chances: list[float], telling: bool) -> Behaviour:
+    counts = [n for n in range(-len(made), len(made) + 1) if n] or [1]
+    succeed, fail = (counts[int(chance * len(counts))] for chance in chances[:2])
+    return _told(ParallelCount, telling)(name, success_count=succeed, failure_count=fail, children=made)
+
+
+def _committing(name: str, made: list[Behaviour], chances: list[float], telling: bool) -> Behaviour:
+    children = [
+        CommitFor(f"{name}for{i}", child, seconds=0.5 * chance) if chance < 0.6 else child
+        for i, (child, chance) in enumerate(zip(made, chances, strict=False))
+    ]
+    return _told(CommittingSelector, telling)(name, children=children)
+
+
+def _with_place(name: str, made: list[Behaviour], chances: list[float], telling: bool) -> Behaviour:
+    return _told(SequenceWithMemory, telling)(name, children=made)
+
+
+def _switch(name: str, made: list[Behaviour], chances: list[float], telling: bool) -> Behaviour:
+    cases = dict(zip("abcd", made, strict=False))
+    otherwise = cases.pop("b", None) if chances[0] < 0.5 else None
+    script = [case for case, chance in zip("abcdeabcd", chances, strict=False) if chance < 0.4]
+    return _told(Scheduled, telling)(name, script or ["a"], cases, otherwise)
+
+
+_OWN_COMPOSITES = {
+    "count": _parallel_count,
+    "committing": _committing,
+    "place": _with_place,
+    "switch": _switch,
+}
+
+
 def _decorator(
     rng: random.Random, name: str, prefix: str, depth: int, counter: Iterator[int]
 ) -> Callable[[Log, str], Behaviour]:
     child = _node(rng, prefix, depth - 1, counter)
-    kind = rng.randrange(18)
+    kind = rng.randrange(26)
     number = rng.randint(1, 3)
     telling = rng.random() < 0.3
     answers = [rng.choice([True, False, *STATUSES]) for _ in range(3)]
@@ -222,6 +295,14 @@ def _decorator(
             lambda: decorators.SuccessIsRunning(name, decorated),
             lambda: _for_each(name, decorated, key, number),
             lambda: decorators.Inverter(name, decorated),
+            lambda: Cooldown(name, decorated, seconds=0.1 * number, after=_ENDS[number - 1]),
+            lambda: HoldSuccess(name, decorated, seconds=0.15 * number),
+            lambda: TickDivider(name, decorated, every=number),
+            lambda: TickDivider(name, decorated, seconds=0.15 * number),
+            lambda: _told(Timeout, telling)(name, decorated, seconds=0.1 * number),
+            lambda: Delay(name, decorated, seconds=0.1 * number),
+            lambda: Delay(name, decorated, seconds=0.0),
+            lambda: Cooldown(name, decorated, seconds=0.3),
         ]
         node = makers[kind]()
         if telling and type(node) in TELLING.values():
@@ -229,6 +310,9 @@ def _decorator(
         return node
 
     return build
+
+
+_ENDS: list[Any] = ["either", "success", "failure"]
 
 
 def _for_each(name: str, decorated: Behaviour, key: str, number: int) -> Behaviour:

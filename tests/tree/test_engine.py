@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import random
+import textwrap
 from typing import Any
 
 import py_trees
@@ -13,8 +15,9 @@ from py_trees.composites import Selector, Sequence
 from py_trees.trees import BehaviourTree
 from py_trees.visitors import SnapshotVisitor
 
-from robobt.tree import engine
+from robobt.tree import bind, engine
 from robobt.tree.engine import FastTree, compile_tree
+from robobt.tree.nodes import CommittingSelector, Gate, ParallelCount, SequenceWithMemory, Switch
 from tests.tree.random_trees import Log, Told, random_tree
 
 S, F, R, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
@@ -26,6 +29,12 @@ def _quiet_and_clean(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr("py_trees.logging.Logger.error", lambda *_: None)
     yield
     py_trees.blackboard.Blackboard.clear()
+
+
+class Clock:
+    """A store that has nothing but the time."""
+
+    time = 0.0
 
 
 def state(root: Behaviour) -> list[Any]:
@@ -50,8 +59,12 @@ def first_difference(seed: int, ticks: int) -> str | None:
     logs: list[Log] = [[], []]
     stock, compiled = recipe(logs[0], f"a{seed}"), recipe(logs[1], f"b{seed}")
     visits: list[Log] = [[], []]
+    clock = Clock()
+    bind(stock, clock)
+    bind(compiled, clock)
     tick = compile_tree(compiled, lambda node: visits[1].append((node.name, node.status)))
     for count in range(ticks):
+        clock.time = round(clock.time + 0.1, 9) if rng.random() < 0.97 else 0.0
         for node in stock.tick():
             visits[0].append((node.name, node.status))
         tick()
@@ -103,8 +116,6 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    import inspect
-
     function, old, new = FAULTS[fault]
     source = inspect.getsource(getattr(engine, function))
     assert source.count(old) >= 1
@@ -118,6 +129,53 @@ def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) 
     if function in ("_decorator",):
         monkeypatch.setattr(engine, function, scope[function])
     assert any(first_difference(seed, 25) is not None for seed in range(300))
+
+
+NODE_FAULTS: dict[str, tuple[Any, str, str]] = {
+    "a gate does not reset a child it answers for": (Gate, "elif child.status is not invalid", "elif False"),
+    "a gate leaves its child running": (Gate, "if child.status is running or (", "if False and ("),
+    "a gate ticks its child all the same": (Gate, "status = answer()", "status = answer() and None"),
+    "a gate is initialised at every tick": (Gate, "and self.status is not running", ""),
+    "a selector keeps no commitment": (CommittingSelector, "if kept is None", "if True"),
+    "a committing selector lets others run on": (
+        CommittingSelector,
+        "for other, _, stop_other in",
+        "for other, _, stop_other in [] and",
+    ),
+    "a parallel ticks what has finished": (
+        ParallelCount,
+        "if child.status is not Status.SUCCESS and child.status is not Status.FAILURE:",
+        "if True:",
+    ),
+    "a count leaves children running": (ParallelCount, "if child.status is Status.RUNNING:", "if False:"),
+    "a sequence forgets its place": (SequenceWithMemory, "plan[self.place :]", "plan"),
+    "a sequence keeps its place for ever": (SequenceWithMemory, "self.place = 0", "pass"),
+    "a switch lets the old case run on": (Switch, "if place != chosen", "if False"),
+}
+
+
+@pytest.mark.parametrize("fault", NODE_FAULTS)
+def test_a_fault_planted_in_a_node_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cls, old, new = NODE_FAULTS[fault]
+    source = textwrap.dedent(inspect.getsource(cls.closures))
+    assert source.count(old) == 1
+    scope = dict(vars(inspect.getmodule(cls)))
+    exec(source.replace(old, new), scope)
+    monkeypatch.setattr(cls, "closures", scope["closures"])
+    assert any(first_difference(seed, 25) is not None for seed in range(1000))
+
+
+def test_a_class_with_a_tick_of_its_own_over_closures_is_ticked_through_it() -> None:
+    class Counted(SequenceWithMemory):
+        ticks = 0
+
+        def tick(self) -> Any:
+            self.ticks += 1
+            yield from super().tick()
+
+    root = Counted("root", [Told("a", [S], [])])
+    compile_tree(root)()
+    assert root.ticks == 1
 
 
 def test_children_may_come_and_go_between_ticks() -> None:

@@ -1,0 +1,129 @@
+"""Staying with a decision for a while: a reactive selector that keeps its child's word."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Selector
+from py_trees.decorators import Decorator
+
+from robobt.tree.engine import Plan, Stop, Tick, Visit, composite_stop, own_method, replan
+from robobt.tree.leaf import Bound
+from robobt.tree.nodes.timer import HasTime, Timer
+
+
+class CommitFor(Decorator, Bound[HasTime]):
+    """Marks a branch of a :class:`CommittingSelector` that is kept for a while once it runs.
+
+    Has its child's status. Only higher priorities are held off: the child may
+    finish at any time, its own guards stop it as ever, and so does whatever is
+    above the selector.
+
+    Args:
+        seconds: how long, from the first tick of a run [s].
+
+    Raises:
+        RuntimeError: at the first tick, when its parent is no CommittingSelector.
+    """
+
+    def __init__(self, name: str, child: Behaviour, *, seconds: float) -> None:
+        super().__init__(name, child)
+        self.seconds = seconds
+        self._timer = Timer(seconds)
+
+    @property
+    def committed(self) -> bool:
+        """Whether it runs and has not done so for ``seconds`` yet."""
+        return self.status is Status.RUNNING and self._timer.runs(self.store.time)
+
+    def initialise(self) -> None:
+        """The time runs from here."""
+        if not isinstance(self.parent, CommittingSelector):
+            raise RuntimeError("the parent of a CommitFor has to be a CommittingSelector")
+        self._timer.start(self.store.time)
+
+    def update(self) -> Status:
+        """The child's status."""
+        return self.decorated.status
+
+
+class CommittingSelector(Selector):
+    """A reactive selector that does not leave a branch which is committed.
+
+    While its running child is a :class:`CommitFor` that is committed, that child is
+    ticked first, and higher priorities only when it fails, in their order, before
+    the lower ones. Otherwise it is ``Selector(memory=False)``, but that no child
+    keeps a status of an earlier tick: those that were not ticked are INVALID.
+    """
+
+    def __init__(self, name: str, children: Sequence[Behaviour] | None = None) -> None:
+        super().__init__(name, memory=False, children=children)
+
+    def tick(self) -> Iterator[Behaviour]:
+        """As every py_trees node."""
+        if self.status is not Status.RUNNING:
+            self.current_child = None
+            self.initialise()
+        kept = self._kept()
+        order = self.children if kept is None else [kept, *(c for c in self.children if c is not kept)]
+        for position, child in enumerate(order):
+            yield from child.tick()
+            if child.status is Status.RUNNING or child.status is Status.SUCCESS:
+                self.current_child = child
+                for other in order[position + 1 :]:
+                    if other.status is not Status.INVALID:
+                        other.stop(Status.INVALID)
+                if child.status is Status.SUCCESS:
+                    self.stop(Status.SUCCESS)
+                else:
+                    self.status = Status.RUNNING
+                yield self
+                return
+        self.stop(Status.FAILURE)
+        self.current_child = self.children[-1] if self.children else None
+        yield self
+
+    def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
+        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        initialise = own_method(self, "initialise")
+        children: list[Behaviour] = []
+        plan: Plan = []
+        stop = composite_stop(self, visit, children, plan)
+
+        def tick() -> Status:
+            if self.children != children:
+                replan(self, visit, children, plan)
+            if self.status is not Status.RUNNING:
+                self.current_child = None
+                if initialise is not None:
+                    initialise()
+            kept = self._kept()
+            order = plan if kept is None else sorted(plan, key=lambda entry: entry[0] is not kept)
+            status = Status.FAILURE
+            for position, (child, tick_child, _) in enumerate(order):
+                status = tick_child()
+                if status is Status.RUNNING or status is Status.SUCCESS:
+                    self.current_child = child
+                    for other, _, stop_other in order[position + 1 :]:
+                        if other.status is not Status.INVALID:
+                            stop_other(Status.INVALID)
+                    if status is Status.SUCCESS:
+                        stop(status)
+                    else:
+                        self.status = status
+                    break
+            else:
+                status = Status.FAILURE
+                stop(status)
+                self.current_child = children[-1] if children else None
+            if visit is not None:
+                visit(self)
+            return status
+
+        return tick, stop
+
+    def _kept(self) -> Behaviour | None:
+        child = self.current_child
+        return child if isinstance(child, CommitFor) and child.committed else None

@@ -1,0 +1,93 @@
+"""The base of decorators that answer for their child at times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from robobt.tree.engine import Stop, Tick, Visit, compile_node, not_a_status, own_method
+
+
+class Gate(Decorator):
+    """A decorator that decides at every tick whether its child is ticked.
+
+    Override :meth:`answer`, and :meth:`update` to make something of the child's
+    status. When the gate answers with a final status the child does not keep
+    one of its own: a running child is interrupted, a finished one becomes INVALID.
+    So a child that shows a final status was ticked. When the gate answers RUNNING,
+    a running child goes on running, unticked.
+    """
+
+    def answer(self) -> Status | None:
+        """The gate's own status, without ticking the child; None ticks it."""
+        raise NotImplementedError(f"{type(self).__name__} does not define answer")
+
+    def update(self) -> Status:
+        """The gate's status once the child has been ticked; the child's own by default."""
+        self.feedback_message = ""
+        return self.decorated.status
+
+    def tick(self) -> Iterator[Behaviour]:
+        """As every py_trees node."""
+        if self.status is not Status.RUNNING:
+            self.initialise()
+        child = self.decorated
+        status = self.answer()
+        if status is None:
+            yield from child.tick()
+            status = self.update()
+            if status.__class__ is not Status:
+                status = not_a_status(self, status)
+        elif child.status is not Status.INVALID and not (child.status is status is Status.RUNNING):
+            child.stop(Status.INVALID)
+        if status is not Status.RUNNING:
+            self.stop(status)
+        self.status = status
+        yield self
+
+    def stop(self, new_status: Status) -> None:
+        """As in every py_trees decorator, but a child that was not ticked is not stopped either."""
+        self.terminate(new_status)
+        child = self.decorated
+        if child.status is Status.RUNNING or (
+            new_status is Status.INVALID and child.status is not Status.INVALID
+        ):
+            child.stop(Status.INVALID)
+        self.status = new_status
+
+    def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
+        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        running, invalid = Status.RUNNING, Status.INVALID
+        initialise, terminate = own_method(self, "initialise"), own_method(self, "terminate")
+        answer, update, child = self.answer, self.update, self.decorated
+        tick_child, stop_child = compile_node(child, visit)
+
+        def tick() -> Status:
+            if initialise is not None and self.status is not running:
+                initialise()
+            status = answer()
+            if status is None:
+                tick_child()
+                status = update()
+                if status.__class__ is not Status:
+                    status = not_a_status(self, status)
+            elif child.status is not invalid and not (child.status is status is running):
+                stop_child(invalid)
+            if status is not running:
+                stop(status)
+            self.status = status
+            if visit is not None:
+                visit(self)
+            return status
+
+        def stop(status: Status) -> None:
+            if terminate is not None:
+                terminate(status)
+            if child.status is running or (status is invalid and child.status is not invalid):
+                stop_child(invalid)
+            self.status = status
+
+        return tick, stop

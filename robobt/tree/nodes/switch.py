@@ -1,0 +1,106 @@
+"""Composite: one of several children, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Composite
+
+from robobt.tree.engine import Plan, Stop, Tick, Visit, composite_stop, own_method, replan
+
+
+class Switch(Composite):
+    """Ticks the child of the present case, and only that one. The base of switches; define :meth:`case`.
+
+    Has the status of that child; FAILURE, with the case as its reason, when there
+    is no child for it. The case is looked at anew at every tick. When it changes,
+    the child of the old case is interrupted before that of the new one is ticked.
+
+    Args:
+        cases: a child for each case; one child may serve several cases.
+        otherwise: the child for every other case.
+    """
+
+    def __init__(
+        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
+    ) -> None:
+        children = list(dict.fromkeys([*cases.values(), *([] if otherwise is None else [otherwise])]))
+        super().__init__(name, children)
+        # By place, so that a child that is replaced is replaced in its cases too.
+        self._places = {case: children.index(child) for case, child in cases.items()}
+        self._otherwise = None if otherwise is None else children.index(otherwise)
+
+    def case(self) -> str:
+        """The present case."""
+        raise NotImplementedError(f"{type(self).__name__} does not define case")
+
+    @property
+    def cases(self) -> dict[str, Behaviour]:
+        """The child of each case, in the order they were given."""
+        return {case: self.children[place] for case, place in self._places.items()}
+
+    @property
+    def otherwise(self) -> Behaviour | None:
+        """The child for every other case."""
+        return None if self._otherwise is None else self.children[self._otherwise]
+
+    def tick(self) -> Iterator[Behaviour]:
+        """As every py_trees node."""
+        if self.status is not Status.RUNNING:
+            self.initialise()
+        chosen = self._choose()
+        for place, child in enumerate(self.children):
+            if place != chosen and child.status is not Status.INVALID:
+                child.stop(Status.INVALID)
+        if chosen is None:
+            self.current_child = None
+            self.stop(Status.FAILURE)
+        else:
+            self.current_child = child = self.children[chosen]
+            yield from child.tick()
+            if child.status is Status.RUNNING:
+                self.status = child.status
+            else:
+                self.stop(child.status)
+        yield self
+
+    def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
+        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        initialise = own_method(self, "initialise")
+        children: list[Behaviour] = []
+        plan: Plan = []
+        stop = composite_stop(self, visit, children, plan)
+
+        def tick() -> Status:
+            if self.children != children:
+                replan(self, visit, children, plan)
+            if initialise is not None and self.status is not Status.RUNNING:
+                initialise()
+            chosen = self._choose()
+            for place, (child, _, stop_child) in enumerate(plan):
+                if place != chosen and child.status is not Status.INVALID:
+                    stop_child(Status.INVALID)
+            if chosen is None:
+                self.current_child = None
+                status = Status.FAILURE
+                stop(status)
+            else:
+                self.current_child, tick_child, _ = plan[chosen]
+                status = tick_child()
+                if status is Status.RUNNING:
+                    self.status = status
+                else:
+                    stop(status)
+            if visit is not None:
+                visit(self)
+            return status
+
+        return tick, stop
+
+    def _choose(self) -> int | None:
+        case = self.case()
+        chosen = self._places.get(case, self._otherwise)
+        self.feedback_message = case if chosen is not None else f"nothing to do in {case}"
+        return chosen
