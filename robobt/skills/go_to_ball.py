@@ -82,6 +82,7 @@ class GoToBall(Skill):
     """
 
     reads: ClassVar[tuple[str, ...]] = ("shot", "target")
+    optional: ClassVar[tuple[str, ...]] = ("shot", "target")
 
     def __init__(
         self,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from robobt.skills.base import Skill, skill
 from robobt.skills.path_planner import travel
 from robobt.skills.teamwork import attacker
@@ -22,6 +24,8 @@ class GoToKickoffPosition(Skill):
     Args:
         spread: share of the field's width that the line takes.
     """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
 
     def __init__(self, *, spread: float = 0.6, name: str = "") -> None:
         super().__init__(name)

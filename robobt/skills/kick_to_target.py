@@ -115,6 +115,10 @@ class KickToTarget(Skill):
         self._kicking: _Order | None = None
         self._was_near = False
 
+    def needs(self) -> list[tuple[str, ...]]:
+        """A shot or a pass, unless it has been told where to kick."""
+        return [("shot", "pass_")] if self.target is None else []
+
     def on_start(self) -> None:
         """Forget the last kick."""
         self._kicking = None

@@ -27,6 +27,7 @@ class PrepareRestart(Skill):
     """
 
     reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
+    optional: ClassVar[tuple[str, ...]] = ("shot", "pass_")
 
     def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
         super().__init__(name)

@@ -28,6 +28,7 @@ class SelectPass(Skill):
 
     reads: ClassVar[tuple[str, ...]] = ("pass_",)
     writes: ClassVar[tuple[str, ...]] = ("pass_",)
+    optional: ClassVar[tuple[str, ...]] = ("pass_",)
 
     def __init__(
         self,

@@ -30,6 +30,7 @@ class SelectShot(Skill):
 
     reads: ClassVar[tuple[str, ...]] = ("shot",)
     writes: ClassVar[tuple[str, ...]] = ("shot",)
+    optional: ClassVar[tuple[str, ...]] = ("shot",)
 
     def __init__(
         self,

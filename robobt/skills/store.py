@@ -98,3 +98,7 @@ class Store:
     def time(self) -> float:
         """The frame's time: the only clock a tree has [s]."""
         return self.frame.time
+
+
+GIVEN = ("frame", "me", "command", "rng", "team", "time")
+"""The entries of a :class:`Store` that are there without any leaf's doing."""

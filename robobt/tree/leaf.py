@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Generic, TypeVar
+import inspect
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, Self, TypeAlias, TypeVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 StoreT = TypeVar("StoreT")
+
+Entries: TypeAlias = tuple[str, ...] | Mapping[str, Any]
+"""Entries of the store: their names, or name and type."""
 
 
 class Bound(Generic[StoreT]):
@@ -18,6 +23,21 @@ class Bound(Generic[StoreT]):
     """
 
     store: StoreT
+    _given: tuple[tuple[Any, ...], dict[str, Any]]
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Self:
+        """Make a node that knows what it was made from."""
+        # Kept because a node need not keep what it was made from, and a tree file has to say it.
+        node = super().__new__(cls)
+        node._given = (args, kwargs)
+        return node
+
+    def parameters(self) -> dict[str, Any]:
+        """What the node was made from: every parameter of its constructor by name."""
+        args, kwargs = self._given
+        bound = inspect.signature(type(self)).bind(*args, **kwargs)
+        bound.apply_defaults()
+        return dict(bound.arguments)
 
 
 class Leaf(Behaviour, Bound[StoreT]):
@@ -37,14 +57,28 @@ class Leaf(Behaviour, Bound[StoreT]):
     not write one.
 
     Attributes:
-        reads, writes: names of the store's entries the leaf uses.
+        reads, writes: the store's entries the leaf uses.
+        optional: those of ``reads`` that it can do without.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ()
-    writes: ClassVar[tuple[str, ...]] = ()
+    reads: ClassVar[Entries] = ()
+    writes: ClassVar[Entries] = ()
+    optional: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name or type(self).__name__)
+
+    def needs(self) -> list[tuple[str, ...]]:
+        """What another node has to write into the store: of each item one of its entries.
+
+        That is what the leaf reads and cannot do without, except where a parameter
+        of the same name takes the entry's place.
+        """
+        return [
+            (entry,)
+            for entry in self.reads
+            if entry not in self.optional and getattr(self, entry, None) is None
+        ]
 
     def on_start(self) -> None:
         """Called on the first tick of a run."""

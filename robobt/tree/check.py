@@ -1,0 +1,139 @@
+"""Checks, before the first tick, that what the nodes of a tree read is written by somebody."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Collection, Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from robobt.tree.leaf import Leaf
+from robobt.tree.runner import node_path, preorder
+
+
+class WiringError(ValueError):
+    """A tree whose nodes do not fit together.
+
+    Attributes:
+        problems: all of them, each with the node's path and the entry.
+    """
+
+    def __init__(self, problems: list[str]) -> None:
+        super().__init__("; ".join(problems))
+        self.problems = tuple(problems)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (WiringError, (list(self.problems),))
+
+
+def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> None:
+    """Check what the nodes say they read from and write to the store.
+
+    * What is read or written is an entry of the store, an attribute that its class
+      annotates or defines.
+    * Where a node names the entry's type, that type fits: what is written may be
+      kept there, and what is kept there, None aside, may be read.
+    * What a leaf needs (:meth:`~robobt.tree.leaf.Leaf.needs`) is written by a node
+      that does not need it itself, or is given. In which order they are ticked is
+      not looked at.
+
+    Args:
+        root: the tree.
+        store: the class of the store it will be bound to.
+        given: entries that somebody outside the tree fills in.
+
+    Raises:
+        WiringError: with everything that is wrong.
+    """
+    nodes = preorder(root)
+    written = set(given)
+    for node in nodes:
+        written.update(set(_writes(node)) - {entry for any_of in _needs(node) for entry in any_of})
+    problems = [problem for node in nodes for problem in _problems(node, store, written)]
+    if problems:
+        raise WiringError(problems)
+
+
+def _problems(node: Behaviour, store: type, written: Collection[str]) -> Iterator[str]:
+    entries = entries_of(store)
+    path = node_path(node)
+    for verb, declared in (("reads", _reads(node)), ("writes", _writes(node))):
+        for entry, hint in declared.items():
+            if entry not in entries:
+                yield f"{path}: {verb} {entry!r}, but {store.__name__} has no such entry"
+            elif hint is not None and not _fits(verb, hint, entries[entry]):
+                yield (
+                    f"{path}: {verb} {entry!r} as {_say(hint)}, "
+                    f"but in {store.__name__} it is {_say(entries[entry])}"
+                )
+    for any_of in _needs(node):
+        if not any(entry in written or entry not in entries for entry in any_of):
+            names = " or ".join(repr(entry) for entry in any_of)
+            yield f"{path}: reads {names}, but no other node of the tree writes it"
+
+
+@lru_cache(maxsize=32)
+def entries_of(store: type) -> Mapping[str, Any]:
+    """The entries of a store class and their types; :data:`typing.Any` where it does not say."""
+    entries = {}
+    for name, hint in typing.get_type_hints(store).items():
+        if typing.get_origin(hint) is not typing.ClassVar:
+            entries[name] = hint
+    for name in set(dir(store)) - set(typing.get_type_hints(store)):
+        member = getattr(store, name)
+        if isinstance(member, property):
+            entries[name] = typing.get_type_hints(member.fget).get("return", Any)
+        elif not name.startswith("_") and not callable(member):
+            entries[name] = Any
+    return entries
+
+
+def _reads(node: Behaviour) -> Mapping[str, Any]:
+    return _declared(getattr(node, "reads", ()))
+
+
+def _writes(node: Behaviour) -> Mapping[str, Any]:
+    return _declared(getattr(node, "writes", ()))
+
+
+def _declared(entries: Any) -> Mapping[str, Any]:
+    return entries if isinstance(entries, Mapping) else dict.fromkeys(entries)
+
+
+def _needs(node: Behaviour) -> list[tuple[str, ...]]:
+    if isinstance(node, Leaf):
+        return node.needs()
+    return [(entry,) for entry in _reads(node)]
+
+
+def _fits(verb: str, declared: Any, kept: Any) -> bool:
+    if Any in (declared, kept):
+        return True
+    if verb == "reads":
+        # None is what an entry holds before anybody has written it.
+        source, target = _members(kept) - {types.NoneType}, _members(declared)
+    else:
+        source, target = _members(declared), _members(kept)
+    return all(any(_is_a(one, other) for other in target) for one in source)
+
+
+def _members(hint: Any) -> set[Any]:
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        return {member for part in typing.get_args(hint) for member in _members(part)}
+    return {types.NoneType if hint is None else hint}
+
+
+def _is_a(one: Any, other: Any) -> bool:
+    if one == other:
+        return True
+    if not isinstance(other, type) or not isinstance(typing.get_origin(one) or one, type):
+        return False
+    # An int is as good as a float, as everywhere in Python's typing.
+    return issubclass(typing.get_origin(one) or one, other) or (one is int and other is float)
+
+
+def _say(hint: Any) -> str:
+    return hint.__name__ if isinstance(hint, type) and not typing.get_args(hint) else str(hint)
