@@ -30,6 +30,7 @@ _console = Console(highlight=False)
 _errors = Console(stderr=True, highlight=False)
 
 _RECORDING = ".robobt.jsonl.gz"
+_MAX_SEED = 2**53 - 1
 
 
 _log = logging.getLogger("robobt")
@@ -92,7 +93,9 @@ def match(
     ],
     trials: Annotated[
         int | None,
-        typer.Option("--trials", "-n", min=1, help="How often; by default what the scenario says."),
+        typer.Option(
+            "--trials", "-n", min=1, max=100_000, help="How often; by default what the scenario says."
+        ),
     ] = None,
     workers: Annotated[
         int | None,
@@ -103,7 +106,11 @@ def match(
     seed: Annotated[
         int | None,
         typer.Option(
-            "--seed", "-s", min=0, help="What all randomness follows from; by default the scenario's."
+            "--seed",
+            "-s",
+            min=0,
+            max=_MAX_SEED,
+            help="What all randomness follows from; by default the scenario's.",
         ),
     ] = None,
     replay: Annotated[
@@ -153,8 +160,14 @@ def match(
     sim_world(loaded)
     count = loaded.trials if trials is None else trials
     recorded = 0 if record is None else record
+    if recorded >= count:
+        there = f"there is no trial {recorded}; they are 0 to {count - 1}"
+        raise typer.BadParameter(there, param_hint="--record")
     if replay is None and record is not None:
         replay = Path(f"{loaded.name}-{record}{_RECORDING}")
+    if replay is not None:
+        # Now, not when an hour of trials has been played.
+        replay.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         page = replay is not None and replay.suffix == ".html"
         recording = Path(folder) / f"trial{_RECORDING}" if page else replay
@@ -186,7 +199,7 @@ def match(
         }
         _print_json({**summary.to_json(), **extra})
     else:
-        _print_summary(summary, run, count)
+        _print_summary(summary, loaded, run, count)
         if written is not None:
             _say(f"Replay of trial {recorded}: {written}")
     if run.interrupted:
@@ -367,7 +380,7 @@ def bench_match(
         float, typer.Option("--seconds", min=1, max=3600, help="Simulated time to play.")
     ] = 60.0,
     seed: Annotated[
-        int | None, typer.Option("--seed", "-s", min=0, help="By default the scenario's.")
+        int | None, typer.Option("--seed", "-s", min=0, max=_MAX_SEED, help="By default the scenario's.")
     ] = None,
     as_json: _Json = False,
 ) -> None:
@@ -438,7 +451,7 @@ class _Progress:
         self._progress.advance(self._task)
 
 
-def _print_summary(summary: Summary, run: Run, requested: int) -> None:
+def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: int) -> None:
     played = f"{summary.trials} trial{'s' if summary.trials > 1 else ''}"
     stopped = f" of {requested} (stopped)" if run.interrupted else ""
     _console.print(f"[bold]{escape(summary.scenario)}[/bold]: {played}{stopped}, seed {summary.seed}")
@@ -451,14 +464,7 @@ def _print_summary(summary: Summary, run: Run, requested: int) -> None:
             f"{rate.low:.1%} to {rate.high:.1%}",
         )
     _console.print(table)
-    table = Table("robot", "GoToBall [s]", "Shoot [s]", "total [s]", "kicks", box=None, padding=(0, 2, 0, 0))
-    for name, robot in summary.robots.items():
-        if robot.go_to_ball.n:
-            spreads = [robot.go_to_ball, robot.shoot, robot.total]
-            kicks = robot.kicks.mean or 0.0
-            table.add_row(name, *[_say_spread(spread) for spread in spreads], f"{kicks:.1f}")
-    if table.row_count:
-        _console.print(table)
+    _console.print(_times(summary) if scenario.referee is None else _goals(summary))
     goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
     _say(
         f"Goals: {goals}. Mean time {summary.time.mean:.1f} s, ball in play {summary.in_play:.0%} of it. "
@@ -471,6 +477,28 @@ def _print_summary(summary: Summary, run: Run, requested: int) -> None:
                 f"the first: {escape(str(robot.first_error))}",
                 soft_wrap=True,
             )
+
+
+def _times(summary: Summary) -> Table:
+    table = Table("robot", "GoToBall, s", "Shoot, s", "total, s", "kicks", box=None, padding=(0, 2, 0, 0))
+    for name, robot in summary.robots.items():
+        if robot.go_to_ball.n:
+            spreads = [robot.go_to_ball, robot.shoot, robot.total]
+            kicks = robot.kicks.mean or 0.0
+            table.add_row(name, *[_say_spread(spread) for spread in spreads], f"{kicks:.1f}")
+    return table
+
+
+def _goals(summary: Summary) -> Table:
+    table = Table(
+        "team", "goals a trial", "trials with a goal", "kicks a trial", box=None, padding=(0, 2, 0, 0)
+    )
+    for team, goals in summary.goals.items():
+        own = [robot for name, robot in summary.robots.items() if name.startswith(team)]
+        kicks = sum(robot.kicks.mean or 0.0 for robot in own)
+        scored = f"{goals.trials.rate:.0%} ({goals.trials.low:.0%} to {goals.trials.high:.0%})"
+        table.add_row(team, f"{goals.total / summary.trials:.2f}", scored, f"{kicks:.1f}")
+    return table
 
 
 def _say_spread(spread: Any) -> str:

@@ -255,7 +255,8 @@ class TestErrors:
         assert str(tmp_path / "file") in complaint("match", scenario, "--out", tmp_path / "file" / "x.jsonl")
 
     def test_a_trial_that_is_not_played_cannot_be_recorded(self, scenario: Path):
-        assert "there is no trial 7 to record" in complaint("match", scenario, "-n", "2", "--record", "7")
+        said = complaint("match", scenario, "-n", "2", "--record", "7", code=2)
+        assert "there is no trial 7; they are 0 to 1" in said
 
     @pytest.mark.parametrize(
         "arguments", [["--trials", "0"], ["--workers", "0"], ["--seed", "-1"], ["--what"]]
