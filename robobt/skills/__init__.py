@@ -4,6 +4,7 @@ Importing this package enters every one of them in :data:`SKILLS`.
 """
 
 from robobt.skills.aim_upfield import AimUpfield
+from robobt.skills.assign_roles import AssignRoles
 from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
 from robobt.skills.ball_at_defense_edge import BallAtDefenseEdge
 from robobt.skills.ball_in_own_defense_area import BallInOwnDefenseArea
@@ -27,6 +28,7 @@ from robobt.skills.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.go_to_pose import GoToPose
 from robobt.skills.has_ball import HasBall
+from robobt.skills.has_role import HasRole
 from robobt.skills.intercept import Intercept
 from robobt.skills.is_attacker import IsAttacker
 from robobt.skills.is_closest_to_ball import IsClosestToBall
@@ -44,6 +46,7 @@ from robobt.skills.pass_is_steady import PassIsSteady
 from robobt.skills.pick_up_ball import PickUpBall
 from robobt.skills.prepare_restart import PrepareRestart
 from robobt.skills.receive_ball import ReceiveBall
+from robobt.skills.referee_switch import RefereeSwitch
 from robobt.skills.return_to_goal import ReturnToGoal
 from robobt.skills.select_clearance import SelectClearance
 from robobt.skills.select_pass import SelectPass
@@ -60,6 +63,7 @@ from robobt.skills.wall import Wall
 __all__ = [
     "SKILLS",
     "AimUpfield",
+    "AssignRoles",
     "BallAimedAtGoal",
     "BallAtDefenseEdge",
     "BallInOwnDefenseArea",
@@ -82,6 +86,7 @@ __all__ = [
     "GoToPenaltyPosition",
     "GoToPose",
     "HasBall",
+    "HasRole",
     "Intercept",
     "IsAttacker",
     "IsClosestToBall",
@@ -100,6 +105,7 @@ __all__ = [
     "PickUpBall",
     "PrepareRestart",
     "ReceiveBall",
+    "RefereeSwitch",
     "ReturnToGoal",
     "SelectClearance",
     "SelectPass",

@@ -1,0 +1,75 @@
+"""Composite: one child for each phase of the game."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from robobt.skills.store import Store
+from robobt.tree import Behaviour
+from robobt.tree.leaf import Bound
+from robobt.tree.nodes import Switch
+from robobt.world.game import GameState, Team
+
+
+class Phase(StrEnum):
+    """What the referee lets a team do."""
+
+    HALT = "halt"
+    STOP = "stop"
+    OUR_KICKOFF = "our_kickoff"
+    THEIR_KICKOFF = "their_kickoff"
+    OUR_FREE_KICK = "our_free_kick"
+    THEIR_FREE_KICK = "their_free_kick"
+    OUR_PENALTY = "our_penalty"
+    THEIR_PENALTY = "their_penalty"
+    OUR_BALL_PLACEMENT = "our_ball_placement"
+    THEIR_BALL_PLACEMENT = "their_ball_placement"
+    PLAY = "play"
+
+
+def phase(game: GameState, team: Team) -> Phase:
+    """The phase of the game as ``team`` sees it.
+
+    Halts and time-outs are HALT. STOP comes before its restart, whichever that is;
+    the restart's own phase lasts from the referee's command until the ball is in
+    play. Whatever is neither play nor a restart of one of the teams is STOP, too.
+    """
+    if game.halted:
+        return Phase.HALT
+    if game.in_play:
+        return Phase.PLAY
+    if game.stopped or game.restart is None or game.restart_team is None:
+        return Phase.STOP
+    return Phase(f"{'our' if game.restart_team is team else 'their'}_{game.restart.value}")
+
+
+class RefereeSwitch(Switch, Bound[Store]):
+    """Ticks the child for the present :class:`Phase`, and only that one.
+
+    FAILURE, and the robot stands, in a phase that has no child. When the phase
+    changes, the old phase's child is interrupted before the new one is ticked.
+
+    Args:
+        cases: a child for each phase by its name; one child may serve several phases.
+        otherwise: the child for every other phase.
+
+    Raises:
+        ValueError: a case is no phase; the message lists those there are.
+    """
+
+    def __init__(
+        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
+    ) -> None:
+        for case in cases:
+            if case not in _NAMES:
+                raise ValueError(f"{case!r} is no phase; there are {', '.join(_NAMES)}")
+        super().__init__(name, cases, otherwise=otherwise)
+
+    def case(self) -> str:
+        """What the referee's word means for this team."""
+        frame = self.store.frame
+        return phase(frame.game, frame.team).value
+
+
+_NAMES = [each.value for each in Phase]
