@@ -8,6 +8,7 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, Repeat, Retry, SuccessIsFailure
 
+from robobt.tree.drawing import tree_dot, tree_svg, tree_text
 from robobt.tree.engine import FastTree, compile_tree
 from robobt.tree.leaf import Leaf, bind
 from robobt.tree.registry import Registry
@@ -33,4 +34,7 @@ __all__ = [
     "compile_tree",
     "node_path",
     "preorder",
+    "tree_dot",
+    "tree_svg",
+    "tree_text",
 ]

@@ -1,0 +1,37 @@
+"""4. Six against six: two teams, a referee, twelve trees, and who is doing what.
+
+Plays the bundled scenario tick by tick, tells every restart and goal as it
+happens, and records the match.
+
+    python examples/04_six_against_six.py [seconds]
+"""
+
+import sys
+
+from robobt.match import Match, load_scenario
+from robobt.worlds import sim_world
+
+
+def main(seconds: float = 60.0) -> None:
+    scenario = load_scenario("six_v_six")
+    ends = scenario.ends.model_copy(update={"time_limit": seconds})
+    scenario = scenario.model_copy(update={"ends": ends})
+    match = Match(scenario, seed=1, world_factory=sim_world)
+    command = None
+    while match.tick():
+        game = match.game
+        if game.command is not command:
+            command = game.command
+            time = match.world.truth().time
+            print(f"{time:6.2f} s  {game.blue_score}:{game.yellow_score}  {command.name}")
+    result = match.result()
+    played = f"ball in play {result.in_play:.0%} of {result.time:.0f} s"
+    print(f"\n{result.blue_score}:{result.yellow_score}, {played}")
+    for player in match.players:
+        tip = player.runner.root.tip()
+        doing = "nothing" if tip is None else f"{tip.name}: {tip.feedback_message}"
+        print(f"  {player.robot!s:9} {doing}")
+
+
+if __name__ == "__main__":
+    main(*map(float, sys.argv[1:]))

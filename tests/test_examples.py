@@ -1,0 +1,37 @@
+"""Every example runs as its own text says and prints what a reader expects."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+EXPECTED = {
+    "01_compose_a_play.py": ([], ["win the ball", "goal_blue after"]),
+    "02_attack_against_a_goalkeeper.py": (["3"], ["segment_clearance", "moving_horizon", "scored"]),
+    "03_write_your_own_skill.py": ([], ["alone: RUNNING", "in a match: goal_blue"]),
+    "04_six_against_six.py": (["4"], ["PREPARE_KICKOFF", "ball in play", "blue 0"]),
+}
+
+
+def test_every_example_is_tested() -> None:
+    assert sorted(EXPECTED) == sorted(path.name for path in EXAMPLES.glob("*.py"))
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_an_example_runs(name: str, tmp_path: Path) -> None:
+    arguments, words = EXPECTED[name]
+    done = subprocess.run(
+        [sys.executable, str(EXAMPLES / name), *arguments],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    for word in words:
+        assert word in done.stdout
