@@ -1,0 +1,34 @@
+"""The bundled scenarios, played."""
+
+import pytest
+
+from robobt.match import load_scenario, play_match, run_trials, summarise
+from robobt.resources import bundled_scenarios
+from robobt.worlds import sim_world
+
+
+@pytest.mark.parametrize("name", bundled_scenarios())
+def test_it_plays_without_a_tree_failing(name: str):
+    scenario = load_scenario(name)
+    result = play_match(scenario.lasting(min(5.0, scenario.ends.time_limit)), scenario.seed, sim_world)
+    assert {robot: figures.first_error for robot, figures in result.robots.items() if figures.errors} == {}
+
+
+@pytest.mark.parametrize(("trial", "printed"), [(1, 3.4998), (2, 4.9846)])
+def test_the_baseline_row_of_table_4(trial: int, printed: float):
+    """Goals of 25 and the time to the ball, printed in the paper: 25 goals, time within 10 %."""
+    scenario = load_scenario(f"table4_trial{trial}")
+    summary = summarise(run_trials(scenario, sim_world).results)
+    assert summary.trials == 25
+    assert summary.outcomes["goal_blue"].count == 25
+    assert summary.robots["blue 0"].go_to_ball.mean == pytest.approx(printed, rel=0.10)
+
+
+def test_the_striker_scores_against_the_goalkeeper():
+    summary = summarise(run_trials(load_scenario("striker_vs_goalie"), sim_world, 20).results)
+    assert summary.goals["blue"].trials.count >= 10
+
+
+def test_a_match_with_a_referee_is_the_same_match_again():
+    scenario = load_scenario("six_v_six").lasting(5.0)
+    assert play_match(scenario, 3, sim_world).trace == play_match(scenario, 3, sim_world).trace
