@@ -10,11 +10,12 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.dribbling import dribbling_limits
 from robobt.skills.go_to_ball import meeting_point
 from robobt.skills.pace import Pace
-from robobt.skills.path_planner import allowed_target, travel
+from robobt.skills.path_planner import allowed_target, travel, way_point
 from robobt.skills.pick_up_ball import grab
 from robobt.skills.pilot import command, turn_rate
 from robobt.skills.possession import has_ball
 from robobt.skills.robobulls_kick import ROBOBULLS_KICK_SPEED, RobobullsKick
+from robobt.skills.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
@@ -30,15 +31,16 @@ _PASS_TOLERANCE = radians(1.5)
 _ROBOBULLS_TOLERANCE = {"shot": radians(1.0), "pass": radians(5.0)}
 
 _BEHIND = 0.16
-_THROUGH = 0.06
-_ROUND = radians(25.0)
-_NEAR = 0.25
+"""Where the robot stands behind the ball [m]: just outside the planner's way round it."""
+_THROUGH = 0.05
+_ROUND = 1.0
+"""Tangent of the angle to the line of the kick beyond which the way leads round the ball first."""
+_RUN_UP_DISTANCE = 2.5
 _IN_MOUTH = 0.03
 """A ball no farther than this from the heading's line meets the mouth [m]."""
-_CREEP = 0.5
+_NEAR = 0.25
 _GOT_AWAY = 0.7
-_RUN_UP = 1.0
-"""Speed at which the robot drives into a ball that it is aimed through [m/s]."""
+_CREEP = 0.5
 _TURN_DISTANCE = 1.2
 _REACHABLE = 0.03
 _LEFT_SHARE = 0.6
@@ -129,6 +131,7 @@ class KickToTarget(Skill):
     def on_running(self) -> Status:
         """Aim, or kick, for one tick."""
         if self._kicking is not None and self._has_left(self._kicking):
+            self._note_pass(self._kicking)
             return self.succeed("kicked")
         order = self._order()
         if order is None:
@@ -176,43 +179,47 @@ class KickToTarget(Skill):
         self.store.command.dribbler = True
 
     def _come_from_behind(self, order: _Order) -> None:
-        frame, me = self.frame, self.me
+        frame, me, ball = self.frame, self.me, self.ball
         limits = self.pace.of(me.limits)
-        meeting = meeting_point(frame, me, limits)
-        line = direction(meeting, order.target)
-        drift = frame.ball.vy * cos(line) - frame.ball.vx * sin(line)
-        facing = line - atan2(drift, order.speed)
+        near = distance(me.position, ball.position) < _NEAR
+        x, y = ball.position if near else meeting_point(frame, me, limits)
+        line = direction((x, y), order.target)
+        facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.speed)
         ux, uy = cos(facing), sin(facing)
-        off = abs(wrap_angle(direction(me.position, meeting) - facing))
-        gap = distance(me.position, meeting)
-        behind = (meeting[0] - _BEHIND * ux, meeting[1] - _BEHIND * uy)
+        # How far the robot is behind the ball and beside the line of the kick.
+        back = (x - me.x) * ux + (y - me.y) * uy
+        aside = abs((x - me.x) * uy - (y - me.y) * ux)
+        behind = (x - _BEHIND * ux, y - _BEHIND * uy)
         allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
         at_wall = distance(allowed, behind) > _REACHABLE
-        in_line = off < _ROUND and (gap > _NEAR or gap * sin(off) < _IN_MOUTH)
-        if not in_line and (has_ball(me, frame.ball) or (at_wall and gap < _NEAR)):
+        in_line = aside < _ROUND * back and (not near or aside < _IN_MOUTH)
+        if not in_line and (has_ball(me, ball) or (at_wall and near)):
             # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
-            self.store.command = grab(me, frame.ball, _CREEP, frame.period)
+            self.store.command = grab(me, ball, _CREEP, frame.period)
             return
+        heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))
+        if in_line and not at_wall and back < _RUN_UP_DISTANCE:
+            through = (x + _THROUGH * ux, y + _THROUGH * uy)
+            if way_point(frame, me, through, goalkeeper=self.goalkeeper)[0] == through:
+                self.store.command = run_up(me, ball, facing, limits, frame.period)
+                self.store.command.dribbler = near
+                return
+        place, final_speed = behind, RUN_UP_SPEED if in_line else 0.0
         if at_wall:
-            bearing = direction(me.position, meeting)
-            behind = (meeting[0] - _BEHIND * cos(bearing), meeting[1] - _BEHIND * sin(bearing))
-            facing, in_line = bearing, True
-        heading = facing if gap < _TURN_DISTANCE else direction(me.position, meeting)
-        if in_line:
-            place = (meeting[0] - _THROUGH * cos(facing), meeting[1] - _THROUGH * sin(facing))
-        else:
-            place = behind
+            heading = direction(me.position, (x, y))
+            place = (x - _BEHIND * cos(heading), y - _BEHIND * sin(heading))
+            final_speed = _CREEP
         self.store.command = travel(
             frame,
             me,
             place,
             heading,
             limits,
-            avoid_ball=not in_line,
+            avoid_ball=not in_line and not at_wall,
             goalkeeper=self.goalkeeper,
-            final_speed=_RUN_UP if in_line else 0.0,
+            final_speed=final_speed,
         )
-        self.store.command.dribbler = gap < _NEAR
+        self.store.command.dribbler = near
 
     def _kick_if_aimed(self, order: _Order, gap: float) -> bool:
         me, ball = self.me, self.ball
@@ -224,8 +231,8 @@ class KickToTarget(Skill):
             return False
         self.store.command.kick_speed = order.speed
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
-        if order.pass_ is not None and has_ball(me, ball):
-            self._note_pass(order.pass_)
+        if has_ball(me, ball):
+            self._note_pass(order)
         return True
 
     def _has_left(self, order: _Order) -> bool:
@@ -240,11 +247,12 @@ class KickToTarget(Skill):
         kick.tolerance = default if self.tolerance is None else self.tolerance
         kick.kick_speed = ROBOBULLS_KICK_SPEED if self.kick_speed is None else self.kick_speed
         status = kick.tick(self.store, order.target)
-        if order.pass_ is not None and self.store.command.kick_speed > 0.0:
-            self._note_pass(order.pass_)
+        if self.store.command.kick_speed > 0.0:
+            self._note_pass(order)
         return self.succeed("kicked") if status is Status.SUCCESS else self.run(kick.stage.value)
 
-    def _note_pass(self, chosen: Pass) -> None:
-        team = self.store.team
-        team.passer, team.receiver = self.me.id, chosen.receiver
-        team.pass_target, team.pass_time = chosen.target, self.frame.time
+    def _note_pass(self, order: _Order) -> None:
+        if order.pass_ is not None:
+            team = self.store.team
+            team.passer, team.receiver = self.me.id, order.pass_.receiver
+            team.pass_target, team.pass_time = order.pass_.target, self.frame.time
