@@ -49,8 +49,8 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
             "goalkeeper",
             memory=False,
             children=[
-                case("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False)),
-                case("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False)),
+                case("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False, dive=False)),
+                case("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False, dive=False)),
                 case("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
                 case(
                     "clear",

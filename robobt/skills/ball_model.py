@@ -55,6 +55,20 @@ class BallModel(BaseModel):
         rolled = min(time, speed / self.roll_deceleration)
         return way + (speed - 0.5 * self.roll_deceleration * rolled) * rolled
 
+    def time_for(self, way: float, speed: float, rolling: float | None = None) -> float:
+        """Seconds for ``way`` [m], the inverse of :meth:`way_in`; inf if the ball rests before."""
+        if way <= 0.0:
+            return 0.0
+        time = 0.0
+        if rolling is not None and rolling < speed:
+            slide = self.slide_deceleration
+            slid = (speed * speed - rolling * rolling) / (2.0 * slide)
+            if way <= slid:
+                return (speed - sqrt(speed * speed - 2.0 * slide * way)) / slide
+            time, way, speed = (speed - rolling) / slide, way - slid, rolling
+        at_end = speed * speed - 2.0 * self.roll_deceleration * way
+        return time + (speed - sqrt(at_end)) / self.roll_deceleration if at_end >= 0.0 else inf
+
     def speed_at(self, distance: float, speed: float) -> float:
         """Speed [m/s] after ``distance`` [m] of a ball kicked at ``speed`` [m/s]; 0 where it has stopped."""
         if distance <= 0.0:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
+from robobt.skills.possession import carries
 from robobt.tree import Status
 
 
 @skill
 class BallRestsInDefense(Skill):
-    """SUCCESS while the ball lies in the own defence area, at rest or held by this robot.
+    """SUCCESS while the ball lies in the own defence area, at rest or carried by this robot.
 
     Source: RoboBulls' published code, Goalie.
 
@@ -26,6 +26,6 @@ class BallRestsInDefense(Skill):
         ball = self.ball
         if not self.frame.field.in_our_defense(ball.x, ball.y):
             return self.fail("the ball is outside our area")
-        if ball.speed > self.rest_speed and not has_ball(self.me, ball):
+        if ball.speed > self.rest_speed and not carries(self.me, ball):
             return self.fail("the ball moves")
         return self.succeed()

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from robobt.skills.ball_model import DEFAULT_BALL
+from robobt.skills.ball_watch import BallWatch
 from robobt.skills.base import Skill, skill
 from robobt.skills.pace import Pace
-from robobt.skills.pilot import drive
+from robobt.skills.pilot import drive, travel_time
 from robobt.tree import Status
-from robobt.world.geometry import closest_point_on_segment, direction
+from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.limits import RobotLimits
+
+_SLOW = 0.5
+"""A slower ball is no reason to dive [m/s]."""
+
+_THERE = 0.04
+"""A robot this near to the line stops the ball with its front [m]."""
 
 
 @skill
@@ -17,14 +25,16 @@ class BlockShot(Skill):
     """Drive to the nearest point of the line from the ball to the store's ``target``, facing the ball.
 
     Never ends by itself; FAILURE without a target. Avoids nothing: there is no
-    time to.
+    time to. A robot that cannot stop on the line before the ball is there does
+    not try to: it dives, which is to say it drives through.
 
-    Source: RoboBulls' published code, Goalie.
+    Source: RoboBulls' published code, Goalie, which always brakes.
 
     Args:
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
         dribbler: whether to catch the ball with the dribbler.
+        dive: whether it may drive through.
     """
 
     reads: ClassVar[tuple[str, ...]] = ("target",)
@@ -35,20 +45,54 @@ class BlockShot(Skill):
         limits: RobotLimits | None = None,
         speed: float = 1.0,
         dribbler: bool = True,
+        dive: bool = True,
         name: str = "",
     ) -> None:
         super().__init__(name)
         self.dribbler = dribbler
+        self.dive = dive
         self.pace = Pace(limits, speed)
+        self._watch = BallWatch()
 
     def on_running(self) -> Status:
         """One period on the way to the line."""
         target = self.store.target
         if target is None:
             return self.fail("no target to block the way to")
-        me, ball = self.me, self.ball.position
-        place = closest_point_on_segment(me.position, ball, target)
+        me, ball = self.me, self.ball
+        place = closest_point_on_segment(me.position, ball.position, target)
         limits = self.pace.of(me.limits)
-        self.store.command = drive(me, place, direction(me.position, ball), limits, self.frame.period)
+        final_speed = self._dive_speed(place, limits) if self.dive else 0.0
+        facing = direction(me.position, ball.position)
+        self.store.command = drive(me, place, facing, limits, self.frame.period, final_speed)
         self.store.command.dribbler = self.dribbler
-        return self.run("to the line of the shot")
+        return self.run("diving" if final_speed > 0.0 else "to the line of the shot")
+
+    def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
+        """The least speed at ``place`` with which the robot is there before the ball [m/s]."""
+        me, ball = self.me, self.ball
+        speed = ball.speed
+        rolling = self._watch.rolling_speed(self.frame)
+        gap = distance(me.position, place)
+        if speed < _SLOW or gap < _THERE:
+            return 0.0
+        time = DEFAULT_BALL.time_for(distance(ball.position, place), speed, rolling)
+        towards = (me.vx * (place[0] - me.x) + me.vy * (place[1] - me.y)) / gap
+        if towards > 0.0 and 0.5 * towards * towards / limits.braking >= gap - _THERE:
+            return 0.0  # fast enough to get there even braking
+        least, most = 0.0, limits.max_speed
+        if _time_through(gap, towards, least, limits) <= time:
+            return 0.0
+        for _ in range(6):
+            middle = 0.5 * (least + most)
+            if _time_through(gap, towards, middle, limits) <= time:
+                most = middle
+            else:
+                least = middle
+        return most
+
+
+def _time_through(gap: float, towards: float, final_speed: float, limits: RobotLimits) -> float:
+    """Time to get ``gap`` far and be ``final_speed`` fast there [s]."""
+    braking = final_speed / limits.braking
+    return travel_time(gap + 0.5 * final_speed * braking, towards, limits) - braking

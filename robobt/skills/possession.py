@@ -14,6 +14,9 @@ Source: RoboBulls' published code, which allows 20 mm between the two.
 
 _MOUTH = cos(radians(45.0))
 
+_ALONG = 1.0
+"""Difference of velocities up to which the ball moves along [m/s]; a turning robot swings it."""
+
 
 def has_ball(robot: RobotState, ball: BallState) -> bool:
     """Whether the ball sensor sees the ball or the ball lies before the mouth.
@@ -28,6 +31,11 @@ def has_ball(robot: RobotState, ball: BallState) -> bool:
         return False
     gap = hypot(dx, dy)
     return gap < REACH and cos(robot.heading) * dx + sin(robot.heading) * dy > _MOUTH * gap
+
+
+def carries(robot: RobotState, ball: BallState) -> bool:
+    """Whether the robot has the ball and the ball moves along with it: neither kicked nor bouncing off."""
+    return has_ball(robot, ball) and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < _ALONG
 
 
 def owner(frame: Frame) -> RobotId | None:

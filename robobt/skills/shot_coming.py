@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
+from robobt.skills.possession import carries
 from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
@@ -14,10 +14,10 @@ from robobt.world.state import ROBOT_RADIUS
 class ShotComing(Skill):
     """SUCCESS while the ball, straight on, crosses our goal line between the posts.
 
-    A ball that this robot holds is no shot. Writes where to block: the store's
+    A ball that a robot carries is no shot yet. Writes where to block: the store's
     ``target`` is the point of the crossing, a robot's radius before the line.
 
-    Source: RoboBulls' published code, Goalie.
+    Source: RoboBulls' published code, Goalie, where only the goalkeeper's own ball is none.
 
     Args:
         min_speed: slowest approach to the goal line that counts [m/s].
@@ -34,10 +34,14 @@ class ShotComing(Skill):
     def on_running(self) -> Status:
         """Extend the ball's way to the goal line."""
         field, ball = self.frame.field, self.ball
-        if ball.vx > -self.min_speed or has_ball(self.me, ball):
+        if ball.vx > -self.min_speed:
             return self.fail("no ball comes")
         y = ball.y - (ball.x + field.half_length) * ball.vy / ball.vx
         if ball.x < -field.half_length or abs(y) >= field.goal_width / 2 + self.margin:
             return self.fail("the ball goes wide")
+        for robots in (self.frame.own, self.frame.opponents):
+            for robot in robots:
+                if carries(robot, ball):
+                    return self.fail("the ball is carried")
         self.store.target = (ROBOT_RADIUS - field.half_length, y)
         return self.succeed(f"crosses at y = {y:.2f}")

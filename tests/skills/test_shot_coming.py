@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from math import pi
+
 import pytest
 
 from robobt.skills.shot_coming import ShotComing
@@ -38,3 +40,17 @@ def test_a_ball_that_goes_just_wide_counts_within_the_margin() -> None:
 def test_a_ball_the_goalkeeper_pulls_back_is_no_shot() -> None:
     me = robot(-4.0, 0.0, velocity=(-0.4, 0.0, 0.0), contact=True)
     assert Alone(ShotComing()).tick(frame(me, (*held(me), -0.4, 0.0))) is Status.FAILURE
+
+
+def test_a_ball_an_opponent_dribbles_is_no_shot_until_it_is_kicked() -> None:
+    opponent = robot(-2.0, 0.0, heading=pi, velocity=(-2.0, 0.0, 0.0), contact=True)
+    x, y = held(opponent)
+    dribbled = frame(ME, (x, y, -2.0, 0.0), opponents=(opponent,))
+    kicked = frame(ME, (x, y, -6.0, 0.0), opponents=(opponent,))
+    assert Alone(ShotComing()).tick(dribbled) is Status.FAILURE
+    assert Alone(ShotComing()).tick(kicked) is Status.SUCCESS
+
+
+def test_a_shot_that_touches_the_goalkeeper_is_one_until_it_has_been_stopped() -> None:
+    me = robot(-4.3, 0.0)
+    assert Alone(ShotComing()).tick(frame(me, (*held(me), -4.0, 0.0))) is Status.SUCCESS
