@@ -8,6 +8,8 @@ or mark opponents while the ball is in their half.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from robobt.plays.attack_main import attack_main
 from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS
@@ -33,32 +35,58 @@ from robobt.skills.select_pass import SelectPass
 from robobt.skills.select_shot import SelectShot
 from robobt.skills.stop import Stop
 from robobt.skills.team_has_ball import TeamHasBall
+from robobt.skills.under_pressure import UnderPressure
 from robobt.skills.wall import Wall
 from robobt.tree import Behaviour, Inverter, Selector, Sequence
 from robobt.world.game import Restart
 
+UPFIELD_SPEED = 2.0
+"""Of a kick that is neither shot nor pass: fast enough to get away, too slow to leave the field [m/s]."""
+
+
+class Shooting(NamedTuple):
+    """Which shots are taken.
+
+    Attributes:
+        rater: name of the shot rater.
+        min_score: worst shot taken, 0 to 1; what a score means is the rater's.
+        distance: farthest from the goal [m].
+    """
+
+    rater: str
+    min_score: float
+    distance: float
+
 
 @PLAYS.register("field_player")
 def field_player(
-    *, shot_distance: float = 4.0, dribble_speed: float = 1.2, farthest: float | None = None
+    *,
+    rater: str = "moving_horizon",
+    min_score: float = 0.03,
+    shot_distance: float = 4.0,
+    dribble_speed: float = 1.2,
+    farthest: float | None = None,
 ) -> Behaviour:
-    """Attack when nearest to the ball, else mark in the own half and support in the other.
+    """Attack when first to the ball, else mark in the own half and support in the other.
 
     Args:
+        rater: name of the shot rater.
+        min_score: worst shot taken, 0 to 1.
         shot_distance: no shots from farther than this from the goal [m].
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
+    shooting = Shooting(rater, min_score, shot_distance)
     return Selector(
         "field player",
         memory=False,
         children=[
             when("halted", IsHalted(), Stop()),
-            take_restart(shot_distance, farthest),
+            take_restart(shooting, farthest),
             when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
             when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
             when("ball is dead", ball_dead(), KeepDistance(), off_the_ball()),
-            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shot_distance, dribble_speed)),
+            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
             off_the_ball(),
         ],
     )
@@ -66,25 +94,36 @@ def field_player(
 
 @PLAYS.register("defender")
 def defender(
-    *, place: int = 0, size: int = 1, shot_distance: float = 4.0, farthest: float = -1.0
+    *,
+    place: int = 0,
+    size: int = 1,
+    rater: str = "moving_horizon",
+    min_score: float = 0.03,
+    shot_distance: float = 4.0,
+    dribble_speed: float = 1.0,
+    farthest: float = -1.0,
 ) -> Behaviour:
-    """Stand in the wall before the own defence area; play the ball when nearest to it there.
+    """Stand in the wall before the own defence area; play the ball when first to it there.
 
     Args:
         place: in the wall, counted from 0 on the left as it looks out.
         size: how many defenders the wall has.
+        rater: name of the shot rater.
+        min_score: worst shot taken, 0 to 1.
         shot_distance: no shots from farther than this from the goal [m].
+        dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m].
     """
+    shooting = Shooting(rater, min_score, shot_distance)
     return Selector(
         "defender",
         memory=False,
         children=[
             when("halted", IsHalted(), Stop()),
-            take_restart(shot_distance, farthest),
+            take_restart(shooting, farthest),
             when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
             when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
-            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shot_distance, 1.0)),
+            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
             Wall(place=place, size=size),
         ],
     )
@@ -119,36 +158,53 @@ def ball_dead() -> Behaviour:
     return Inverter("ball is dead", BallInPlay())
 
 
-def take_restart(shot_distance: float, farthest: float | None) -> Behaviour:
+def take_restart(shooting: Shooting, farthest: float | None) -> Behaviour:
     """Take an own restart when nearest to it; where it goes is settled when it may be taken."""
-    take_it = Sequence("take it", memory=True, children=[MayTouchBall(), aim(shot_distance), KickToTarget()])
-    get_ready = when("get ready", aim(shot_distance), PrepareRestart())
+    take_it = Sequence("take it", memory=True, children=[MayTouchBall(), kick_away(shooting, settled=True)])
+    where_to = Selector("where to", memory=False, children=[*aims(shooting)])
     return when(
         "our restart",
         IsRestart(ours=True),
         IsAttacker(farthest=farthest),
-        Selector("restart", memory=False, children=[take_it, get_ready]),
+        Selector("restart", memory=False, children=[take_it, when("get ready", where_to, PrepareRestart())]),
     )
 
 
-def aim(shot_distance: float) -> Behaviour:
-    """A shot, else a pass, else upfield."""
+def kick_away(shooting: Shooting, *, settled: bool) -> Behaviour:
+    """Shoot, else pass, else kick the ball upfield; ``settled`` stays with what was begun."""
+    shot, pass_, upfield = aims(shooting)
     return Selector(
-        "aim",
-        memory=False,
-        children=[SelectShot(max_distance=shot_distance), SelectPass(min_score=0.1), AimUpfield()],
+        "kick away",
+        memory=settled,
+        children=[
+            Sequence("shoot", memory=settled, children=[shot, KickToTarget()]),
+            Sequence("pass", memory=settled, children=[pass_, KickToTarget()]),
+            Sequence("upfield", memory=settled, children=[upfield, KickToTarget(kick_speed=UPFIELD_SPEED)]),
+        ],
     )
 
 
-def on_the_ball(shot_distance: float, dribble_speed: float) -> Behaviour:
+def aims(shooting: Shooting) -> tuple[Behaviour, Behaviour, Behaviour]:
+    """Where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
+    shot = SelectShot(rater=shooting.rater, min_score=shooting.min_score, max_distance=shooting.distance)
+    return shot, SelectPass(min_score=0.1), AimUpfield()
+
+
+def on_the_ball(shooting: Shooting, dribble_speed: float) -> Behaviour:
     """Attack, and let the ball go before it has been carried as far as the rules allow."""
     return Selector(
         "attack",
         memory=False,
         children=[
-            when("let go", CarriedFar(limit=0.6), Stop()),
+            when("let go", CarriedFar(limit=0.8), Stop()),
             when("receive", Inverter("free ball", HasBall()), ReceiveBall()),
-            attack_main(max_distance=shot_distance, dribble_speed=dribble_speed),
+            when("pressed", HasBall(), UnderPressure(), kick_away(shooting, settled=False)),
+            attack_main(
+                rater=shooting.rater,
+                min_score=shooting.min_score,
+                max_distance=shooting.distance,
+                dribble_speed=dribble_speed,
+            ),
         ],
     )
 

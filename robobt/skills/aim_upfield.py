@@ -6,9 +6,10 @@ from math import atan2, cos, hypot, inf, radians, sin
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
 from robobt.skills.store import Shot
 from robobt.tree import Status
-from robobt.world.geometry import Point, segment_distance
+from robobt.world.geometry import Point, segment_distance, wrap_angle
 
 _TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
 _ENOUGH = 0.5
@@ -21,7 +22,8 @@ class AimUpfield(Skill):
 
     Of the directions about the way to the opponent's goal it takes the one whose
     lane is freest of opponents, half a metre being free enough, and stays inside
-    the lines; among like ones the straightest.
+    the lines; among like ones the straightest and, with the ball in the mouth, the
+    one that asks for the smallest turn.
 
     Args:
         reach: length of the lane [m].
@@ -44,6 +46,7 @@ class AimUpfield(Skill):
             for robot in frame.opponents
             if hypot(robot.x - x, robot.y - y) < self.reach + _ENOUGH
         ]
+        held = has_ball(self.me, frame.ball)
         best: Point = (goal_x, goal_y)
         most = -inf
         for turn in _TURNS:
@@ -51,6 +54,8 @@ class AimUpfield(Skill):
             room = min((segment_distance(other, (x, y), end) for other in opponents), default=_ENOUGH)
             outside = max(0.0, abs(end[0]) - frame.field.half_length, abs(end[1]) - frame.field.half_width)
             value = min(room, _ENOUGH) - 0.1 * abs(turn) - outside
+            if held:
+                value -= 0.1 * abs(wrap_angle(ahead + turn - self.me.heading))
             if value > most:
                 best, most = end, value
         self.store.shot = Shot(best, _TOLERANCE, 0.0)

@@ -11,6 +11,8 @@ from robobt.world.geometry import Point
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _LET_GO = 0.06
+_LETTING_GO = 0.15
+"""How long it takes to come off a ball [s]."""
 
 
 @skill
@@ -19,7 +21,8 @@ class CarriedFar(Skill):
 
     The way is as the crow flies from where it got the ball, as referees measure
     it: they allow 1 m. A ball that has not come more than 60 mm off the hull has
-    not been let go. To be ticked every tick; after a pause it counts anew.
+    not been let go, so what it rolls while the robot brakes away from it counts too.
+    To be ticked every tick; after a pause it counts anew.
 
     Source of the 60 mm: Sumatra's autoreferee.
 
@@ -46,7 +49,7 @@ class CarriedFar(Skill):
             if not has_ball(self.me, ball):
                 return self.fail("it has no ball yet")
             self._start = ball.position
-        way = hypot(ball.x - self._start[0], ball.y - self._start[1])
+        way = hypot(ball.x - self._start[0], ball.y - self._start[1]) + _LETTING_GO * ball.speed
         if way < self.limit:
             return self.fail(f"{way:.2f} m")
         return self.succeed(f"{way:.2f} m")

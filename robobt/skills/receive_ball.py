@@ -71,7 +71,9 @@ class ReceiveBall(Skill):
             return self.fail("it cannot get in the ball's way")
         self._place = place = (ball.x + way * ux, ball.y + way * uy)
         heading = atan2(ball.y - me.y, ball.x - me.x)
-        self.store.command = travel(frame, me, place, heading, me.limits)
+        # From beside or behind the ball the way there must not lead through it.
+        abreast = (me.x - ball.x) * ux + (me.y - ball.y) * uy
+        self.store.command = travel(frame, me, place, heading, me.limits, avoid_ball=abreast < _FRONT)
         self.store.command.dribbler = hypot(ball.x - me.x, ball.y - me.y) < _DRIBBLER_FROM
         return self.run("waiting for the ball")
 

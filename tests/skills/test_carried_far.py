@@ -22,6 +22,21 @@ def test_the_way_with_the_ball_is_measured_from_where_it_got_it() -> None:
     assert carry(Alone(CarriedFar(limit=0.8)), 1.0, 1.81, 30) is Status.SUCCESS
 
 
+def test_what_a_fast_ball_rolls_while_it_is_let_go_counts() -> None:
+    me = robot(contact=True)
+    alone = Alone(CarriedFar(limit=0.3))
+    assert alone.tick(frame(me, (*held(me), 1.9, 0.0))) is Status.FAILURE
+    assert alone.tick(frame(me, (*held(me), 2.1, 0.0), time=PERIOD)) is Status.SUCCESS
+
+
+def test_a_ball_that_is_not_clear_of_the_robot_is_still_carried() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry(alone, 0.0, 0.7, 30)
+    me = robot(0.76)
+    assert alone.tick(frame(me, (me.x + 0.15, 0.0), time=31 * PERIOD)) is Status.SUCCESS
+    assert alone.tick(frame(me, (me.x + 0.19, 0.0), time=32 * PERIOD)) is Status.FAILURE
+
+
 def test_there_and_back_is_not_far() -> None:
     alone = Alone(CarriedFar(limit=0.8))
     carry(alone, 0.0, 0.5, 30)
