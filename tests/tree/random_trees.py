@@ -234,7 +234,11 @@ def _parallel_count(name: str, made: list[Behaviour], chances: list[float], tell
 
 def _committing(name: str, made: list[Behaviour], chances: list[float], telling: bool) -> Behaviour:
     children = [
-        CommitFor(f"{name}for{i}", child, seconds=0.5 * chance) if chance < 0.6 else child
+        decorators.Inverter(f"{name}not{i}", CommitFor(f"{name}for{i}", child, seconds=0.5 * chance))
+        if chance < 0.2
+        else CommitFor(f"{name}for{i}", child, seconds=0.5 * chance)
+        if chance < 0.6
+        else child
         for i, (child, chance) in enumerate(zip(made, chances, strict=False))
     ]
     return _told(CommittingSelector, telling)(name, children=children)

@@ -17,15 +17,15 @@ from robobt.tree.nodes.timer import HasTime, Timer
 class CommitFor(Decorator, Bound[HasTime]):
     """Marks a branch of a :class:`CommittingSelector` that is kept for a while once it runs.
 
-    Has its child's status. Only higher priorities are held off: the child may
-    finish at any time, its own guards stop it as ever, and so does whatever is
-    above the selector.
+    It is the selector's child, or has only decorators between. Has its child's
+    status. Only higher priorities are held off: the child may finish at any time,
+    its own guards stop it as ever, and so does whatever is above the selector.
 
     Args:
         seconds: how long, from the first tick of a run [s].
 
     Raises:
-        RuntimeError: at the first tick, when its parent is no CommittingSelector.
+        RuntimeError: at the first tick, when it is no branch of a CommittingSelector.
     """
 
     def __init__(self, name: str, child: Behaviour, *, seconds: float) -> None:
@@ -40,8 +40,11 @@ class CommitFor(Decorator, Bound[HasTime]):
 
     def initialise(self) -> None:
         """The time runs from here."""
-        if not isinstance(self.parent, CommittingSelector):
-            raise RuntimeError("the parent of a CommitFor has to be a CommittingSelector")
+        above = self.parent
+        while isinstance(above, Decorator):
+            above = above.parent
+        if not isinstance(above, CommittingSelector):
+            raise RuntimeError("a CommitFor has to be a branch of a CommittingSelector")
         self._timer.start(self.store.time)
 
     def update(self) -> Status:
@@ -52,10 +55,10 @@ class CommitFor(Decorator, Bound[HasTime]):
 class CommittingSelector(Selector):
     """A reactive selector that does not leave a branch which is committed.
 
-    While its running child is a :class:`CommitFor` that is committed, that child is
-    ticked first, and higher priorities only when it fails, in their order, before
-    the lower ones. Otherwise it is ``Selector(memory=False)``, but that no child
-    keeps a status of an earlier tick: those that were not ticked are INVALID.
+    While its running child is committed by a :class:`CommitFor`, that child is ticked
+    first, and higher priorities only when it fails, in their order, before the lower
+    ones. Otherwise it is ``Selector(memory=False)``, but that no child keeps a status
+    of an earlier tick: those that were not ticked are INVALID.
     """
 
     def __init__(self, name: str, children: Sequence[Behaviour] | None = None) -> None:
@@ -125,5 +128,9 @@ class CommittingSelector(Selector):
         return tick, stop
 
     def _kept(self) -> Behaviour | None:
-        child = self.current_child
-        return child if isinstance(child, CommitFor) and child.committed else None
+        branch = node = self.current_child
+        while isinstance(node, Decorator):
+            if isinstance(node, CommitFor) and node.committed:
+                return branch
+            node = node.decorated
+        return None
