@@ -58,6 +58,7 @@ from robobt.skills.shot_is_steady import ShotIsSteady
 from robobt.skills.stop import Stop
 from robobt.skills.store import Pass, Shot, Store, TeamStore
 from robobt.skills.team_has_ball import TeamHasBall
+from robobt.skills.under_pressure import UnderPressure
 from robobt.skills.wall import Wall
 
 __all__ = [
@@ -120,6 +121,7 @@ __all__ = [
     "Store",
     "TeamHasBall",
     "TeamStore",
+    "UnderPressure",
     "Wall",
     "skill",
 ]
