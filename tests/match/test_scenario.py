@@ -1,5 +1,6 @@
 import json
 import pickle
+import re
 from itertools import combinations
 from math import atan2, hypot, pi
 from pathlib import Path
@@ -8,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from pydantic import BaseModel
 
 from robobt.match import ScenarioError, load_scenario
 from robobt.match.placing import HELD_DISTANCE
-from robobt.match.scenario import Scenario, scenario_from
+from robobt.match.scenario import Ends, RobotSetup, Scenario, scenario_from
+from robobt.match.starts import Around, BallStart, Box, Disc, RobotStart
 from robobt.match.yaml_reader import MAX_BYTES, MAX_DEPTH
 from robobt.resources import bundled_scenarios
 from robobt.world import BALL_RADIUS, ROBOT_RADIUS, RobotId, RobotLimits, Team
@@ -393,3 +396,15 @@ class TestStarts:
     )
     def test_starts_that_cannot_be_are_refused_with_their_field(self, changes: dict[str, Any], expected: str):
         assert problem(**changes).removeprefix("test.yaml: ").startswith(expected)
+
+
+class TestDocumentation:
+    text = (Path(__file__).parents[2] / "docs" / "scenarios.md").read_text()
+
+    def test_its_example_is_a_scenario(self):
+        example = self.text.partition("```yaml\n")[2].partition("```")[0]
+        assert scenario_from(yaml.safe_load(example), "docs").trials == 100
+
+    @pytest.mark.parametrize("model", [Scenario, RobotSetup, RobotStart, BallStart, Box, Disc, Around, Ends])
+    def test_every_field_is_explained(self, model: type[BaseModel]):
+        assert [name for name in model.model_fields if not re.search(rf"\b{name}\b", self.text)] == []
