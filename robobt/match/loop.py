@@ -129,7 +129,7 @@ class Match:
         return True
 
     def result(self, wall_time: float = 0.0) -> MatchResult:
-        """The figures so far.
+        """The figures so far; a match that is not over counts as one that ran out of time.
 
         Args:
             wall_time: how long it took, for the real-time factor [s].
