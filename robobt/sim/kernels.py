@@ -220,6 +220,8 @@ def _sweep(
         if px * dx + py * dy >= 0.0:
             continue
         t_in, t_out = _meets_disc(px, py, dx, dy, p[ROBOT_R] + radius)
+        if t_in >= share:
+            continue
         # The half-plane behind the flat front.
         c, s = cos(row[2]), sin(row[2])
         ahead = c * px + s * py
@@ -270,11 +272,14 @@ def _hold(
 @njit(cache=True)
 def _in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -> bool:
     """Whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
-    c, s = cos(robot[2]), sin(robot[2])
     px, py = ball[0] - robot[0], ball[1] - robot[1]
+    reach = p[FACE] + p[BALL_R] + depth
+    if px * px + py * py > reach * reach + p[HALF_MOUTH] * p[HALF_MOUTH]:
+        return False
+    c, s = cos(robot[2]), sin(robot[2])
     ahead = c * px + s * py
     aside = c * py - s * px
-    return bool(0.0 < ahead <= p[FACE] + p[BALL_R] + depth and abs(aside) <= p[HALF_MOUTH])
+    return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
 
 
 @njit(cache=True)
@@ -316,7 +321,8 @@ def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch:
     for i in range(robots):
         row = rows[first + i]
         px, py = ball[0] - row[0], ball[1] - row[1]
-        if hypot(px, py) > p[ROBOT_R] + p[BALL_R] + _TOUCH:
+        reach = p[ROBOT_R] + p[BALL_R] + _TOUCH
+        if px * px + py * py > reach * reach:
             continue
         if cos(row[2]) * px + sin(row[2]) * py > p[FACE] + p[BALL_R] + _TOUCH:
             continue

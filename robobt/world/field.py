@@ -36,9 +36,7 @@ class FieldGeometry(BaseModel):
         if self.defense_depth > self.length / 2:
             raise ValueError(f"defense_depth {self.defense_depth} must not exceed half the length")
         if self.goal_depth > self.margin:
-            raise ValueError(
-                f"goal_depth {self.goal_depth} must not exceed margin {self.margin}"
-            )
+            raise ValueError(f"goal_depth {self.goal_depth} must not exceed margin {self.margin}")
         return self
 
     @cached_property
