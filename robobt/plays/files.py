@@ -1,0 +1,50 @@
+"""Plays in files: every skill, play and rater by its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from robobt.plays.base import PLAYS
+from robobt.skills import SKILLS
+from robobt.skills.raters import RATERS, ShotRater
+from robobt.skills.referee_switch import RefereeSwitch
+from robobt.skills.store import Store
+from robobt.tree import Behaviour
+from robobt.tree.files import FilePlay, Vocabulary, describe_tree, load_tree_file, write_xml, write_yaml
+
+VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch,), {ShotRater: RATERS}, Store)
+"""What the files of plays may name."""
+
+_FOLDER = Path(__file__).resolve().parent / "trees"
+
+
+def load_play(path: str | Path) -> FilePlay:
+    """A play from a file (.yaml, .xml), to be called like those of :data:`~robobt.plays.base.PLAYS`.
+
+    Raises:
+        TreeFileError: one line that names the file, the line and what is wrong.
+    """
+    return FilePlay(load_tree_file(path, VOCABULARY), VOCABULARY)
+
+
+def play_files() -> dict[str, Path]:
+    """The files of the plays that ship, by the plays' names."""
+    return {path.stem: path for path in sorted(_FOLDER.glob("*.yaml"))}
+
+
+def tree_yaml(root: Behaviour, name: str) -> str:
+    """A tree as the YAML of a play.
+
+    Raises:
+        ValueError: a node is not registered, or has a parameter that is no plain data.
+    """
+    return write_yaml(describe_tree(root, VOCABULARY, name))
+
+
+def tree_xml(root: Behaviour, name: str) -> str:
+    """A tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
+
+    Raises:
+        ValueError: as :func:`tree_yaml`, or XML cannot say it.
+    """
+    return write_xml(describe_tree(root, VOCABULARY, name), VOCABULARY)

@@ -1,0 +1,27 @@
+"""Trees in files: YAML, and the XML of BehaviorTree.CPP 4 that Groot2 opens; see docs/tree_files.md."""
+
+from robobt.tree.files.build import build_tree
+from robobt.tree.files.describe import describe_tree, tree_differences
+from robobt.tree.files.errors import TreeFileError
+from robobt.tree.files.model import Entry, TreeFile
+from robobt.tree.files.play import FilePlay, load_tree_file, try_build
+from robobt.tree.files.vocabulary import Vocabulary
+from robobt.tree.files.xml import parse_xml, write_xml
+from robobt.tree.files.yaml import parse_yaml, write_yaml
+
+__all__ = [
+    "Entry",
+    "FilePlay",
+    "TreeFile",
+    "TreeFileError",
+    "Vocabulary",
+    "build_tree",
+    "describe_tree",
+    "load_tree_file",
+    "parse_xml",
+    "parse_yaml",
+    "tree_differences",
+    "try_build",
+    "write_xml",
+    "write_yaml",
+]

@@ -1,0 +1,97 @@
+"""The tags of BehaviorTree.CPP and the nodes that do the same.
+
+docs/tree_files.md has the table and says where the same is not quite the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """An attribute of a tag.
+
+    Attributes:
+        parameter: the parameter of the node that it is.
+        default: its value where it is left out, None when it has to be given.
+        milliseconds: whether it counts those, and the parameter seconds.
+        count: whether it is a number of times: 1 or more, or -1 for without end.
+    """
+
+    parameter: str
+    default: str | None = None
+    milliseconds: bool = False
+    count: bool = False
+
+
+@dataclass(frozen=True)
+class Tag:
+    """A tag of BehaviorTree.CPP.
+
+    Attributes:
+        type: the node's type.
+        fixed: parameters that the tag stands for.
+        attributes: the others, by the names XML gives them.
+    """
+
+    type: str
+    fixed: Mapping[str, Any] = field(default_factory=dict)
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+
+
+TAGS: Mapping[str, Tag] = {
+    "Sequence": Tag("Sequence", {"memory": True}),
+    "ReactiveSequence": Tag("Sequence", {"memory": False}),
+    "SequenceWithMemory": Tag("SequenceWithMemory"),
+    "Fallback": Tag("Selector", {"memory": True}),
+    "ReactiveFallback": Tag("Selector", {"memory": False}),
+    "Parallel": Tag(
+        "ParallelCount",
+        attributes={
+            "success_count": Attribute("success_count", default="-1"),
+            "failure_count": Attribute("failure_count", default="1"),
+        },
+    ),
+    "Inverter": Tag("Inverter"),
+    "ForceSuccess": Tag("FailureIsSuccess"),
+    "ForceFailure": Tag("SuccessIsFailure"),
+    "KeepRunningUntilFailure": Tag("SuccessIsRunning"),
+    "Repeat": Tag("Repeat", attributes={"num_cycles": Attribute("num_success", count=True)}),
+    "RetryUntilSuccessful": Tag("Retry", attributes={"num_attempts": Attribute("num_failures", count=True)}),
+    "Timeout": Tag("Timeout", attributes={"msec": Attribute("seconds", milliseconds=True)}),
+    "Delay": Tag("Delay", attributes={"delay_msec": Attribute("seconds", milliseconds=True)}),
+    "Sleep": Tag("Wait", attributes={"msec": Attribute("seconds", milliseconds=True)}),
+    "AlwaysSuccess": Tag("Success"),
+    "AlwaysFailure": Tag("Failure"),
+}
+"""The tags whose nodes robobt has, under its own or another name."""
+
+OTHER_TAGS: Mapping[str, str] = {"ParallelByPolicy": "Parallel"}
+"""Tags for types whose own name is the tag of another node."""
+
+UNKNOWN_HERE: Mapping[str, str] = {
+    "AsyncSequence": "robobt's trees do not yield between children; use Sequence",
+    "AsyncFallback": "robobt's trees do not yield between children; use Fallback",
+    "Script": "robobt has no scripts; write a skill",
+    "ScriptCondition": "robobt has no scripts; write a condition",
+    "Precondition": "robobt has no scripts; write a condition",
+    "SetBlackboard": "robobt has no blackboard; write a skill that writes the store",
+    "UnsetBlackboard": "robobt has no blackboard; write a skill that writes the store",
+    "ParallelAll": "robobt has no such node; Parallel counts too",
+    "IfThenElse": "robobt has no such node",
+    "WhileDoElse": "robobt has no such node",
+    "RunOnce": "robobt has no such node; OneShot is the nearest",
+}
+"""What to say about tags of BehaviorTree.CPP that cannot be read."""
+
+NODE_TAGS = ("Action", "Condition", "Control", "Decorator")
+"""Tags of the long form, in which the type is the attribute ``ID``."""
+
+METADATA = ("_uid", "_fullpath", "_collapsed", "_description")
+"""Attributes that BehaviorTree.CPP and Groot2 write for themselves; read over, not kept."""
+
+SCRIPTS = ("_skipIf", "_successIf", "_failureIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
+"""Attributes with scripts."""

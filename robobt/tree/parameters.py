@@ -1,0 +1,190 @@
+"""The parameters of plays, skills and nodes, read from their signatures."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import types
+import typing
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic.errors import PydanticUserError
+from pydantic_core import PydanticSerializationError
+
+
+class ParameterError(ValueError):
+    """A parameter that does not fit.
+
+    Attributes:
+        parameter: its name, with the place inside it when it is a structure ("point.0").
+    """
+
+    def __init__(self, parameter: str, problem: str) -> None:
+        super().__init__(problem)
+        self.parameter = parameter
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a play or a node.
+
+    Attributes:
+        name: as written in a file.
+        hint: its type.
+        default: its default; ``inspect.Parameter.empty`` when it has to be given.
+    """
+
+    name: str
+    hint: Any
+    default: Any = inspect.Parameter.empty
+
+    @property
+    def required(self) -> bool:
+        """Whether it has no default."""
+        return self.default is inspect.Parameter.empty
+
+    @property
+    def kind(self) -> str:
+        """The type as a person would write it."""
+        return say_hint(self.hint)
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.kind}" + ("" if self.required else f" = {_say_default(self.default)}")
+
+    def convert(self, value: Any) -> Any:
+        """Plain data as this parameter's type.
+
+        The rules are those of strict JSON: a list fits a tuple and an integer a
+        float, but "1.5" is no number.
+
+        Raises:
+            ParameterError: it does not fit.
+        """
+        adapter = self._adapter()
+        try:
+            text = json.dumps(value)
+        except (TypeError, ValueError, RecursionError) as error:
+            raise ParameterError(self.name, f"{say_value(value)} is no plain data") from error
+        try:
+            return adapter.validate_json(text, strict=True)
+        except ValidationError as error:
+            problem = error.errors(include_url=False)[0]
+            place = ".".join([self.name, *[str(part) for part in problem["loc"]]])
+            raise ParameterError(place, f"{problem['msg']}, not {say_value(problem['input'])}") from error
+        except Exception as error:
+            # Validators are anybody's code, and an abstract model cannot be made at all.
+            raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
+
+    def plain(self, value: Any) -> Any:
+        """The plain data that :meth:`convert` makes into an equal value.
+
+        Raises:
+            ParameterError: there is none.
+        """
+        adapter = self._adapter()
+        try:
+            data = adapter.dump_python(value, mode="json", warnings="error", exclude_defaults=True)
+            if self.convert(data) == value:
+                return data
+        except (PydanticSerializationError, ValueError, TypeError):
+            pass
+        raise ParameterError(self.name, f"{say_value(value)} cannot be written as plain data")
+
+    def _adapter(self) -> TypeAdapter[Any]:
+        try:
+            return _adapter(self.hint)
+        except TypeError:
+            # A hint that cannot be hashed.
+            return _adapter.__wrapped__(self.hint)
+        except PydanticUserError as error:
+            raise ParameterError(self.name, f"a {self.kind} cannot be given as plain data") from error
+
+
+def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
+    """Parameters that can be given by name, in the order of the signature."""
+    target = builder.__init__ if inspect.isclass(builder) else builder
+    hints = typing.get_type_hints(target, include_extras=True)
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    return [
+        Parameter(name, hints.get(name, Any), entry.default)
+        for name, entry in inspect.signature(builder).parameters.items()
+        if entry.kind in kinds
+    ]
+
+
+def check_parameters(what: str, builder: Callable[..., object], given: Mapping[str, Any]) -> dict[str, Any]:
+    """The given parameters, converted to the types of the builder's signature.
+
+    Args:
+        what: what the builder is called, for messages.
+        builder: a play or a skill's class.
+        given: plain data by parameter name.
+
+    Raises:
+        ParameterError: an unknown parameter, one missing, or one of the wrong type.
+    """
+    known = {parameter.name: parameter for parameter in parameters_of(builder)}
+    check_names(what, known, given)
+    return {name: known[name].convert(value) for name, value in given.items()}
+
+
+def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, Any]) -> None:
+    """Check that every given name is known and every parameter without a default is given.
+
+    Raises:
+        ParameterError: one is not.
+    """
+    for name in given:
+        if name not in known:
+            there = f"it has {', '.join(known)}" if known else "it has none"
+            raise ParameterError(name, f"{what} has no such parameter; {there}")
+    for name, parameter in known.items():
+        if parameter.required and name not in given:
+            raise ParameterError(name, f"{what} needs this parameter")
+
+
+def say_value(value: object) -> str:
+    """A value for a message: on one line and not long."""
+    said = repr(value)
+    return said if len(said) <= 60 else said[:57] + "..."
+
+
+def say_hint(hint: Any) -> str:
+    """A type as a person would write it."""
+    origin, arguments = typing.get_origin(hint), typing.get_args(hint)
+    if origin is typing.Annotated:
+        return say_hint(arguments[0])
+    if origin is typing.Literal:
+        return " | ".join([repr(argument) for argument in arguments])
+    if hint is type(None) or hint is None:
+        return "none"
+    if hint is Any:
+        return "anything"
+    if origin is not None and arguments:
+        if origin in (typing.Union, types.UnionType):
+            return " | ".join([say_hint(argument) for argument in arguments])
+        inside = ", ".join(["..." if part is Ellipsis else say_hint(part) for part in arguments])
+        return f"{getattr(origin, '__name__', origin)}[{inside}]"
+    return getattr(hint, "__name__", str(hint))
+
+
+def _say_default(default: object) -> str:
+    return "none" if default is None else repr(str(default)) if isinstance(default, str) else f"{default}"
+
+
+@lru_cache(maxsize=512)
+def _adapter(hint: Any) -> TypeAdapter[Any]:
+    try:
+        return TypeAdapter(hint, config=_FINITE)
+    except PydanticUserError as error:
+        # Models, dataclasses and the like carry their own configuration.
+        if error.code != "type-adapter-config-unused":
+            raise
+        return TypeAdapter(hint)
+
+
+_FINITE = ConfigDict(allow_inf_nan=False)
