@@ -31,7 +31,7 @@ class BallAtDefenseEdge(Skill):
     def on_running(self) -> Status:
         """Look where the ball is and who is near."""
         field, ball = self.frame.field, self.ball
-        near = field.in_our_defense(ball.x, ball.y, 2.0 * ROBOT_RADIUS)
+        near = field.in_our_defense(ball.x, ball.y, 2.0 * ROBOT_RADIUS) and field.contains(ball.x, ball.y)
         if self._fetching:
             self._fetching = near and not field.in_our_defense(ball.x, ball.y, -ROBOT_RADIUS)
         elif near and not field.in_our_defense(ball.x, ball.y, -0.5 * ROBOT_RADIUS):

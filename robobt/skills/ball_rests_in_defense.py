@@ -23,8 +23,8 @@ class BallRestsInDefense(Skill):
 
     def on_running(self) -> Status:
         """Look where the ball is and how fast."""
-        ball = self.ball
-        if not self.frame.field.in_our_defense(ball.x, ball.y):
+        field, ball = self.frame.field, self.ball
+        if not (field.in_our_defense(ball.x, ball.y) and field.contains(ball.x, ball.y)):
             return self.fail("the ball is outside our area")
         if ball.speed > self.rest_speed and not carries(self.me, ball):
             return self.fail("the ball moves")

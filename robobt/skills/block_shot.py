@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import ClassVar
 
 from robobt.skills.ball_model import DEFAULT_BALL
@@ -78,10 +79,10 @@ class BlockShot(Skill):
             return 0.0
         time = DEFAULT_BALL.time_for(distance(ball.position, place), speed, rolling)
         towards = (me.vx * (place[0] - me.x) + me.vy * (place[1] - me.y)) / gap
-        if towards > 0.0 and 0.5 * towards * towards / limits.braking >= gap - _THERE:
-            return 0.0  # fast enough to get there even braking
         least, most = 0.0, limits.max_speed
-        if _time_through(gap, towards, least, limits) <= time:
+        if _in_time_braking(gap - _THERE, towards, time, limits) or (
+            _time_through(gap, towards, least, limits) <= time
+        ):
             return 0.0
         for _ in range(6):
             middle = 0.5 * (least + most)
@@ -96,3 +97,9 @@ def _time_through(gap: float, towards: float, final_speed: float, limits: RobotL
     """Time to get ``gap`` far and be ``final_speed`` fast there [s]."""
     braking = final_speed / limits.braking
     return travel_time(gap + 0.5 * final_speed * braking, towards, limits) - braking
+
+
+def _in_time_braking(gap: float, towards: float, time: float, limits: RobotLimits) -> bool:
+    """Whether a robot that brakes from now on gets ``gap`` far within ``time``."""
+    left = towards * towards - 2.0 * limits.braking * gap
+    return towards > 0.0 and left >= 0.0 and towards - sqrt(left) <= limits.braking * time

@@ -5,17 +5,21 @@ from __future__ import annotations
 from math import cos, radians, sin
 
 from robobt.skills.base import Skill, skill
+from robobt.skills.dribbling import dribbling_limits
 from robobt.skills.pace import Pace
 from robobt.skills.path_planner import travel
+from robobt.skills.pick_up_ball import grab
 from robobt.skills.pilot import drive
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-_AHEAD = radians(5.0)
+_IN_LINE = radians(25.0)
 _BEHIND = ROBOT_RADIUS + BALL_RADIUS + 0.05
-_PULL = RobotLimits(max_speed=0.4, acceleration=0.8, braking=0.8, max_turn=0.5, turn_acceleration=2.0)
+_NEAR = 0.3
+_GRAB_SPEED = 0.4
+_PULL = dribbling_limits(max_speed=0.5, max_turn=1.0, max_acceleration=0.8)
 """With the ball, backwards: what any dribbler holds."""
 
 
@@ -58,9 +62,8 @@ class FetchBall(Skill):
             return self.run("pulling it back")
         outwards = direction(place, ball)
         off_line = abs(wrap_angle(facing - outwards))
-        if off_line < 4 * _AHEAD and abs(wrap_angle(facing - me.heading)) < _AHEAD:
-            self.store.command = drive(me, ball, facing, _PULL, period)
-            self.store.command.dribbler = True
+        if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
+            self.store.command = grab(me, self.ball, _GRAB_SPEED, period)
             return self.run("taking it")
         behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
         limits = self.pace.of(me.limits)

@@ -7,8 +7,8 @@ import pytest
 from robobt.skills.block_shot import BlockShot
 from robobt.skills.pilot import ROBOBULLS_LIMITS
 from robobt.tree import Status
-from robobt.world import DIVISION_B, RobotState
-from tests.simulation import Trial, blue, eventually
+from robobt.world import DIVISION_B, RobotLimits, RobotState
+from tests.simulation import Trial, ball_in_our_goal, blue, eventually
 from tests.skills.fixed_world import Alone, frame, moved, robot
 
 TARGET = (-4.41, 0.3)
@@ -60,3 +60,25 @@ def test_it_stops_a_slow_ball() -> None:
     trial.run(3.0, eventually("the ball no longer comes", lambda frame: frame.ball.vx > -0.05))
     assert trial.frames[-1].ball.x > -DIVISION_B.half_length
     assert abs(trial.frames[-1].own[0].heading) < pi / 4
+
+
+@pytest.mark.parametrize("dive", [True, False])
+def test_a_robot_that_brakes_slowly_saves_by_diving_what_it_could_not_otherwise(dive: bool) -> None:
+    slow_to_stop = RobotLimits(max_speed=2.25, acceleration=2.5, braking=0.8)
+    trial = Trial(
+        {blue(0): BlockShot(dive=dive)},
+        {blue(0): (-4.35, 0.0, 0.0)},
+        ball=(-1.5, 0.0, -6.0, 0.72),
+        limits=slow_to_stop,
+    )
+    trial.stores[blue(0)].target = (-4.41, 0.35)
+    trial.run(1.0)
+    assert any(ball_in_our_goal(frame) for frame in trial.frames) is not dive
+
+
+def test_with_time_enough_it_does_not_dive() -> None:
+    alone = Alone(BlockShot(), target=TARGET)
+    alone.tick(frame(robot(-4.35, -0.1), (0.0, 0.3, -2.0, 0.0)))
+    assert "diving" not in alone.tree.feedback_message
+    alone.tick(frame(robot(-4.35, -0.3), (-2.0, 0.3, -6.0, 0.0)))
+    assert "diving" in alone.tree.feedback_message

@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from robobt.skills.possession import REACH, has_ball, owner
+from robobt.skills.possession import REACH, carries, has_ball, owner
 from robobt.world import BallState, RobotId, Team
 from tests.skills.fixed_world import frame, held, robot
 
@@ -49,3 +49,11 @@ def test_of_two_that_have_it_the_nearer_owns_it() -> None:
     near, far = robot(0.0, 0.0, 0.0, number=1), robot(0.22, 0.0, pi, number=2)
     assert owner(frame(near, ball=(0.1, 0.0), opponents=(far,))) == RobotId(Team.BLUE, 1)
     assert owner(frame(near, ball=(0.12, 0.0), opponents=(far,))) == RobotId(Team.YELLOW, 2)
+
+
+def test_a_ball_is_carried_while_it_moves_along_and_no_longer_once_kicked() -> None:
+    me = robot(velocity=(1.5, 0.0, 0.0))
+    x, y = held(me)
+    assert carries(me, BallState(x, y, 1.5, 0.2))
+    assert not carries(me, BallState(x, y, 6.0, 0.0))
+    assert not carries(me, BallState(x + 0.5, y, 1.5, 0.0))

@@ -1,0 +1,40 @@
+from __future__ import annotations
+
+from typing import Literal
+
+import pytest
+
+from robobt.plays import go_to_ball_and_shoot
+from tests.simulation import Trial, always, ball_in_their_goal, blue, eventually, inside_the_field
+
+Style = Literal["default", "robobulls"]
+START = (-3.9, 0.0, 0.0)
+
+
+def benchmark(ball: tuple[float, float], style: Style) -> Trial:
+    """A run of the paper's Table 4, under its conditions."""
+    tree = go_to_ball_and_shoot(style=style)
+    trial = Trial({blue(0): tree}, {blue(0): START}, ball, "robobulls", period=0.03)
+    trial.run(
+        10.0,
+        eventually("the ball is in the goal", ball_in_their_goal),
+        always("inside the field", inside_the_field),
+    )
+    return trial
+
+
+def time_to_ball(trial: Trial) -> float:
+    return next(frame.time for frame in trial.frames if frame.own[0].ball_contact)
+
+
+@pytest.mark.parametrize(("ball", "paper"), [((0.0, 0.0), 3.4998), ((0.0, 1.5), 4.9846)])
+def test_the_baseline_gets_to_the_ball_as_fast_as_in_the_paper(
+    ball: tuple[float, float], paper: float
+) -> None:
+    assert time_to_ball(benchmark(ball, "robobulls")) == pytest.approx(paper, rel=0.1)
+
+
+@pytest.mark.parametrize("ball", [(0.0, 0.0), (0.0, 1.5), (2.0, -1.0), (-3.0, 2.0)])
+def test_the_default_style_is_faster(ball: tuple[float, float]) -> None:
+    baseline, ours = benchmark(ball, "robobulls"), benchmark(ball, "default")
+    assert ours.kicks[0][0] < baseline.kicks[0][0]
