@@ -15,6 +15,7 @@ from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS
 from robobt.plays.goalkeeper import goalkeeper
 from robobt.skills.aim_upfield import AimUpfield
+from robobt.skills.ball_coming import BallComing
 from robobt.skills.ball_in_own_half import BallInOwnHalf
 from robobt.skills.ball_in_play import BallInPlay
 from robobt.skills.carried_far import CarriedFar
@@ -22,6 +23,7 @@ from robobt.skills.cover_angle import CoverAngle
 from robobt.skills.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.has_ball import HasBall
+from robobt.skills.intercept import Intercept
 from robobt.skills.is_attacker import IsAttacker
 from robobt.skills.is_halted import IsHalted
 from robobt.skills.is_restart import IsRestart
@@ -30,7 +32,6 @@ from robobt.skills.kick_to_target import KickToTarget
 from robobt.skills.mark_opponent import MarkOpponent
 from robobt.skills.may_touch_ball import MayTouchBall
 from robobt.skills.prepare_restart import PrepareRestart
-from robobt.skills.receive_ball import ReceiveBall
 from robobt.skills.select_pass import SelectPass
 from robobt.skills.select_shot import SelectShot
 from robobt.skills.stop import Stop
@@ -197,7 +198,7 @@ def on_the_ball(shooting: Shooting, dribble_speed: float) -> Behaviour:
         memory=False,
         children=[
             when("let go", CarriedFar(limit=0.8), Stop()),
-            when("receive", Inverter("free ball", HasBall()), ReceiveBall()),
+            when("receive", BallComing(), Intercept()),
             when("pressed", HasBall(), UnderPressure(), kick_away(shooting, settled=False)),
             attack_main(
                 rater=shooting.rater,

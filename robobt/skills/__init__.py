@@ -7,6 +7,7 @@ from robobt.skills.aim_upfield import AimUpfield
 from robobt.skills.assign_roles import AssignRoles
 from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
 from robobt.skills.ball_at_defense_edge import BallAtDefenseEdge
+from robobt.skills.ball_coming import BallComing
 from robobt.skills.ball_in_own_defense_area import BallInOwnDefenseArea
 from robobt.skills.ball_in_own_half import BallInOwnHalf
 from robobt.skills.ball_in_play import BallInPlay
@@ -45,7 +46,6 @@ from robobt.skills.pass_is_open import PassIsOpen
 from robobt.skills.pass_is_steady import PassIsSteady
 from robobt.skills.pick_up_ball import PickUpBall
 from robobt.skills.prepare_restart import PrepareRestart
-from robobt.skills.receive_ball import ReceiveBall
 from robobt.skills.referee_switch import RefereeSwitch
 from robobt.skills.return_to_goal import ReturnToGoal
 from robobt.skills.select_clearance import SelectClearance
@@ -67,6 +67,7 @@ __all__ = [
     "AssignRoles",
     "BallAimedAtGoal",
     "BallAtDefenseEdge",
+    "BallComing",
     "BallInOwnDefenseArea",
     "BallInOwnHalf",
     "BallInPlay",
@@ -105,7 +106,6 @@ __all__ = [
     "PassIsSteady",
     "PickUpBall",
     "PrepareRestart",
-    "ReceiveBall",
     "RefereeSwitch",
     "ReturnToGoal",
     "SelectClearance",

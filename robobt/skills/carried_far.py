@@ -8,7 +8,7 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 
 _LET_GO = 0.06
 _LETTING_GO = 0.15
@@ -20,9 +20,9 @@ class CarriedFar(Skill):
     """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
 
     The way is as the crow flies from where it got the ball, as referees measure
-    it: they allow 1 m. A ball that has not come more than 60 mm off the hull has
-    not been let go, so what it rolls while the robot brakes away from it counts too.
-    To be ticked every tick; after a pause it counts anew.
+    it: they allow 1 m. It ends with another robot's touch or when the ball has come
+    60 mm off the hull, so what it rolls while the robot brakes away from it counts
+    too. To be ticked every tick; after a pause it counts anew.
 
     Source of the 60 mm: Sumatra's autoreferee.
 
@@ -41,6 +41,10 @@ class CarriedFar(Skill):
         frame, ball = self.frame, self.ball
         paused = not 0.0 <= frame.time - self._seen < 2.5 * frame.period
         self._seen = frame.time
+        touched = frame.last_touch
+        if touched is not None and touched != RobotId(frame.team, self.me.id):
+            self._start = None
+            return self.fail("another robot has touched it")
         gap = hypot(ball.x - self.me.x, ball.y - self.me.y) - ROBOT_RADIUS - BALL_RADIUS
         if gap > _LET_GO:
             self._start = None

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, sin
+from math import cos, pi, sin
 
 from robobt.skills.base import Skill, skill
 from robobt.skills.path_planner import STOP_DISTANCE, allowed_target, travel
 from robobt.tree import Status
-from robobt.world.geometry import Point, direction
+from robobt.world.geometry import Point, direction, distance
 from robobt.world.state import ROBOT_RADIUS
 
 _MARGIN = 0.05
@@ -32,20 +32,20 @@ class KeepDistance(Skill):
         self.goalkeeper = goalkeeper
 
     def on_running(self) -> Status:
-        """Straight away from the nearer of the two."""
+        """Straight away from the one that is too near."""
         frame, me = self.frame, self.me
         keep = self.distance + ROBOT_RADIUS + _MARGIN
-        places: list[Point] = [frame.ball.position]
+        places = [frame.ball.position]
         if frame.game.placement is not None and not frame.game.in_play:
-            places.append(frame.game.placement)
-        nearest = min(places, key=lambda place: hypot(me.x - place[0], me.y - place[1]))
-        gap = hypot(me.x - nearest[0], me.y - nearest[1])
-        if gap >= keep:
+            # First of all from where the ball will lie; where it rolls now it will not stay.
+            places.insert(0, frame.game.placement)
+        near = [place for place in places if distance(me.position, place) < keep]
+        if not near:
             return self.succeed("far enough")
         # Aimed farther than needed, so that the robot does not creep up to the limit.
-        target = self._way_out(nearest, keep + 2.0 * _MARGIN)
+        target = self._way_out(near[0], keep + 2.0 * _MARGIN)
         self.store.command = travel(
-            frame, me, target, direction(me.position, nearest), me.limits, goalkeeper=self.goalkeeper
+            frame, me, target, direction(me.position, near[0]), me.limits, goalkeeper=self.goalkeeper
         )
         return self.run("clearing the ball")
 
