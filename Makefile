@@ -10,8 +10,8 @@ INSTALLED := .venv/.installed
 .PHONY: match test install lint clean
 
 match: $(INSTALLED)
-	$(BIN)/robobt match striker_vs_goalie --trials 20 --replay out/match.jsonl
-	$(BIN)/robobt replay out/match.jsonl --html out/match.html
+	@mkdir -p out
+	$(BIN)/robobt match striker_vs_goalie --trials 20 --replay out/match.html
 	@echo "Open out/match.html in a browser to watch the first trial."
 
 test: $(INSTALLED)

@@ -1,0 +1,65 @@
+"""Every command and link in the README works."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README, re.DOTALL)
+
+
+def commands(first_word: str) -> list[str]:
+    lines = [
+        line.split("#")[0].strip() for kind, block in BLOCKS if kind == "sh" for line in block.splitlines()
+    ]
+    return [line for line in lines if line.split()[:1] == [first_word]]
+
+
+def test_there_is_nothing_but_make_and_robobt_to_type() -> None:
+    lines = [line for kind, block in BLOCKS if kind == "sh" for line in block.splitlines() if line.strip()]
+    assert len(commands("make")) + len(commands("robobt")) == len(lines)
+
+
+def test_the_two_commands_exist() -> None:
+    assert commands("make") == ["make match", "make test"]
+    for command in commands("make"):
+        done = subprocess.run(
+            [*command.split(), "--dry-run"], cwd=ROOT, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+
+
+def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path) -> None:
+    for command in commands("robobt"):
+        arguments = shlex.split(command)[1:]
+        code = "import sys; from robobt.cli import app; sys.argv[0] = 'robobt'; app()"
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{command}: {done.stderr}"
+        assert "Traceback" not in done.stderr
+    assert (tmp_path / "match.html").stat().st_size > 10_000
+    assert (tmp_path / "six.html").stat().st_size > 100_000
+
+
+def test_the_play_in_it_can_be_built() -> None:
+    (source,) = [block for kind, block in BLOCKS if kind == "python"]
+    scope: dict[str, object] = {}
+    exec(source.replace('"my_striker"', '"readme_striker"'), scope)
+    assert scope["my_striker"]().name == "my striker"  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)]+)\)", README))))
+def test_a_link_leads_somewhere(target: str) -> None:
+    assert target.startswith("https://") or (ROOT / target).exists()
