@@ -27,12 +27,14 @@ from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import Decorator, EternalGuard, OneShot
 from py_trees.trees import BehaviourTree
 
+from robobt.tree.leaf import Leaf
+
 _log = logging.getLogger(__name__)
 
 Tick: TypeAlias = Callable[[], Status]
 Stop: TypeAlias = Callable[[Status], None]
 Visit: TypeAlias = Callable[[Behaviour], None]
-Plan: TypeAlias = list[tuple[Behaviour, Tick, Stop]]
+_Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 
 _S, _F, _R, _I = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
 
@@ -137,15 +139,18 @@ def abandon(root: Behaviour) -> None:
 
 def compile_node(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     """Functions that tick and stop this node and everything below it."""
+    return _known_as(node)(node, visit)
+
+
+def _known_as(node: Behaviour) -> _Make:
+    """What makes the closures of such a node."""
     cls = type(node)
     if "tick" in vars(node) or "stop" in vars(node):
-        return _as_it_is(node, visit)
+        return _as_it_is
     for tick, stop, make in _KNOWN:
         if cls.tick is tick and cls.stop is stop:
-            return make(node, visit)
-    if _brings_closures(cls):
-        return cast(BringsClosures, node).closures(visit)
-    return _as_it_is(node, visit)
+            return make
+    return _as_it_brings if _brings_closures(cls) else _as_it_is
 
 
 def _brings_closures(cls: type[Behaviour]) -> bool:
@@ -154,6 +159,30 @@ def _brings_closures(cls: type[Behaviour]) -> bool:
         if "closures" in vars(base):
             return cls.tick is base.tick and cls.stop is base.stop  # type: ignore[attr-defined]
     return False
+
+
+class Step:
+    """One child in a composite's plan.
+
+    Attributes:
+        child: the child.
+        tick, stop: its closures.
+        update: set for a leaf of which nothing else is to be called, so that a
+            composite may spare itself the closures.
+    """
+
+    __slots__ = ("child", "stop", "tick", "update")
+
+    def __init__(self, child: Behaviour, visit: Visit | None) -> None:
+        self.child = child
+        self.tick, self.stop = compile_node(child, visit)
+        self.update: Tick | None = None
+        if visit is None and _known_as(child) is _leaf:
+            initialise, update, terminate = _lifecycle(child)
+            self.update = update if initialise is terminate is None else None
+
+
+Plan: TypeAlias = list[Step]
 
 
 def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
@@ -171,13 +200,17 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     return tick, stop
 
 
+def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
+    return cast(BringsClosures, node).closures(visit)
+
+
 def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
+    initialise, update, terminate = _lifecycle(node)
 
     def tick() -> Status:
         if initialise is not None and node.status is not _R:
             initialise()
-        status = node.update()
+        status = update()
         if status.__class__ is not Status:
             status = not_a_status(node, status)
         if terminate is not None and status is not _R:
@@ -193,6 +226,28 @@ def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         node.status = status
 
     return tick, stop
+
+
+def _lifecycle(node: Behaviour) -> tuple[Any, Any, Any]:
+    """A leaf's ``initialise``, ``update`` and ``terminate``, None where one does nothing.
+
+    Those of :class:`Leaf` only call its own lifecycle, which is called directly
+    instead as far as the leaf defines it.
+    """
+    initialise, update, terminate = own_method(node, "initialise"), node.update, own_method(node, "terminate")
+    if isinstance(node, Leaf):
+        if _inherits(node, "initialise"):
+            initialise = None if _inherits(node, "on_start") else node.on_start
+        if _inherits(node, "update"):
+            update = node.on_running
+        if _inherits(node, "terminate") and _inherits(node, "on_done") and _inherits(node, "on_interrupt"):
+            terminate = None
+    return initialise, update, terminate
+
+
+def _inherits(leaf: Leaf[Any], method: str) -> bool:
+    """Whether the leaf has this method from :class:`Leaf` itself."""
+    return method not in vars(leaf) and getattr(type(leaf), method) is getattr(Leaf, method)
 
 
 def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
@@ -268,7 +323,7 @@ def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    initialise = own_method(node, "initialise")
+    initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     children: list[Behaviour] = []
     plan: Plan = []
     stop = composite_stop(node, visit, children, plan)
@@ -279,34 +334,42 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         start = 0
         if node.status is not _R:
             node.current_child = children[0] if children else None
-            for child, _, stop_child in plan:
+            for step in plan:
+                child = step.child
                 if child.status is not _I:
-                    stop_child(_I)
+                    if step.update is None:
+                        step.stop(_I)
+                    else:
+                        child.status = _I
             if initialise is not None:
                 initialise()
         elif node.memory and node.current_child is not None:
             start = children.index(node.current_child)
-        else:
-            node.current_child = children[0] if children else None
         status = _S
-        index = start
-        for _, tick_child, _ in plan[start:] if start else plan:
-            status = tick_child()
+        for step in plan[start:] if start else plan:
+            node.current_child = child = step.child
+            update = step.update
+            if update is None:
+                status = step.tick()
+            else:
+                status = update()
+                if status.__class__ is not Status:
+                    status = not_a_status(child, status)
+                child.status = status
             if status is not _S:
-                if not node.memory:
-                    for later, _, stop_later in plan[index + 1 :]:
-                        if later.status is not _I:
-                            stop_later(_I)
+                if not node.memory and child is not children[-1]:
+                    for later in plan[children.index(child) + 1 :]:
+                        if later.child.status is not _I:
+                            later.stop(_I)
                 break
-            index += 1
-            if index < len(children):
-                node.current_child = children[index]
         if not children:
             node.current_child = None
-        if status is _R:
-            node.status = status
-        else:
+        if status is _I:
             stop(status)
+        else:
+            if terminate is not None and status is not _R:
+                terminate(status)
+            node.status = status
         if visit is not None:
             visit(node)
         return status
@@ -330,19 +393,27 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         start = 0
         if node.memory and children:
             start = children.index(node.current_child)
-            for child, _, stop_child in plan[:start]:
-                if child.status is not _I:
-                    stop_child(_I)
+            for step in plan[:start]:
+                if step.child.status is not _I:
+                    step.stop(_I)
         previous = node.current_child
-        for child, tick_child, _ in plan[start:] if start else plan:
-            status = tick_child()
+        for step in plan[start:] if start else plan:
+            child = step.child
+            update = step.update
+            if update is None:
+                status = step.tick()
+            else:
+                status = update()
+                if status.__class__ is not Status:
+                    status = not_a_status(child, status)
+                child.status = status
             if status is _R or status is _S:
                 node.current_child = child
                 if previous is not child:
                     # The child that got its way interrupts whatever ran at a lower priority.
-                    for later, _, stop_later in plan[children.index(child) + 1 :]:
-                        if later.status is not _I:
-                            stop_later(_I)
+                    for later in plan[children.index(child) + 1 :]:
+                        if later.child.status is not _I:
+                            later.stop(_I)
                 if status is _S:
                     stop(status)
                 else:
@@ -370,9 +441,9 @@ def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
     def stop(status: Status) -> None:
         if node.children != children:
             replan(node, visit, children, plan)
-        for child, _, stop_child in plan:
-            if child.status is _R:
-                stop_child(_I)
+        for step in plan:
+            if step.child.status is _R:
+                step.stop(_I)
         stop_composite(status)
 
     def tick() -> Status:
@@ -382,9 +453,9 @@ def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if isinstance(policy, ParallelPolicy.SuccessOnSelected):
             node.validate_policy_configuration()
         if node.status is not _R:
-            for child, _, stop_child in plan:
-                if child.status is not _I:
-                    stop_child(_I)
+            for step in plan:
+                if step.child.status is not _I:
+                    step.stop(_I)
             node.current_child = None
             if initialise is not None:
                 initialise()
@@ -394,9 +465,9 @@ def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
             status = _S
         else:
             synchronise = policy.synchronise
-            for child, tick_child, _ in plan:
-                if not (synchronise and child.status is _S):
-                    tick_child()
+            for step in plan:
+                if not (synchronise and step.child.status is _S):
+                    step.tick()
             status = _parallel_status(node, children, policy)
             if status is not _R:
                 stop(status)
@@ -440,9 +511,9 @@ def composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], pl
             node.current_child = None
             if node.children != children:
                 replan(node, visit, children, plan)
-            for child, _, stop_child in plan:
-                if child.status is not _I:
-                    stop_child(_I)
+            for step in plan:
+                if step.child.status is not _I:
+                    step.stop(_I)
         if terminate is not None:
             terminate(status)
         node.status = status
@@ -452,9 +523,9 @@ def composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], pl
 
 def replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
     """Bring a composite's closures up to its children; in place, for the closures share them."""
-    known = {id(child): (tick, stop) for child, tick, stop in plan}
+    known = {step.child.id: step for step in plan}
     children[:] = node.children
-    plan[:] = [(child, *(known.get(id(child)) or compile_node(child, visit))) for child in children]
+    plan[:] = [known.get(child.id) or Step(child, visit) for child in children]
 
 
 def own_method(node: Behaviour, method: str) -> Any:
@@ -470,7 +541,6 @@ def not_a_status(node: Behaviour, status: object) -> Status:
     return _I
 
 
-_Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 _KNOWN: list[tuple[Any, Any, _Make]] = [
     (Behaviour.tick, Behaviour.stop, _leaf),
     (Sequence.tick, Sequence.stop, _sequence),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator
+from itertools import combinations
 from typing import Any
 
 import py_trees
@@ -11,6 +12,7 @@ from py_trees import behaviours, composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 
+from robobt.tree import Leaf
 from robobt.tree.nodes import (
     CommitFor,
     CommittingSelector,
@@ -60,6 +62,35 @@ class Plain(Behaviour):
     def update(self) -> Status:
         self.count += 1
         return self.script[self.count % len(self.script)]
+
+
+def _telling_leaf(*methods: str) -> type[Leaf[Any]]:
+    """A leaf of the package that defines some of its lifecycle, and tells it."""
+
+    class Scripted(Leaf[Any]):
+        def __init__(self, name: str, script: list[Any], log: Log) -> None:
+            super().__init__(name)
+            self.script, self.log, self.count = script, log, 0
+
+        def on_running(self) -> Status:
+            self.count += 1
+            self.log.append((self.name, "update"))
+            return self.script[self.count % len(self.script)]
+
+    for method in methods:
+
+        def told(self: Any, *args: Any, method: str = method) -> None:
+            self.log.append((self.name, method, self.status, *args))
+
+        setattr(Scripted, method, told)
+    return Scripted
+
+
+LEAVES = [
+    _telling_leaf(*methods)
+    for count in range(4)
+    for methods in combinations(("on_start", "on_done", "on_interrupt", "initialise", "terminate"), count)
+]
 
 
 def _telling(base: type) -> type:
@@ -159,7 +190,7 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
         script.append("nonsense")
     if rng.random() < 0.03:
         script.append(Status.INVALID)
-    kind = rng.randrange(9)
+    kind = rng.randrange(11)
     period = rng.randint(1, 3)
     if kind < 4:
         return lambda log, word: Told(name, script, log)
@@ -169,6 +200,9 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
         return lambda log, word: Plain(name, script)
     if kind == 6:
         return lambda log, word: behaviours.Periodic(name, period)
+    if kind > 8:
+        cls = rng.choice(LEAVES)
+        return lambda log, word: cls(name, script, log)
     if kind == 7:
         return lambda log, word: Wait(name, seconds=0.1 * period)
     return lambda log, word: rng_free_stock(name, period)

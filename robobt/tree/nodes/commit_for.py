@@ -103,15 +103,15 @@ class CommittingSelector(Selector):
                 if initialise is not None:
                     initialise()
             kept = self._kept()
-            order = plan if kept is None else sorted(plan, key=lambda entry: entry[0] is not kept)
+            order = plan if kept is None else sorted(plan, key=lambda step: step.child is not kept)
             status = Status.FAILURE
-            for position, (child, tick_child, _) in enumerate(order):
-                status = tick_child()
+            for position, step in enumerate(order):
+                status = step.tick()
                 if status is Status.RUNNING or status is Status.SUCCESS:
-                    self.current_child = child
-                    for other, _, stop_other in order[position + 1 :]:
-                        if other.status is not Status.INVALID:
-                            stop_other(Status.INVALID)
+                    self.current_child = step.child
+                    for other in order[position + 1 :]:
+                        if other.child.status is not Status.INVALID:
+                            other.stop(Status.INVALID)
                     if status is Status.SUCCESS:
                         stop(status)
                     else:

@@ -84,24 +84,24 @@ class ParallelCount(Parallel):
         def stop(status: Status) -> None:
             if self.children != children:
                 replan(self, visit, children, plan)
-            for child, _, stop_child in plan:
-                if child.status is Status.RUNNING:
-                    stop_child(Status.INVALID)
+            for step in plan:
+                if step.child.status is Status.RUNNING:
+                    step.stop(Status.INVALID)
             stop_composite(status)
 
         def tick() -> Status:
             if self.children != children:
                 replan(self, visit, children, plan)
             if self.status is not Status.RUNNING:
-                for child, _, stop_child in plan:
-                    if child.status is not Status.INVALID:
-                        stop_child(Status.INVALID)
+                for step in plan:
+                    if step.child.status is not Status.INVALID:
+                        step.stop(Status.INVALID)
                 self.current_child = None
                 if initialise is not None:
                     initialise()
-            for child, tick_child, _ in plan:
-                if child.status is not Status.SUCCESS and child.status is not Status.FAILURE:
-                    tick_child()
+            for step in plan:
+                if step.child.status is not Status.SUCCESS and step.child.status is not Status.FAILURE:
+                    step.tick()
             status = self._judge()
             if status is not Status.RUNNING:
                 stop(status)

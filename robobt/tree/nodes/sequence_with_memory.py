@@ -66,16 +66,16 @@ class SequenceWithMemory(StockSequence):
             if self.children != children:
                 replan(self, visit, children, plan)
             if self.status is not Status.RUNNING:
-                for child, _, stop_child in plan:
-                    if child.status is not Status.INVALID:
-                        stop_child(Status.INVALID)
+                for step in plan:
+                    if step.child.status is not Status.INVALID:
+                        step.stop(Status.INVALID)
                 if initialise is not None:
                     initialise()
             self.current_child = None
             status = Status.SUCCESS
-            for child, tick_child, _ in plan[self.place :]:
-                self.current_child = child
-                status = tick_child()
+            for step in plan[self.place :]:
+                self.current_child = step.child
+                status = step.tick()
                 if status is not Status.SUCCESS:
                     if status is Status.RUNNING:
                         self.status = status

@@ -79,16 +79,17 @@ class Switch(Composite):
             if initialise is not None and self.status is not Status.RUNNING:
                 initialise()
             chosen = self._choose()
-            for place, (child, _, stop_child) in enumerate(plan):
-                if place != chosen and child.status is not Status.INVALID:
-                    stop_child(Status.INVALID)
+            for place, step in enumerate(plan):
+                if place != chosen and step.child.status is not Status.INVALID:
+                    step.stop(Status.INVALID)
             if chosen is None:
                 self.current_child = None
                 status = Status.FAILURE
                 stop(status)
             else:
-                self.current_child, tick_child, _ = plan[chosen]
-                status = tick_child()
+                step = plan[chosen]
+                self.current_child = step.child
+                status = step.tick()
                 if status is Status.RUNNING:
                     self.status = status
                 else:
