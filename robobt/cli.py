@@ -22,7 +22,7 @@ from rich.table import Table
 
 if TYPE_CHECKING:
     from robobt.match import MatchResult, Run, Scenario, Summary
-    from robobt.match.parameters import Parameter
+    from robobt.tree.parameters import Parameter
 
     _Entries = Mapping[str, tuple[str, list[Parameter], dict[str, list[str]]]]
 
@@ -267,8 +267,8 @@ def plays(
     Keys of --json: plays, a list with name, description and parameters (name,
     type, required, default).
     """
-    from robobt.match.parameters import parameters_of
     from robobt.plays import PLAYS
+    from robobt.tree.parameters import parameters_of
 
     builders = {entry: PLAYS[entry] for entry in PLAYS if name in (None, entry)}
     if not builders:
@@ -290,8 +290,8 @@ def skills(
     Keys of --json: skills, a list with name, description, parameters (name,
     type, required, default), reads and writes.
     """
-    from robobt.match.parameters import parameters_of
     from robobt.skills import SKILLS
+    from robobt.tree.parameters import parameters_of
 
     classes = {entry: SKILLS[entry] for entry in SKILLS if name in (None, entry)}
     if not classes:
@@ -319,9 +319,9 @@ def tree(
     dot: Annotated[Path | None, typer.Option("--dot", help="Write the tree for Graphviz.")] = None,
 ) -> None:
     """Show the tree of a play."""
-    from robobt.match.parameters import ParameterError, check_parameters
     from robobt.plays import PLAYS
     from robobt.tree.drawing import tree_dot, tree_svg, tree_text
+    from robobt.tree.parameters import ParameterError, check_parameters
 
     if play not in PLAYS:
         raise _unknown("play", play, PLAYS)

@@ -7,8 +7,9 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from robobt.match.problems import FieldError, say_value
+from robobt.match.problems import FieldError
 from robobt.match.starts import Around, BallStart, Box, Disc, RobotStart
+from robobt.tree.parameters import say_value
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point, wrap_angle

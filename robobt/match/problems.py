@@ -7,6 +7,8 @@ from typing import get_args
 
 from pydantic import BaseModel, ValidationError
 
+from robobt.tree.parameters import say_value
+
 
 class FieldError(ValueError):
     """A problem with a field further down than the one that is being validated.
@@ -50,12 +52,6 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object) 
 def message_of(error: Exception) -> str:
     """What an exception says; that of a KeyError without quotes around it."""
     return str(error.args[0]) if error.args else type(error).__name__
-
-
-def say_value(value: object) -> str:
-    """A value for a message: on one line and not long."""
-    said = repr(value)
-    return said if len(said) <= 60 else said[:57] + "..."
 
 
 def one_line(text: str, most: int = 500) -> str:

@@ -10,15 +10,15 @@ from typing import Any, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.match.parameters import ParameterError, check_parameters
 from robobt.match.placing import Placer, check_starts
-from robobt.match.problems import FieldError, first_problem, message_of, one_line, say_value
+from robobt.match.problems import FieldError, first_problem, message_of, one_line
 from robobt.match.referee import RefereeSettings
 from robobt.match.starts import BallStart, Part, RobotStart
 from robobt.match.yaml_reader import YamlError, read_yaml
 from robobt.plays import PLAYS
 from robobt.resources import bundled_scenarios
 from robobt.tree import Behaviour
+from robobt.tree.parameters import ParameterError, check_parameters, say_value
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits

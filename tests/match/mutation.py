@@ -25,7 +25,8 @@ STRINGS = (
 )  # fmt: skip
 FRAGMENTS = (
     b"\x00", b"\xff", b"\xfe\xff", b"\xef\xbb\xbf", b"\t", b"\r", b"\n\n", b"- ", b": ", b"? ", b"&a ",
-    b"*a ", b"!!python/name:os.system ", b"!!binary ", b"!<x> ", b"%YAML 9.9\n", b"---\n", b"...\n",
+    b"*a ", b"!!python/name:os.system ", b"!!binary ",
+    b"!!int ", b"!!bool ", b"!!float ", b"!<x> ", b"%YAML 9.9\n", b"---\n", b"...\n",
     b"<<: ", b"[", b"]", b"{", b"}", b"|\n", b">\n", b"'", b'"', b"\\x", b"#", b"@", b"`", b"2001-13-45",
     b"1:99:99", b"0b2", b"0o9", b".inf", b".nan", b"9" * 5000, b"[" * 3000, b"{a: " * 500,
 )  # fmt: skip

@@ -15,8 +15,9 @@ from robobt.match import ScenarioError, load_scenario
 from robobt.match.placing import HELD_DISTANCE
 from robobt.match.scenario import Ends, RobotSetup, Scenario, scenario_from
 from robobt.match.starts import Around, BallStart, Box, Disc, RobotStart
-from robobt.match.yaml_reader import MAX_BYTES, MAX_DEPTH
+from robobt.match.yaml_reader import MAX_BYTES
 from robobt.resources import bundled_scenarios
+from robobt.tree.files.plain_yaml import MAX_DEPTH
 from robobt.world import BALL_RADIUS, ROBOT_RADIUS, RobotId, RobotLimits, Team
 from tests.match.scripted import data
 
@@ -97,7 +98,9 @@ class TestFiles:
             ("- 1\n- 2", "a scenario is a mapping of fields"),
             ("", "a scenario is a mapping of fields"),
             ("name: " + "[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), "line 1: nested deeper"),
-            ("seed: " + "9" * 5000, "line 1: Exceeds the limit"),
+            ("seed: " + "9" * 5000, "line 1: '9999"),
+            ('seed: !!int ""', "line 1: '' is no int"),
+            ("seed: !!bool x", "line 1: 'x' is no bool"),
             (b"name: \xff\xfe\x00", "is not text"),
             ("name: a\x00b", "is not text"),
             ("# " + "x" * MAX_BYTES, "is larger than 64 KiB"),
