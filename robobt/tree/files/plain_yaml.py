@@ -7,6 +7,7 @@ mappings with string keys. Everything that makes YAML dangerous or surprising
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -75,7 +76,8 @@ def write_plain(data: Any) -> str:
         Dumper=_PlainDumper,
         default_flow_style=None,
         sort_keys=False,
-        allow_unicode=True,
+        # PyYAML takes the rare line ends for spaces unless it escapes everything.
+        allow_unicode=not _RARE_LINE_ENDS.search(json.dumps(data, ensure_ascii=False)),
         width=110,
     )
 
@@ -134,6 +136,8 @@ class _PlainDumper(yaml.SafeDumper):
 def _problem(problem: str, mark: Any) -> yaml.MarkedYAMLError:
     return yaml.MarkedYAMLError(problem=problem, problem_mark=mark)
 
+
+_RARE_LINE_ENDS = re.compile("[\x85\u2028\u2029]")
 
 _PLAIN_TAGS = frozenset(
     f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float", "str", "seq", "map")

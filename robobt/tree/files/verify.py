@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
 
 from robobt.tree.files.errors import TreeFileError
 from robobt.tree.files.model import (
@@ -166,9 +167,10 @@ class _Verifier:
 
 def unknown_type(name: str, vocabulary: Vocabulary) -> str:
     """What to say about a type that does not exist."""
-    close = [known for known in vocabulary if known.lower() == name.lower()]
-    hint = f"is it {close[0]}?" if close else f"there are {', '.join(vocabulary)}"
-    return f"no node is called {name!r}; {hint}"
+    by_lower = {known.lower(): known for known in vocabulary}
+    close = [by_lower[word] for word in get_close_matches(name[:80].lower(), by_lower)]
+    hint = f"is it {' or '.join(close)}?" if close else f"there are {', '.join(vocabulary)}"
+    return f"no node is called {name!r:.80}; {hint}"
 
 
 def is_written_out(value: Value) -> bool:
