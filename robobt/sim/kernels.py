@@ -194,6 +194,27 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
 
 
 @njit(cache=True)
+def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
+    """When in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
+    radius, round_, face = p[BALL_R], p[ROBOT_R], p[FACE]
+    half = sqrt(round_ * round_ - face * face)
+    first = 1.0
+    if dx < 0.0 and x > face + radius:
+        t = (x - face - radius) / -dx
+        if t < first and abs(y + t * dy) <= half:
+            first = t
+    t_in, t_out = _meets_disc(x, y, dx, dy, round_ + radius)
+    # The disc counts only where it is not cut off.
+    if 0.0 < t_in <= t_out and t_in < first and x + t_in * dx <= face * (round_ + radius) / round_:
+        first = t_in
+    for corner in (half, -half):
+        t_in, t_out = _meets_disc(x - face, y - corner, dx, dy, radius)
+        if 0.0 < t_in <= t_out and t_in < first:
+            first = t_in
+    return first
+
+
+@njit(cache=True)
 def _sweep(
     rows: FloatArray,
     first: int,
@@ -217,17 +238,13 @@ def _sweep(
         row = rows[first + i]
         px, py = ball[0] - row[0], ball[1] - row[1]
         dx, dy = (move[0] - row[3]) * dt, (move[1] - row[4]) * dt
-        if px * dx + py * dy >= 0.0:
+        reach = p[ROBOT_R] + radius + hypot(dx, dy)
+        if px * px + py * py > reach * reach or px * dx + py * dy >= 0.0:
             continue
-        t_in, t_out = _meets_disc(px, py, dx, dy, p[ROBOT_R] + radius)
-        if t_in >= share:
-            continue
-        # The half-plane behind the flat front.
         c, s = cos(row[2]), sin(row[2])
-        ahead = c * px + s * py
-        t_in, t_out = _enters(ahead, c * dx + s * dy, -1.0, p[FACE] + radius, t_in, t_out)
-        if 0.0 < t_in <= t_out and t_in < share:
-            share = t_in
+        share = min(
+            share, _meets_robot(c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, p)
+        )
     x, y = ball[0] - origin[0], ball[1] - origin[1]
     dx, dy = move[0] * dt, move[1] * dt
     for k in range(walls.shape[0]):

@@ -134,3 +134,28 @@ def test_eleven_robots_a_team_fit() -> None:
     frame = world.observe()
     assert [robot.id for robot in frame.own] == list(range(11))
     assert [robot.id for robot in frame.opponents] == list(range(11))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    heading=st.floats(-pi, pi),
+    bearing=st.floats(-0.9, 0.9),
+    offset=st.floats(-0.12, 0.12),
+    speed=st.floats(2.0, 12.0),
+)
+def test_a_ball_at_the_front_corners_bounces_or_passes_but_never_sticks(
+    heading: float, bearing: float, offset: float, speed: float
+) -> None:
+    """What the ball reports as its velocity is what it moves by, but for a few steps of contact."""
+    way = heading + pi + bearing
+    x = -0.5 * cos(way) - offset * sin(way)
+    y = -0.5 * sin(way) + offset * cos(way)
+    world = one_robot(pose=(0, 0, heading), ball=(x, y, speed * cos(way), speed * sin(way)), field=DIVISION_B)
+    stuck = 0
+    for _ in range(60):
+        before = world.truth().ball
+        world.act({})
+        ball = world.truth().ball
+        moved = ((ball.x - before.x) ** 2 + (ball.y - before.y) ** 2) ** 0.5
+        stuck = stuck + 1 if before.speed > 1.0 and moved < 0.5 * before.speed * world.period else 0
+        assert stuck <= 3
