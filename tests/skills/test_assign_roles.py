@@ -99,8 +99,19 @@ def test_a_robot_that_has_left_the_field_leaves_its_role_to_another() -> None:
 
 def test_the_robot_with_the_ball_attacks() -> None:
     holder = robot(0.0, 0.0, 2.0, number=1, contact=True)
-    rival = robot(-0.1, 0.0, number=2)
-    assert Sharing((1, 2), ("attacker",)).roles((holder, rival), held(holder)) == {1: "attacker"}
+    ball = held(holder)
+    rival = robot(ball[0] - 0.08, ball[1], number=2)
+    sharing = Sharing((1, 2), ("attacker",), margin=0.0)
+    assert sharing.roles((holder, rival), ball) == {1: "attacker"}
+
+
+def test_a_robot_that_joins_shares_the_roles_of_the_same_frame() -> None:
+    sharing = Sharing((1, 2))
+    view = frame(THREE[1], mates=(THREE[0],))
+    sharing.trees[2].tick(view, 2)
+    assert sharing.team.roles == {2: "attacker"}
+    sharing.trees[1].tick(view, 1)
+    assert sharing.team.roles == {1: "attacker", 2: "defender"}
 
 
 def test_a_kicker_that_may_not_touch_the_ball_again_does_not_attack() -> None:

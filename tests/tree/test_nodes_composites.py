@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from py_trees.decorators import FailureIsRunning
 
 from robobt.tree import Parallel, Selector, Sequence, tree_text
 from robobt.tree.nodes import CommitFor, CommittingSelector, ParallelCount, SequenceWithMemory, Switch
@@ -71,10 +72,20 @@ def test_a_commitment_counts_from_each_start() -> None:
         )
     )
     turns = []
-    for time in (0.0, 0.2, 0.3, 0.4, 0.5):
+    for time in (1.0, 1.2, 1.3, 1.4, 1.5):
         tree.tick(time)
         turns.append(tree.ticked)
     assert turns == ["high low", "high", "high low", "low", "high"]
+
+
+def test_a_commitment_ends_with_its_run_although_the_branch_goes_on() -> None:
+    branch = FailureIsRunning("keep", CommitFor("c", Scripted("low", "RF"), seconds=1.0))
+    tree = Watched(CommittingSelector("root", [Scripted("high", "FR"), branch]))
+    turns = []
+    for time in (1.0, 1.1, 1.2):
+        tree.tick(time)
+        turns.append(tree.ticked)
+    assert turns == ["high low", "low", "high"]
 
 
 class Told(Switch):

@@ -768,8 +768,8 @@ def test_77_a_divider_ticks_its_child_only_so_often() -> None:
 
 
 def test_78_a_divider_may_go_by_time() -> None:
-    tree = Watched(TickDivider("d", Scripted("a", "FSR"), seconds=0.1))
-    assert tree.at([0.0, 0.05, 0.1, 0.15, 0.5, 0.55]) == "FFSSRR"
+    tree = Watched(TickDivider("d", Scripted("a", "FSRF"), seconds=0.1))
+    assert tree.at([1.0, 1.05, 1.1, 1.15, 1.5, 1.55]) == "FFSSRR"
 
 
 @pytest.mark.parametrize("how", [{"every": 10}, {"seconds": 10.0}])
