@@ -14,6 +14,7 @@ from robobt.skills.cover_angle import CoverAngle
 from robobt.skills.cover_near_post import CoverNearPost
 from robobt.skills.fetch_ball import FetchBall
 from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.pace import check_factor
 from robobt.skills.pilot import ROBOBULLS_LIMITS
 from robobt.skills.return_to_goal import ReturnToGoal
 from robobt.skills.select_clearance import SelectClearance
@@ -88,4 +89,6 @@ def where_to_clear() -> Behaviour:
 
 def robobulls_limits(factor: float) -> RobotLimits:
     """RoboBulls' pilot with its velocity multiplier: it scales the top speed and nothing else."""
-    return ROBOBULLS_LIMITS.model_copy(update={"max_speed": ROBOBULLS_LIMITS.max_speed * factor})
+    return ROBOBULLS_LIMITS.model_copy(
+        update={"max_speed": ROBOBULLS_LIMITS.max_speed * check_factor(factor)}
+    )

@@ -5,17 +5,35 @@ from __future__ import annotations
 from robobt.world.limits import RobotLimits
 
 
+MOST = 10.0
+"""Largest factor; beyond it a command is far from anything a robot can do."""
+
+
+def check_factor(speed: float) -> float:
+    """The factor itself.
+
+    Raises:
+        ValueError: it is not above 0 and at most :data:`MOST`.
+    """
+    if not 0.0 < speed <= MOST:
+        raise ValueError(f"speed must be above 0 and at most {MOST:g}, not {speed}")
+    return speed
+
+
 class Pace:
     """Limits to drive with, worked out once for each robot's limits.
 
     Args:
         limits: how to drive; None takes the robot's own.
-        speed: factor on the top speed and turning rate.
+        speed: factor on the top speed and turning rate, above 0 and at most :data:`MOST`.
+
+    Raises:
+        ValueError: such a factor it is not.
     """
 
     def __init__(self, limits: RobotLimits | None, speed: float) -> None:
         self._limits = limits
-        self._speed = speed
+        self._speed = check_factor(speed)
         self._base: RobotLimits | None = None
         self._scaled: RobotLimits | None = None
 

@@ -13,6 +13,9 @@ from typing import Any
 
 import yaml
 
+from robobt.plays import PLAYS
+from robobt.tree.parameters import parameters_of
+
 NUMBERS: tuple[float, ...] = (
     0, -1, 1, 2, 0.5, -0.0, 1e-9, 5e-324, 1e308, -1e308, 10**9, 2**53, 2**63, -(2**64), 10**30,
     float("nan"), float("inf"), float("-inf"),
@@ -136,6 +139,32 @@ def _setting(rng: random.Random, data: Any) -> Any:
     return data
 
 
+def _play(rng: random.Random, data: Any) -> Any:
+    """A robot with another play, or with any parameter of its play."""
+    robots = data.get("robots") if isinstance(data, dict) else None
+    teams = (
+        [team for team in robots.values() if isinstance(team, list) and team]
+        if isinstance(robots, dict)
+        else []
+    )
+    if not teams:
+        return data
+    robot = rng.choice(rng.choice(teams))
+    if not isinstance(robot, dict):
+        return data
+    if rng.random() < 0.3:
+        robot["play"] = rng.choice(list(PLAYS))
+        robot["params"] = {}
+    play = robot.get("play")
+    if isinstance(play, str) and play in PLAYS and isinstance(robot.setdefault("params", {}), dict):
+        known = parameters_of(PLAYS[play])
+        if known:
+            robot["params"][rng.choice(known).name] = rng.choice(
+                (*NUMBERS, 0.1, 0.9, 3.0, None, "robobulls", "gaussian")
+            )
+    return data
+
+
 _SETTINGS: tuple[tuple[str, tuple[Any, ...]], ...] = (
     (
         "field",
@@ -217,7 +246,7 @@ _SETTINGS: tuple[tuple[str, tuple[Any, ...]], ...] = (
 _DATA_MUTATIONS: tuple[Any, ...] = (
     *(_at_a_spot(change) for change in (_drop, _duplicate, _rename, _number, _nudge, _nudge, _nudge, _string,
                                          _another_type, _transplant, _nest, _multiply)),
-    _setting, _setting, _setting, _setting,
+    _setting, _setting, _setting, _setting, _play, _play, _play,
 )  # fmt: skip
 
 

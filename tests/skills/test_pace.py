@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 from robobt.skills.pace import Pace
 from robobt.world import RobotLimits
 
@@ -25,3 +27,9 @@ def test_it_follows_a_change_of_the_robot() -> None:
     pace = Pace(None, 0.5)
     assert pace.of(OWN).max_speed == 2.0
     assert pace.of(GIVEN).max_speed == 0.75
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, 1e308, float("nan"), float("inf")])
+def test_a_factor_no_robot_could_follow_is_refused(factor: float):
+    with pytest.raises(ValueError, match="speed must be above 0 and at most 10"):
+        Pace(None, factor)
