@@ -100,7 +100,7 @@ def test_a_robot_that_has_left_the_field_leaves_its_role_to_another() -> None:
 def test_the_robot_with_the_ball_attacks() -> None:
     holder = robot(0.0, 0.0, 2.0, number=1, contact=True)
     ball = held(holder)
-    rival = robot(ball[0] - 0.08, ball[1], number=2)
+    rival = robot(ball[0] - 0.08, ball[1], 3.0, number=2)
     sharing = Sharing((1, 2), ("attacker",), margin=0.0)
     assert sharing.roles((holder, rival), ball) == {1: "attacker"}
 
