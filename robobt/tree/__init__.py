@@ -12,7 +12,7 @@ from robobt.tree.drawing import tree_dot, tree_svg, tree_text
 from robobt.tree.engine import FastTree, compile_tree
 from robobt.tree.leaf import Leaf, bind
 from robobt.tree.registry import Registry
-from robobt.tree.runner import TreeRunner, node_path, preorder
+from robobt.tree.runner import TreeError, TreeRunner, node_path, preorder
 
 __all__ = [
     "Behaviour",
@@ -29,6 +29,7 @@ __all__ = [
     "Sequence",
     "Status",
     "SuccessIsFailure",
+    "TreeError",
     "TreeRunner",
     "bind",
     "compile_tree",

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from py_trees.decorators import FailureIsRunning
 
-from robobt.tree import Parallel, Selector, Sequence, tree_text
+from robobt.tree import Parallel, Selector, Sequence, TreeError, tree_text
 from robobt.tree.nodes import CommitFor, CommittingSelector, ParallelCount, SequenceWithMemory, Switch
-from robobt.tree.runner import TreeError
 from tests.tree.scripted import Scripted, Watched, scripted
 
 

@@ -39,6 +39,7 @@ from robobt.tree import (
     Selector,
     Sequence,
     SuccessIsFailure,
+    TreeError,
     TreeRunner,
     preorder,
 )
@@ -56,7 +57,6 @@ from robobt.tree.nodes import (
     Wait,
     assign_roles,
 )
-from robobt.tree.runner import TreeError
 from robobt.world import Team
 from tests.skills.fixed_world import Alone, frame, robot
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty
