@@ -934,9 +934,9 @@ def test_89_nothing_of_a_tree_is_shared_by_the_process() -> None:
         children = [Cooldown("rest", Scripted("kick", "S"), seconds=1.0), Scripted("go", "R")]
         return Selector("root", memory=False, children=children)
 
-    before = dict(py_trees.blackboard.Blackboard.clients)
+    board = py_trees.blackboard.Blackboard
+    before = (dict(board.storage), dict(board.clients))
     first, second = Watched(build()), Watched(build())
     assert first.at([0.0, 0.5]) == "SR"
     assert second.at([0.5]) == "S"
-    assert py_trees.blackboard.Blackboard.storage == {}
-    assert before == py_trees.blackboard.Blackboard.clients
+    assert before == (board.storage, board.clients)
