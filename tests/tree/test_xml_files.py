@@ -412,6 +412,24 @@ def test_a_yaml_file_with_parameters_and_sub_trees_keeps_them_in_xml() -> None:
         assert tree_differences(one, other, VOCABULARY) == []
 
 
+def test_an_entry_is_written_as_one_wherever_it_stands() -> None:
+    text = """
+        play: main
+        trees: {part: {tree: {SaySomething: {message: {entry: move_result}}}}}
+        tree:
+          Sequence:
+            name: both
+            memory: true
+            children: [{SaySomething: {message: {entry: the_answer}}}, {SubTree: {tree: part}}]
+    """
+    file = parse_yaml(text, VOCABULARY)
+    written = write_xml(file, VOCABULARY)
+    assert '"{the_answer}"' in written
+    assert '"{@move_result}"' in written
+    one, other = build_tree(file, VOCABULARY), build_tree(read(written), VOCABULARY)
+    assert tree_differences(one, other, VOCABULARY) == []
+
+
 def test_an_entry_that_a_leaf_uses_anyway_may_be_said() -> None:
     root = tree('<Aim target="{target}" battery="{battery}"/>')
     assert tree_differences(root, Aim(), VOCABULARY) == []
@@ -642,8 +660,13 @@ class Unregistered(Wait):
             "s/Unregistered: files cannot name",
         ),
         (Wait(seconds=0.0005), "no whole number of milliseconds"),
+        (Wait(seconds=1e308), "no whole number of milliseconds"),
         (SaySomething(message="a\x00b"), "XML cannot hold the characters"),
         (Stop(name="two\nlines"), "names that are printable"),
+        (
+            Parallel("p", ParallelPolicy.SuccessOnSelected([])),
+            "p: files cannot name the policy SuccessOnSelected",
+        ),
     ],
 )
 def test_what_xml_cannot_say_is_an_error(root: Behaviour, problem: str) -> None:
@@ -672,3 +695,17 @@ def test_yamls_formulas_and_choices_have_to_be_built_before_they_are_xml(node: s
         )
         == []
     )
+
+
+def test_the_documents_table_is_the_table_that_is_used() -> None:
+    text = (DATA.parents[2] / "docs" / "tree_files.md").read_text(encoding="utf-8")
+    rows = [row.split("|")[1:4] for row in text.splitlines() if row.startswith("| `")]
+    told = {}
+    for tags, kinds, attributes in rows:
+        for tag, kind in zip(tags.split(","), kinds.split(","), strict=False):
+            told[tag.strip(" `")] = (kind.strip(" `"), attributes)
+    for tag, entry in TAGS.items():
+        kind, attributes = told[tag]
+        fixed = ", ".join(f"{name}={value}" for name, value in entry.fixed.items())
+        assert kind == (f"{entry.type}({fixed})" if fixed else entry.type)
+        assert all(f"`{name}`" in attributes for name in entry.attributes)

@@ -585,3 +585,28 @@ def test_a_made_up_signature_is_listed_like_a_plays() -> None:
     assert [str(parameter) for parameter in parameters_of(builder)] == [
         str(parameter) for parameter in parameters_of(PLAYS["goalkeeper"])
     ]
+
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "tree_files.md"
+
+
+def test_the_documents_example_is_a_play() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8")
+    (example,) = [block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if "play:" in block]
+    file = parse_yaml(example, VOCABULARY)
+    assert parse_yaml(write_yaml(file), VOCABULARY) == file
+    for style in ("calm", "keen"):
+        root = build_tree(file, VOCABULARY, {"style": style, "range": 3.0})
+        assert len(root.children) == 3
+
+
+def test_the_document_names_every_type_that_is_not_a_skill_or_links_to_where_they_are() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8") + DOCUMENT.with_name("trees.md").read_text(encoding="utf-8")
+    sisters = {
+        "FailureIsRunning",
+        "RunningIsFailure",
+        "RunningIsSuccess",
+        "SuccessIsFailure",
+        "SuccessIsRunning",
+    }
+    assert [name for name in CONTROL if f"`{name}" not in text and name not in sisters] == []

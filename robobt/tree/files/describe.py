@@ -56,8 +56,8 @@ def _describe(node: Behaviour, vocabulary: Vocabulary) -> Node:
     described = Node(kind.name, _name(node, kind))
     try:
         arguments = kind.arguments(node)
-    except (AttributeError, KeyError) as error:
-        raise ValueError(f"{node_path(node)}: {kind.name} does not tell its parameter {error}") from error
+    except (AttributeError, ValueError) as error:
+        raise ValueError(f"{node_path(node)}: {error}") from error
     for name, value in arguments.items():
         parameter = kind.parameters[name]
         if parameter.required or not _is_default(value, parameter.default):

@@ -325,8 +325,11 @@ def _parallel() -> NodeType:
         return composites.Parallel(name, policy, **children)
 
     def arguments(node: composites.Parallel) -> dict[str, Any]:
-        kinds = {ParallelPolicy.SuccessOnAll: policies[0], ParallelPolicy.SuccessOnOne: policies[1]}
-        return {"policy": kinds[type(node.policy)], "synchronise": node.policy.synchronise}
+        known = {ParallelPolicy.SuccessOnAll: policies[0], ParallelPolicy.SuccessOnOne: policies[1]}
+        policy = type(node.policy)
+        if policy not in known:
+            raise ValueError(f"files cannot name the policy {policy.__name__}")
+        return {"policy": known[policy], "synchronise": node.policy.synchronise}
 
     parameters = [Parameter("policy", Literal[policies]), Parameter("synchronise", bool)]
     return NodeType(

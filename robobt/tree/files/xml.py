@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from math import isfinite
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -32,7 +33,7 @@ from robobt.tree.files.model import (
     Value,
 )
 from robobt.tree.files.verify import sub_trees, unknown_type, verify
-from robobt.tree.files.vocabulary import NodeType, Vocabulary, is_pointer
+from robobt.tree.files.vocabulary import NodeType, Vocabulary, is_pointer, takes_entry
 from robobt.tree.files.xml_reader import Element, XmlError, read_element
 from robobt.tree.parameters import Parameter, ParameterError
 
@@ -336,6 +337,7 @@ class _Reader:
 class _Writer:
     def __init__(self, vocabulary: Vocabulary) -> None:
         self.vocabulary = vocabulary
+        self.in_main = True
 
     def file(self, file: TreeFile) -> str:
         main = file.trees[file.main]
@@ -345,6 +347,7 @@ class _Writer:
         for definition in file.trees.values():
             if definition.let:
                 raise ValueError(f"the tree {definition.name!r} computes values; build it first")
+            self.in_main = definition is main
             lines.append(f"  <BehaviorTree ID={quoteattr(definition.name)}>")
             lines += self._spec(definition.root, "    ", used)
             lines += ["  </BehaviorTree>", ""]
@@ -404,10 +407,10 @@ class _Writer:
 
     def _attribute(self, attribute: Attribute | None, parameter: Parameter | None, value: Value) -> str:
         if attribute is not None and attribute.milliseconds and not isinstance(value, Name):
-            milliseconds = round(value * 1000.0)
-            if milliseconds / 1000.0 != value:
+            milliseconds = value * 1000.0
+            if not isfinite(milliseconds) or round(milliseconds) / 1000.0 != value:
                 raise ValueError(f"{value} s is no whole number of milliseconds, as XML has it")
-            return str(milliseconds)
+            return str(round(milliseconds))
         return self._text(parameter, value)
 
     def _text(self, parameter: Parameter | None, value: Value) -> str:
@@ -415,6 +418,14 @@ class _Writer:
             return f"{{{value.name}}}"
         if isinstance(value, Text):
             return value.text
+        if (
+            parameter is not None
+            and takes_entry(parameter)
+            and isinstance(value, dict)
+            and set(value) == {"entry"}
+        ):
+            # A sub-tree sees only what it is given, and what the outermost tree sees.
+            return f"{{{value['entry']}}}" if self.in_main else f"{{@{value['entry']}}}"
         if _holds_references(value):
             raise ValueError("XML has no formulas, choices or names within values; build the tree first")
         return self.vocabulary.to_text(parameter, value)
