@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, Play
 from robobt.skills import SKILLS
 from robobt.skills.raters import RATERS, ShotRater
 from robobt.skills.referee_switch import RefereeSwitch
 from robobt.skills.store import Store
 from robobt.tree import Behaviour
-from robobt.tree.files import FilePlay, Vocabulary, describe_tree, load_tree_file, write_xml, write_yaml
+from robobt.tree.files import (
+    FILE_ENDINGS,
+    FilePlay,
+    Vocabulary,
+    describe_tree,
+    load_tree_file,
+    write_xml,
+    write_yaml,
+)
 
 VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch,), {ShotRater: RATERS}, Store)
 """What the files of plays may name."""
@@ -25,6 +34,33 @@ def load_play(path: str | Path) -> FilePlay:
         TreeFileError: one line that names the file, the line and what is wrong.
     """
     return FilePlay(load_tree_file(path, VOCABULARY), VOCABULARY)
+
+
+def find_play(name: str, folder: str | Path = ".") -> Play:
+    """A play by its name; where that ends like a file's (.yaml, .yml, .xml), the file's.
+
+    A file is read again only when it has changed.
+
+    Args:
+        folder: what the paths of files are relative to.
+
+    Raises:
+        KeyError: no play has that name.
+        TreeFileError: the file is no play.
+    """
+    if not name.endswith(FILE_ENDINGS):
+        return PLAYS[name]
+    path = Path(folder) / name
+    try:
+        stat = path.stat()
+    except (OSError, ValueError):
+        return load_play(path)
+    return _load_once(path, stat.st_mtime_ns, stat.st_size)
+
+
+@lru_cache(maxsize=64)
+def _load_once(path: Path, _changed: int, _size: int) -> Play:
+    return load_play(path)
 
 
 def play_files() -> dict[str, Path]:

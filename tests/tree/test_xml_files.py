@@ -353,6 +353,29 @@ def test_a_switch_names_the_cases_of_its_children() -> None:
     assert tree_differences(root, again, PLAY_VOCABULARY) == []
 
 
+@pytest.mark.parametrize(
+    "root",
+    [RefereeSwitch("r", {}), RefereeSwitch("r", {}, otherwise=Stop()), RefereeSwitch("r", {"halt": Stop()})],
+)
+def test_a_switch_may_have_few_cases(root: Behaviour) -> None:
+    again = build_tree(read(tree_xml(root, "Main"), PLAY_VOCABULARY), PLAY_VOCABULARY)
+    assert tree_differences(root, again, PLAY_VOCABULARY) == []
+
+
+@pytest.mark.parametrize(
+    "switch",
+    [
+        '<RefereeSwitch name="r"/>',
+        '<RefereeSwitch name="r" cases="halt"/>',
+        '<RefereeSwitch name="r" cases="halt;halt"><Stop/><Stop/></RefereeSwitch>',
+        '<RefereeSwitch name="r" cases="halt"><Stop/><Stop/><Stop/></RefereeSwitch>',
+    ],
+)
+def test_a_switch_whose_cases_do_not_fit_its_children_is_an_error(switch: str) -> None:
+    with pytest.raises(TreeFileError, match="names the cases of its children"):
+        read(document(switch), PLAY_VOCABULARY)
+
+
 def test_the_palette_lists_every_skill_with_parameters_and_entries() -> None:
     text = tree_xml(Stop(), "Main")
     root = ElementTree.fromstring(text)

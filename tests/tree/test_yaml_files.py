@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.plays import PLAYS
-from robobt.plays.files import VOCABULARY, load_play, play_files, tree_yaml
+from robobt.plays.files import VOCABULARY, find_play, load_play, play_files, tree_yaml
 from robobt.skills import GoToPose, IsRestart, SelectShot, Stop, Wall
 from robobt.skills.raters import OpenAngle
 from robobt.skills.referee_switch import RefereeSwitch
@@ -556,6 +556,21 @@ def test_a_file_whose_main_tree_cannot_be_built_is_an_error_at_once(tmp_path: Pa
     path.write_text("play: wall\nparams: {place: 3}\ntree: {Wall: {place: $place}}\n")
     with pytest.raises(TreeFileError, match=r"wall.yaml:3: Wall: place 3 is not one of a wall of 1"):
         load_play(path)
+
+
+def test_a_play_is_found_by_its_name_or_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    path.write_text("play: wall\ntree: Wall\n")
+    assert find_play("goalkeeper") is PLAYS["goalkeeper"]
+    assert same(find_play("wall.yaml", tmp_path)(), Wall())
+    assert find_play("wall.yaml", tmp_path) is find_play(str(path))
+    path.write_text("play: wall\ntree: {Wall: {size: 2}}\n")
+    assert same(find_play(str(path))(), Wall(size=2))
+    with pytest.raises(KeyError, match="no play is called 'wall'"):
+        find_play("wall", tmp_path)
+    for missing in ("no.yaml", "no\x00.xml"):
+        with pytest.raises(TreeFileError, match="cannot be read"):
+            find_play(missing, tmp_path)
 
 
 plain = st.recursive(

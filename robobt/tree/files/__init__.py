@@ -4,12 +4,13 @@ from robobt.tree.files.build import build_tree
 from robobt.tree.files.describe import describe_tree, tree_differences
 from robobt.tree.files.errors import TreeFileError
 from robobt.tree.files.model import Entry, TreeFile
-from robobt.tree.files.play import FilePlay, load_tree_file, try_build
+from robobt.tree.files.play import FILE_ENDINGS, FilePlay, load_tree_file, try_build
 from robobt.tree.files.vocabulary import Vocabulary
 from robobt.tree.files.xml import parse_xml, write_xml
 from robobt.tree.files.yaml import parse_yaml, write_yaml
 
 __all__ = [
+    "FILE_ENDINGS",
     "Entry",
     "FilePlay",
     "TreeFile",

@@ -16,6 +16,9 @@ from robobt.tree.files.xml import parse_xml
 from robobt.tree.files.xml_reader import MAX_BYTES
 from robobt.tree.files.yaml import parse_yaml
 
+FILE_ENDINGS = (".yaml", ".yml", ".xml")
+"""How the names of tree files end."""
+
 
 class FilePlay:
     """Builds a new tree of a file at every call.
@@ -65,16 +68,16 @@ def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
         TreeFileError: it cannot be read, or the first thing that is wrong with it.
     """
     path = Path(path)
-    parsers = {".yaml": parse_yaml, ".yml": parse_yaml, ".xml": parse_xml}
-    if path.suffix not in parsers:
-        raise TreeFileError(str(path), None, f"its ending is none of {', '.join(parsers)}")
+    if path.suffix not in FILE_ENDINGS:
+        raise TreeFileError(str(path), None, f"its ending is none of {', '.join(FILE_ENDINGS)}")
+    parse = parse_xml if path.suffix == ".xml" else parse_yaml
     try:
         with path.open("rb") as opened:
             content = opened.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise TreeFileError(str(path), None, f"cannot be read: {reason}") from error
-    file = parsers[path.suffix](content, vocabulary, str(path))
+    file = parse(content, vocabulary, str(path))
     try_build(file, vocabulary)
     return file
 

@@ -249,7 +249,7 @@ class _Reader:
                 raise self._error(element, f"<{element.tag}> needs a child")
             node.branches[branch] = children
         elif shape == "cases":
-            names = [] if cases is None else cases.split(";")
+            names = cases.split(";") if cases else []
             others = count - len(names)
             if cases is None or others not in (0, len(rest)) or len(set(names)) != len(names):
                 raise self._error(element, f'<{element.tag}> names the cases of its children: cases="a;b"')
