@@ -42,12 +42,12 @@ class RefereeSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     opening: Literal["kickoff", "force_start"] = Field("kickoff", description="how the match begins")
-    stop_time: float = Field(0.5, ge=0, le=60, description="shortest STOP before a restart [s]")
+    stop_time: float = Field(0.3, ge=0, le=60, description="shortest STOP before a restart [s]")
     placement_delay: float = Field(
-        0.2, ge=0, le=60, description="from STOP until the ball lies at the restart's place [s]"
+        0.0, ge=0, le=60, description="from STOP until the ball lies at the restart's place [s]"
     )
     kickoff_wait: float = Field(
-        5.0, ge=0, le=60, description="longest wait for positions at a kick-off or penalty [s]"
+        2.0, ge=0, le=60, description="longest wait for positions at a kick-off or penalty [s]"
     )
     kick_timeout: float = Field(10.0, gt=0, le=60, description="a restart not taken by then is over [s]")
     in_play_distance: float = Field(

@@ -62,9 +62,9 @@ class Shooting(NamedTuple):
 @PLAYS.register("field_player")
 def field_player(
     *,
-    rater: str = "moving_horizon",
-    min_score: float = 0.03,
-    shot_distance: float = 4.0,
+    rater: str = "open_angle",
+    min_score: float = 0.05,
+    shot_distance: float = 5.0,
     dribble_speed: float = 1.2,
     farthest: float | None = None,
 ) -> Behaviour:
@@ -98,9 +98,9 @@ def defender(
     *,
     place: int = 0,
     size: int = 1,
-    rater: str = "moving_horizon",
-    min_score: float = 0.03,
-    shot_distance: float = 4.0,
+    rater: str = "open_angle",
+    min_score: float = 0.05,
+    shot_distance: float = 5.0,
     dribble_speed: float = 1.0,
     farthest: float = -1.0,
 ) -> Behaviour:

@@ -16,7 +16,8 @@ FIELD = DIVISION_B
 GOAL_LINE = FIELD.half_length
 TOUCH_LINE = FIELD.half_width
 PERIOD = 0.02
-OPEN = RefereeSettings(opening="force_start")
+KICKOFF = RefereeSettings(stop_time=0.5, placement_delay=0.2, kickoff_wait=5.0)
+OPEN = KICKOFF.model_copy(update={"opening": "force_start"})
 
 
 class Story:
@@ -383,7 +384,7 @@ def test_the_second_touch_can_be_allowed(us: Team) -> None:
 
 
 def test_a_match_begins_with_the_kick_off_of_the_first_team(us: Team) -> None:
-    story = Story(us, RefereeSettings()).theirs(0, 4.4, 0.0).tick()
+    story = Story(us, KICKOFF).theirs(0, 4.4, 0.0).tick()
     kickoff = (
         RefereeCommand.PREPARE_KICKOFF_BLUE if us is Team.BLUE else RefereeCommand.PREPARE_KICKOFF_YELLOW
     )
@@ -401,7 +402,7 @@ def test_a_match_begins_with_the_kick_off_of_the_first_team(us: Team) -> None:
     ("x", "y"), [(0.5, 1.0), (-0.3, 0.3)], ids=["in the other half", "in the centre circle"]
 )
 def test_a_kick_off_waits_for_opponents_out_of_place(us: Team, x: float, y: float) -> None:
-    story = Story(us, RefereeSettings()).theirs(2, -x, -y).tick()
+    story = Story(us, KICKOFF).theirs(2, -x, -y).tick()
     story.opponents[2] = RobotState(2, x if x < 0 else -x, y)
     story.wait(3.0)
     assert not story.game.may_touch
@@ -410,22 +411,22 @@ def test_a_kick_off_waits_for_opponents_out_of_place(us: Team, x: float, y: floa
 
 
 def test_one_kicker_may_wait_in_the_centre_circle(us: Team) -> None:
-    story = Story(us, RefereeSettings()).ours(1, -0.2, 0.0).ours(2, -1.0, 1.0).tick().tick()
+    story = Story(us, KICKOFF).ours(1, -0.2, 0.0).ours(2, -1.0, 1.0).tick().tick()
     assert story.game.may_touch
 
 
 def test_a_second_robot_in_the_centre_circle_delays_the_kick_off(us: Team) -> None:
-    story = Story(us, RefereeSettings()).ours(1, -0.2, 0.0).ours(2, -0.2, 0.4).tick().wait(1.0)
+    story = Story(us, KICKOFF).ours(1, -0.2, 0.0).ours(2, -0.2, 0.4).tick().wait(1.0)
     assert not story.game.may_touch
 
 
 def test_a_kick_off_waits_for_robots_to_stand(us: Team) -> None:
-    story = Story(us, RefereeSettings()).ours(1, -2.0, 0.0, vx=1.0).tick().wait(1.0)
+    story = Story(us, KICKOFF).ours(1, -2.0, 0.0, vx=1.0).tick().wait(1.0)
     assert not story.game.may_touch
 
 
 def test_a_ball_moved_before_the_kick_off_is_put_back(us: Team) -> None:
-    story = Story(us, RefereeSettings()).ours(2, -0.2, 0.4).ours(1, -0.2, 0.0).tick()
+    story = Story(us, KICKOFF).ours(2, -0.2, 0.4).ours(1, -0.2, 0.0).tick()
     story.touch(1).roll(0.2, 0.0, 1.0)
     assert story.events == [(EventKind.INTERFERENCE, us)]
     story.wait(0.3)
@@ -433,7 +434,7 @@ def test_a_ball_moved_before_the_kick_off_is_put_back(us: Team) -> None:
 
 
 def test_a_goal_straight_from_the_kick_off_counts(us: Team) -> None:
-    story = Story(us, RefereeSettings()).ours(1, -0.2, 0.0).tick().tick()
+    story = Story(us, KICKOFF).ours(1, -0.2, 0.0).tick().tick()
     assert story.game.may_touch
     story.touch(1).roll(1.0, 0.0, 6.0).roll(4.4, 0.0, 6.0).roll(4.53, 0.0, 6.0)
     assert story.score == (1, 0)
