@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import random
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
@@ -61,6 +62,7 @@ tree:
 """
 
 YAML_SEEDS = [EVERYTHING, *[play_files()[name].read_text() for name in ("attack_support", "keeper")]]
+YAML_DATA = {text: yaml.safe_load(text) for text in YAML_SEEDS}
 XML_SEEDS = [path.read_text() for path in sorted((Path(__file__).parent / "data").glob("*.xml"))]
 
 # Pieces that mean something to YAML, to XML, to numbers or to the files' own languages.
@@ -169,7 +171,7 @@ def mutated_bytes(rng: random.Random, text: str, others: list[str]) -> bytes:
 
 def mutated_yaml(rng: random.Random, text: str, others: list[str]) -> bytes:
     """A YAML text with parts of its data changed."""
-    data = yaml.safe_load(text)
+    data = copy.deepcopy(YAML_DATA[text])
     for _ in range(rng.choice([1, 1, 1, 2, 4])):
         places = list(places_in(data))
         holder, key = rng.choice(places)
@@ -179,7 +181,7 @@ def mutated_yaml(rng: random.Random, text: str, others: list[str]) -> bytes:
         elif what == 1:
             del holder[key]
         elif what == 2:
-            other, its = rng.choice(list(places_in(yaml.safe_load(rng.choice(others)))))
+            other, its = rng.choice(list(places_in(copy.deepcopy(YAML_DATA[rng.choice(others)]))))
             holder[key] = other[its]
         elif what == 3 and isinstance(holder, dict):
             holder[rng.choice([*PIECES[30:], "sise", "Stop", "rater"])] = holder.pop(key)
@@ -225,11 +227,7 @@ def mutated_xml(rng: random.Random, text: str, others: list[str]) -> bytes:
             element.text = rng.choice(["", "words", " \n "])
         else:
             element.append(ElementTree.Element(rng.choice(tags), {"name": "n"}))
-    return clean(ElementTree.tostring(root, encoding="unicode"))
-
-
-def clean(text: str) -> bytes:
-    return text.encode("utf-8", "surrogatepass")
+    return ElementTree.tostring(root, encoding="unicode").encode("utf-8", "surrogatepass")
 
 
 Parse = Callable[[bytes, Vocabulary, str], TreeFile]

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from robobt.tree.files.formula import formula_names
 from robobt.tree.parameters import Parameter
 
 
@@ -158,8 +159,6 @@ class TreeFile:
 
 def names_in(value: Value) -> Iterator[str]:
     """The names that a value refers to, those in formulas included."""
-    from robobt.tree.files.formula import formula_names
-
     if isinstance(value, Name):
         yield value.name
     elif isinstance(value, Formula):

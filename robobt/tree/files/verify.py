@@ -46,6 +46,7 @@ def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
 class _Verifier:
     def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
         self.file, self.vocabulary = file, vocabulary
+        self.ports: dict[str, set[str]] = {}
 
     def circles(self) -> None:
         done: set[str] = set()
@@ -119,7 +120,9 @@ class _Verifier:
                 ) from error
             self._parameters(spec, spec.tree, parameters, spec.parameters)
         elif self.file.language == "xml":
-            ports = ports_of(definition, self.file)
+            if spec.tree not in self.ports:
+                self.ports[spec.tree] = ports_of(definition, self.file)
+            ports = self.ports[spec.tree]
             for name in spec.parameters:
                 if name not in ports:
                     there = f"it has {', '.join(sorted(ports))}" if ports else "it has none"
