@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from robobt.world.limits import RobotLimits
 
-
 MOST = 10.0
 """Largest factor; beyond it a command is far from anything a robot can do."""
 

@@ -1,0 +1,74 @@
+"""How fast a whole match is, beside the same match ticked by py_trees and without recording."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+from robobt.match.loop import Match, WorldFactory
+from robobt.match.scenario import Scenario
+
+_BLOCK = 1.0
+"""Simulated time that each of the matches plays in turn, so that all see the same machine [s]."""
+
+
+def bench_match(
+    scenario: Scenario, world_factory: WorldFactory, seconds: float = 60.0, seed: int | None = None
+) -> dict[str, object]:
+    """Play one match three times over in turns, in this process.
+
+    Once as people play it, recorded; once without recording; once with every
+    tree ticked by py_trees' own generators. All three are the same match.
+
+    Args:
+        seconds: simulated time [s].
+        seed: by default the scenario's.
+
+    Returns:
+        the keys that ``robobt bench match --help`` explains.
+    """
+    seed = scenario.seed if seed is None else seed
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bench.robobt.jsonl"
+        # Compiled code and policies are loaded by the first seconds of a match.
+        warm_up = Match(scenario.lasting(2.0), seed, world_factory, path)
+        while warm_up.tick():
+            pass
+        played = scenario.lasting(seconds)
+        recorded = Match(played, seed, world_factory, path)
+        bare = Match(played, seed, world_factory)
+        stock = Match(played, seed, world_factory)
+        for player in stock.players:
+            player.runner.tick_by_py_trees()
+        matches = (recorded, bare, stock)
+        spent = [0.0, 0.0, 0.0]
+        block = max(1, round(_BLOCK / scenario.period))
+        going = True
+        while going:
+            for i, match in enumerate(matches):
+                begin = perf_counter()
+                for _ in range(block):
+                    going = match.tick()
+                    if not going:
+                        break
+                spent[i] += perf_counter() - begin
+    result = recorded.result()
+    if len({match.result().trace for match in matches}) != 1:
+        raise RuntimeError("the three matches differ: recording or ticking changed what was played")
+    return {
+        "scenario": scenario.name,
+        "seed": seed,
+        "robots": len(result.robots),
+        "period": scenario.period,
+        "simulated_s": result.time,
+        "wall_s": spent[0],
+        "real_time_factor": result.time / spent[0],
+        "real_time_factor_unrecorded": result.time / spent[1],
+        "real_time_factor_py_trees": result.time / spent[2],
+        "speedup_vs_py_trees": spent[2] / spent[1],
+        "recording_share": 1.0 - spent[1] / spent[0],
+        "in_play": result.in_play,
+        "ticks": result.ticks,
+        "errors": sum(robot.errors for robot in result.robots.values()),
+    }
