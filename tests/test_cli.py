@@ -215,8 +215,17 @@ class TestBench:
         explained = help_of("bench match")
         assert all(key in explained for key in printed)
         assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["wall_s"])
-        assert printed["recording"] is True
+        assert printed["real_time_factor_py_trees"] > 0
+        assert printed["recording_share"] < 1
         assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
+
+
+    def test_trees(self):
+        printed = told("bench", "tree")
+        explained = help_of("bench tree")
+        for key in ("speedup_vs_py_trees", "ratio_to_plain_classes", "store_speedup_vs_blackboard"):
+            assert key in explained
+            assert printed[key] > 0
 
 
 class TestErrors:
