@@ -83,6 +83,7 @@ def field_player(
         memory=False,
         children=[
             when("halted", IsHalted(), Stop()),
+            take_penalty(farthest),
             take_restart(shooting, farthest),
             when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
             when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
@@ -121,6 +122,7 @@ def defender(
         memory=False,
         children=[
             when("halted", IsHalted(), Stop()),
+            take_penalty(farthest),
             take_restart(shooting, farthest),
             when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
             when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
@@ -157,6 +159,18 @@ def when(name: str, *steps: Behaviour) -> Behaviour:
 def ball_dead() -> Behaviour:
     """The ball is not in play."""
     return Inverter("ball is dead", BallInPlay())
+
+
+def take_penalty(farthest: float | None) -> Behaviour:
+    """Take an own penalty kick when nearest to it: the ball has to go forward."""
+    return when(
+        "our penalty",
+        IsRestart(kind=Restart.PENALTY, ours=True),
+        IsAttacker(farthest=farthest),
+        Selector("where to", memory=False, children=[SelectShot(), AimUpfield()]),
+        PrepareRestart(),
+        KickToTarget(),
+    )
 
 
 def take_restart(shooting: Shooting, farthest: float | None) -> Behaviour:
