@@ -272,7 +272,7 @@ def test_field_players_mark_opponents_in_our_half_while_the_ball_is_there() -> N
     )
     for _ in squad.play(2.0):
         # The attacker is kept from the ball, which else would be ours.
-        squad.robots[3] = RobotState(3, -0.7, 0.0)
+        squad.robots[3] = RobotState(3, -1.2, -0.5)
     assert squad.tips()[4] == squad.tips()[5] == "MarkOpponent"
     marked = {
         opponent.id
