@@ -177,7 +177,7 @@ def mutated_yaml(rng: random.Random, text: str, others: list[str]) -> bytes:
         holder, key = rng.choice(places)
         what = rng.randrange(5)
         if what == 0:
-            holder[key] = rng.choice(VALUES)
+            holder[key] = copy.deepcopy(rng.choice(VALUES))
         elif what == 1:
             del holder[key]
         elif what == 2:
