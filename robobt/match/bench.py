@@ -32,9 +32,7 @@ def bench_match(
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bench.robobt.jsonl"
         # Compiled code and policies are loaded by the first seconds of a match.
-        warm_up = Match(scenario.lasting(2.0), seed, world_factory, path)
-        while warm_up.tick():
-            pass
+        Match(scenario.lasting(2.0), seed, world_factory, path).play()
         played = scenario.lasting(seconds)
         recorded = Match(played, seed, world_factory, path)
         bare = Match(played, seed, world_factory)
@@ -44,15 +42,16 @@ def bench_match(
         matches = (recorded, bare, stock)
         spent = [0.0, 0.0, 0.0]
         block = max(1, round(_BLOCK / scenario.period))
-        going = True
-        while going:
-            for i, match in enumerate(matches):
-                begin = perf_counter()
-                for _ in range(block):
-                    going = match.tick()
-                    if not going:
-                        break
-                spent[i] += perf_counter() - begin
+        with recorded:
+            going = True
+            while going:
+                for i, match in enumerate(matches):
+                    begin = perf_counter()
+                    for _ in range(block):
+                        going = match.tick()
+                        if not going:
+                            break
+                    spent[i] += perf_counter() - begin
     result = recorded.result()
     if len({match.result().trace for match in matches}) != 1:
         raise RuntimeError("the three matches differ: recording or ticking changed what was played")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
+from typing import Self
 
 import numpy as np
 
@@ -92,17 +92,31 @@ class Match:
     def play(self) -> MatchResult:
         """Play to the end."""
         started = perf_counter()
-        with ExitStack() as stack:
-            if self._recorder is not None:
-                stack.enter_context(self._recorder)
+        with self:
             while self.tick():
                 pass
-            result = self.result(perf_counter() - started)
-            if self._recorder is not None:
-                self._recorder.close(
-                    {"outcome": result.outcome, "blue": result.blue_score, "yellow": result.yellow_score}
-                )
-        return result
+            return self.result(perf_counter() - started)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Finish the recording; a match played tick by tick is closed by ``with`` or by this."""
+        if self._recorder is not None:
+            with self._recorder as recorder:
+                if self.outcome is not None:
+                    scores = self._judge.scores
+                    recorder.close(
+                        {
+                            "outcome": self.outcome.value,
+                            "blue": scores[Team.BLUE],
+                            "yellow": scores[Team.YELLOW],
+                        }
+                    )
+            self._recorder = None
 
     def tick(self) -> bool:
         """One control period; False when the match is over, in which case nobody has acted."""
