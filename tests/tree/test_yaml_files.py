@@ -122,7 +122,8 @@ def test_every_file_builds_the_tree_of_its_play_whatever_the_parameters(play: st
                 loaded(**parameters)
             continue
         built += 1
-        assert tree_differences(expected, loaded(**parameters), VOCABULARY) == [], parameters
+        differences = tree_differences(expected, loaded(**parameters), VOCABULARY)
+        assert differences == [], f"{play_files()[play].name} has to follow the play; with {parameters}"
     assert built >= len(parameters_of(builder))
 
 
