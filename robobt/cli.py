@@ -11,7 +11,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ParamSpec
 
@@ -310,30 +310,46 @@ def skills(
 @app.command()
 @_one_line_errors
 def tree(
-    play: Annotated[str, typer.Argument(help="Name of a play (see 'robobt plays').")],
+    play: Annotated[
+        str, typer.Argument(help="Name of a play (see 'robobt plays'), or a tree file (.yaml, .xml).")
+    ],
     param: Annotated[
         list[str] | None,
         typer.Option("--param", "-p", help="A parameter of the play as name=value; may be given often."),
     ] = None,
     svg: Annotated[Path | None, typer.Option("--svg", help="Write the tree as a picture.")] = None,
     dot: Annotated[Path | None, typer.Option("--dot", help="Write the tree for Graphviz.")] = None,
+    yaml: Annotated[Path | None, typer.Option("--yaml", help="Write the tree as a play in YAML.")] = None,
+    xml: Annotated[
+        Path | None,
+        typer.Option("--xml", help="Write the tree as XML that Groot2 opens (BehaviorTree.CPP 4)."),
+    ] = None,
 ) -> None:
-    """Show the tree of a play."""
+    """Show the tree of a play, or write it to a file."""
     from robobt.plays import PLAYS
+    from robobt.plays.files import find_play, is_play_file, tree_xml, tree_yaml
     from robobt.tree.drawing import tree_dot, tree_svg, tree_text
     from robobt.tree.parameters import ParameterError, check_parameters
 
-    if play not in PLAYS:
+    if not is_play_file(play) and play not in PLAYS:
         raise _unknown("play", play, PLAYS)
+    builder = find_play(play)
     try:
-        root = PLAYS[play](**check_parameters(play, PLAYS[play], _parse_parameters(param or [])))
+        root = builder(**check_parameters(play, builder, _parse_parameters(param or [])))
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
-    for path, draw in ((svg, tree_svg), (dot, tree_dot)):
+    name = Path(play).stem
+    writers: list[tuple[Path | None, Callable[[], str]]] = [
+        (svg, partial(tree_svg, root)),
+        (dot, partial(tree_dot, root)),
+        (yaml, partial(tree_yaml, root, name)),
+        (xml, partial(tree_xml, root, name)),
+    ]
+    for path, write in writers:
         if path is not None:
-            path.write_text(draw(root), encoding="utf-8")
+            path.write_text(write(), encoding="utf-8")
             _say(f"Tree: {path}")
-    if svg is None and dot is None:
+    if all(path is None for path, _ in writers):
         _say(tree_text(root))
 
 
@@ -643,11 +659,12 @@ def _say_error(error: Exception) -> str:
     from robobt.match.results_file import ResultsFileError
     from robobt.match.runner import RunError
     from robobt.match.scenario import ScenarioError
+    from robobt.tree.files import TreeFileError
 
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     text = " ".join(str(error.args[0] if error.args else "").split())
-    if isinstance(error, RecordingError | ResultsFileError | RunError | ScenarioError):
+    if isinstance(error, RecordingError | ResultsFileError | RunError | ScenarioError | TreeFileError):
         return text
     return f"{type(error).__name__}: {text} (robobt --debug shows where)"
 

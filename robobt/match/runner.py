@@ -99,7 +99,7 @@ def run_trials(
         world_factory,
         seed,
         {trial: Path(path) for trial, path in record.items()},
-        tuple({PLAYS[setup.play] for _, setup in scenario.robots}),
+        tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
     )
     file = None if out is None else ResultsFile(out, scenario, seed)
     results: dict[int, MatchResult] = {}
@@ -131,8 +131,9 @@ def run_trials(
 class _Job:
     """What a worker needs to play any of the trials.
 
-    The plays are there because they are sent by name: a worker that receives
-    them has imported the modules that register them.
+    The registered plays are there because they are sent by name: a worker that
+    receives them has imported the modules that register them. Tree files are read
+    by each worker.
     """
 
     scenario: Scenario

@@ -16,8 +16,11 @@ from robobt.match.referee import RefereeSettings
 from robobt.match.starts import BallStart, Part, RobotStart
 from robobt.match.yaml_reader import YamlError, read_yaml
 from robobt.plays import PLAYS
+from robobt.plays.files import find_play, is_play_file
 from robobt.resources import bundled_scenarios
-from robobt.tree import Behaviour
+from robobt.skills.store import GIVEN, Store
+from robobt.tree import Behaviour, WiringError, check_tree
+from robobt.tree.files import TreeFileError
 from robobt.tree.parameters import ParameterError, check_parameters, say_value
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
@@ -60,7 +63,7 @@ class RobotSetup(Part):
     """One robot: its number, what it plays and where it starts."""
 
     number: int = Field(ge=0, le=15, description="number on its team")
-    play: str = Field(max_length=80, description="name of its play")
+    play: str = Field(max_length=400, description="its play: a name, or a tree file beside the scenario")
     params: dict[str, Any] = Field(default_factory=dict, description="parameters of the play")
     goalkeeper: bool = Field(False, description="whether it is its team's goalkeeper")
     limits: RobotLimits | None = Field(
@@ -71,23 +74,25 @@ class RobotSetup(Part):
     @field_validator("play")
     @classmethod
     def _known(cls, play: str) -> str:
-        if play not in PLAYS:
+        if not is_play_file(play) and play not in PLAYS:
             raise ValueError(f"no play is called {say_value(play)}; there are {', '.join(PLAYS)}")
         return play
 
     @model_validator(mode="after")
     def _playable(self) -> Self:
         try:
-            self.build_tree()
+            check_tree(self.build_tree(), Store, GIVEN)
         except ParameterError as error:
             raise FieldError(f"params.{error.parameter}", str(error)) from error
+        except (TreeFileError, WiringError) as error:
+            raise FieldError("play", message_of(error)) from error
         except Exception as error:
             raise FieldError("params", message_of(error)) from error
         return self
 
     def build_tree(self) -> Behaviour:
         """A new tree of this robot's play."""
-        builder = PLAYS[self.play]
+        builder = find_play(self.play)
         return builder(**check_parameters(self.play, builder, self.params))
 
     def limits_over(self, base: RobotLimits) -> RobotLimits:
@@ -266,7 +271,7 @@ def load_scenario(source: str | Path) -> Scenario:
         data = read_yaml(path)
     except YamlError as error:
         raise ScenarioError(str(path), str(error)) from error
-    scenario = scenario_from(data, str(path))
+    scenario = scenario_from(_beside(data, path.parent), str(path))
     return scenario if scenario.name else _named(scenario, path.stem)
 
 
@@ -289,6 +294,17 @@ def scenario_from(data: object, source: str) -> Scenario:
         raise ScenarioError(source, problem, field) from error
     scenario._source = source
     return scenario
+
+
+def _beside(data: object, folder: Path) -> object:
+    """The data with its robots' tree files as seen from here, not from the scenario's folder."""
+    robots = data.get("robots") if isinstance(data, dict) else None
+    for team in robots.values() if isinstance(robots, dict) else ():
+        for robot in team if isinstance(team, list) else ():
+            play = robot.get("play") if isinstance(robot, dict) else None
+            if isinstance(play, str) and is_play_file(play):
+                robot["play"] = str(folder / play)
+    return data
 
 
 def _named(scenario: Scenario, name: str) -> Scenario:

@@ -36,6 +36,11 @@ def load_play(path: str | Path) -> FilePlay:
     return FilePlay(load_tree_file(path, VOCABULARY), VOCABULARY)
 
 
+def is_play_file(name: str) -> bool:
+    """Whether a play's name is a file's (.yaml, .yml, .xml)."""
+    return name.endswith(FILE_ENDINGS)
+
+
 def find_play(name: str, folder: str | Path = ".") -> Play:
     """A play by its name; where that ends like a file's (.yaml, .yml, .xml), the file's.
 
@@ -48,7 +53,7 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
         KeyError: no play has that name.
         TreeFileError: the file is no play.
     """
-    if not name.endswith(FILE_ENDINGS):
+    if not is_play_file(name):
         return PLAYS[name]
     path = Path(folder) / name
     try:

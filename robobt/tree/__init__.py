@@ -8,6 +8,7 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, Repeat, Retry, SuccessIsFailure
 
+from robobt.tree.check import WiringError, check_tree
 from robobt.tree.drawing import tree_dot, tree_svg, tree_text
 from robobt.tree.engine import FastTree, compile_tree
 from robobt.tree.leaf import Leaf, bind
@@ -31,7 +32,9 @@ __all__ = [
     "SuccessIsFailure",
     "TreeError",
     "TreeRunner",
+    "WiringError",
     "bind",
+    "check_tree",
     "compile_tree",
     "node_path",
     "preorder",
