@@ -13,12 +13,14 @@ import numpy as np
 
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.measures import Measures, Trace
+from robobt.match.problems import one_line
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee import Referee, RefereeEvent
 from robobt.match.results import MatchResult, RobotResult
 from robobt.match.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeRunner, node_path
+from robobt.tree.parameters import say_value
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.protocol import World
@@ -185,10 +187,9 @@ class Match:
     def _decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
         """Tick every tree once; a robot that is not seen is not ticked and stands still."""
         commands: dict[RobotId, RobotCommand] = {}
-        for team, players in self._by_team.items():
-            if not players:
-                continue
-            view = frame.seen_by(team)
+        # Both views before any tree is ticked: a tree that spoils its frame spoils no opponent's.
+        views = [(players, frame.seen_by(team)) for team, players in self._by_team.items() if players]
+        for players, view in views:
             for me in view.own:
                 player = players.get(me.id)
                 if player is not None:
@@ -200,10 +201,11 @@ class Match:
         store.frame, store.me, store.command = view, me, RobotCommand()
         runner.tick()
         if runner.error is None:
-            if store.command.finite():
+            fault = _fault_of(store.command)
+            if fault is None:
                 return store.command
             tip = runner.root.tip() or runner.root
-            problem = f"{node_path(tip)}: command is not finite: {store.command}"
+            problem = f"{node_path(tip)}: {fault}"
             _log.warning("tree stopped: %s", problem)
             runner.stop()
         else:
@@ -259,6 +261,16 @@ def play_match(
 ) -> MatchResult:
     """Play one match to its end; the arguments are those of :class:`Match`."""
     return Match(scenario, seed, world_factory, record, trial).play()
+
+
+def _fault_of(command: object) -> str | None:
+    """Why a robot cannot be sent what its tree decided, None when it can."""
+    if not isinstance(command, RobotCommand):
+        return f"command is no RobotCommand: {say_value(command)}"
+    try:
+        return None if command.finite() else f"command is not finite: {command}"
+    except (TypeError, ValueError, OverflowError):
+        return one_line(f"command is not made of numbers: {command}")
 
 
 def _referee_of(scenario: Scenario) -> Referee | None:

@@ -85,8 +85,12 @@ class TreeRunner:
         return "".join([_LETTERS[node.status._value_] for node in self.nodes])
 
     def stop(self) -> None:
-        """End the run; running leaves are interrupted."""
-        self.root.stop(Status.INVALID)
+        """End the run; running leaves are interrupted, and what they raise then is logged."""
+        try:
+            self.root.stop(Status.INVALID)
+        except Exception as error:
+            _log.warning("%s: %s: %s", self._raiser(error), type(error).__name__, error)
+            abandon(self.root)
 
     def _raiser(self, error: Exception) -> str:
         trace = error.__traceback__

@@ -17,6 +17,15 @@ MOUTH = 0.1
 """Centre of the robot to the centre of a ball it has [m]."""
 
 
+_SPOILT: dict[str, Any] = {
+    "nan": RobotCommand(vx=float("nan")),
+    "huge": RobotCommand(vx=10**400),
+    "words": RobotCommand(vx="fast"),  # type: ignore[arg-type]
+    "nothing": None,
+}
+"""Commands that no robot can be sent."""
+
+
 class Scripted(Skill):
     """Runs to the ball, waits and kicks it straight ahead; can be told to break."""
 
@@ -24,11 +33,19 @@ class Scripted(Skill):
         super().__init__(name)
         self.speed, self.kick, self.breaks = speed, kick, breaks
 
+    def on_interrupt(self) -> None:
+        if self.breaks:
+            raise RuntimeError("broken again")
+
     def on_running(self) -> Status:
         if self.breaks == "raise":
             raise RuntimeError("broken on purpose")
-        if self.breaks == "nan":
-            self.store.command = RobotCommand(vx=float("nan"))
+        if self.breaks in _SPOILT:
+            self.store.command = _SPOILT[self.breaks]
+            return self.run()
+        if self.breaks == "frame":
+            frame = self.frame
+            frame.ball, frame.own, frame.opponents, frame.game = None, (), (), None  # type: ignore[assignment]
             return self.run()
         me, ball = self.me, self.ball
         gap = hypot(ball.x - me.x, ball.y - me.y)

@@ -75,7 +75,14 @@ def test_every_tick_observes_and_acts_once():
 
 
 @pytest.mark.parametrize(
-    ("breaks", "said"), [("raise", "RuntimeError: broken on purpose"), ("nan", "command is not finite")]
+    ("breaks", "said"),
+    [
+        ("raise", "Scripted: RuntimeError: broken on purpose"),
+        ("nan", "Scripted: command is not finite"),
+        ("huge", "Scripted: command is not made of numbers"),
+        ("words", "Scripted: command is not made of numbers"),
+        ("nothing", "Scripted: command is no RobotCommand: None"),
+    ],
 )
 def test_a_tree_that_fails_stops_its_robot_and_nobody_else(breaks: str, said: str):
     broken = robot(1, y=1.0, breaks=breaks)
@@ -92,6 +99,13 @@ def test_a_tree_that_fails_stops_its_robot_and_nobody_else(breaks: str, said: st
     assert said in figures.first_error
     assert figures.first_error.startswith("Scripted")
     assert result.robots["blue 0"].errors == 0
+
+
+def test_a_tree_that_spoils_its_frame_harms_neither_the_opponents_nor_the_match():
+    robots = {"blue": [robot(breaks="frame")], "yellow": [robot(x=-1.0, kick=4.0)]}
+    result = play(robots=robots)
+    assert result.outcome == "goal_yellow"
+    assert result.robots["yellow 0"].errors == 0
 
 
 def test_a_robot_that_is_not_seen_is_not_ticked():

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from py_trees.common import ParallelPolicy
 
-from robobt.tree import Leaf, Registry, Selector, Sequence, Status, TreeRunner, node_path, preorder
+from robobt.tree import Leaf, Parallel, Registry, Selector, Sequence, Status, TreeRunner, node_path, preorder
 
 
 class Scripted(Leaf[list[str]]):
@@ -86,6 +87,21 @@ def test_an_exception_stops_the_tree_names_the_node_and_leaves_nothing_running()
     assert runner.error == "root/inner/bad: ZeroDivisionError: no"
     assert runner.statuses() == "----"
     assert runner.tick() is Status.INVALID
+
+
+def test_a_leaf_that_raises_as_it_is_interrupted_does_not_keep_the_tree_from_being_stopped() -> None:
+    class Stubborn(Scripted):
+        def on_interrupt(self) -> None:
+            raise ZeroDivisionError("no")
+
+    log: list[str] = []
+    policy = ParallelPolicy.SuccessOnAll()
+    root = Parallel("root", policy=policy, children=[Stubborn("stubborn", R), Scripted("other", R)])
+    runner = TreeRunner(root, log)
+    runner.tick()
+    runner.stop()
+    assert {node.status for node in runner.nodes} == {Status.INVALID}
+    assert log[-1] == "other interrupted"
 
 
 def test_statuses_are_one_letter_a_node_in_preorder() -> None:
