@@ -20,20 +20,24 @@ vy; an entry of ``r`` is x, y, heading, vx, vy, omega, flags (:class:`RobotFlag`
 from __future__ import annotations
 
 import json
+import json.encoder
 import zlib
 from array import array
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass
 from enum import IntFlag
-from math import isfinite
+from itertools import accumulate, chain
+from math import isfinite, nan
 from pathlib import Path
+from struct import Struct
 from types import TracebackType
-from typing import Any, BinaryIO, Self, TypeVar
+from typing import Any, BinaryIO, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -53,7 +57,11 @@ VERSION = 1
 
 _BALL_UNITS = (1e-4, 1e-4, 1e-3, 1e-3)
 _ROBOT_UNITS = (1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3)
+_BALL_SCALE = (1e4, 1e4, 1e3, 1e3)
+_ROBOT_SCALE = (1e4, 1e4, 1e3, 1e3, 1e3, 1e3, 1.0)
+_BALL, _ROBOT = len(_BALL_SCALE), len(_ROBOT_SCALE)
 _encode = json.JSONEncoder(separators=(",", ":")).encode
+_quote = json.encoder.encode_basestring_ascii
 # Three times as fast as zlib's default, for a file 5 % longer.
 _EFFORT = 4
 _SILENT = (Selector, Sequence, Parallel)
@@ -198,10 +206,13 @@ class Recorder:
             for team in Team
         }
         self._ids = [robot.id for robot in robots]
-        self._absent = ["null"] * len(robots)
+        self._nowhere = [nan] * (_BALL + _ROBOT * len(robots))
+        self._pack = Struct(f"{len(self._nowhere)}d").pack
         self._game: GameState | None = None
         self._touch: RobotId | None = None
-        self._lines: list[str] = []
+        # Lines to be written: whole ones, and ticks as what stands before and behind their numbers.
+        self._lines: list[str | tuple[str, str]] = []
+        self._packed: list[bytes] = []
         # A second of lines at a time: few enough writes, and a kill loses no more than that.
         self._most_lines = max(1, round(1.0 / header.period))
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -225,7 +236,9 @@ class Recorder:
         Robots that the header does not list are left out.
         """
         frame = frame.seen_by(Team.BLUE)
-        rows, ids = self._absent.copy(), self._ids
+        ball, ids = frame.ball, self._ids
+        numbers = self._nowhere.copy()
+        numbers[:_BALL] = ball.x, ball.y, ball.vx, ball.vy
         for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents)):
             slots = self._slots[team]
             for robot in robots:
@@ -237,34 +250,29 @@ class Recorder:
                     command = commands.get(ids[slot])
                     if command is not None:
                         flags += (2 if command.dribbler else 0) + (4 if command.kick_speed else 0)
-                try:
-                    rows[slot] = (
-                        f"[{round(robot.x * 1e4)},{round(robot.y * 1e4)},{round(robot.heading * 1e3)},"
-                        f"{round(robot.vx * 1e3)},{round(robot.vy * 1e3)},{round(robot.omega * 1e3)},{flags}]"
-                    )
-                except (ValueError, OverflowError):
-                    # Not a number: the robot is nowhere, which is what null says.
-                    continue
-        ball = frame.ball
-        try:
-            place = (
-                f"[{round(ball.x * 1e4)},{round(ball.y * 1e4)},{round(ball.vx * 1e3)},{round(ball.vy * 1e3)}]"
-            )
-        except (ValueError, OverflowError):
-            place = "null"
-        line = f'{{"t":{round(frame.time, 6)!r},"b":{place},"r":[{",".join(rows)}]'
-        if self._trees:
-            line += self._tree_changes(frame.time)
+                at = _BALL + _ROBOT * slot
+                numbers[at : at + _ROBOT] = (
+                    robot.x,
+                    robot.y,
+                    robot.heading,
+                    robot.vx,
+                    robot.vy,
+                    robot.omega,
+                    flags,
+                )
+        packed = self._pack(*numbers)
+        changes = self._tree_changes(frame.time) if self._trees else ""
         game = frame.game
         if game is not self._game:
             if game != self._game:
-                line += f',"g":{_encode(_game_to_json(game))}'
+                changes += f',"g":{_encode(_game_to_json(game))}'
             self._game = game
         if frame.last_touch != self._touch:
             self._touch = frame.last_touch
-            line += f',"l":{_encode(self._touch)}'
+            changes += f',"l":{_encode(self._touch)}'
         lines = self._lines
-        lines.append(line + "}")
+        lines.append((f'{{"t":{round(frame.time, 6)!r},"b":', changes + "}"))
+        self._packed.append(packed)
         if len(lines) >= self._most_lines:
             self._flush()
 
@@ -297,20 +305,22 @@ class Recorder:
         statuses: list[str] = []
         feedback: list[str] = []
         for tree in self._trees:
-            now = [node.status for node in tree.nodes]
+            now = tree.look_at_statuses()
             if now != tree.statuses:
                 tree.statuses = now
-                letters = "".join([_LETTERS.get(status.name, "-") for status in now])
+                letters = "".join([_LETTERS.get(status._name_, "-") for some in now for status in some])
                 statuses.append(f'"{tree.slot}":"{letters}"')
-            said = [node.feedback_message for node in tree.speakers]
+            said = tree.look_at_feedback()
             if said != tree.feedback:
-                changes = {
-                    place: str(message)
-                    for place, message, before in zip(tree.places, said, tree.feedback, strict=True)
+                changes = [
+                    f'"{place}":{_quote(str(message))}'
+                    for place, message, before in zip(
+                        tree.places, chain(*said), chain(*tree.feedback), strict=True
+                    )
                     if message != before
-                }
+                ]
                 tree.feedback = said
-                feedback.append(f'"{tree.slot}":{_encode(changes)}')
+                feedback.append(f'"{tree.slot}":{{{",".join(changes)}}}')
             if tree.runner.error != tree.error:
                 tree.error = tree.runner.error
                 if tree.error is not None:
@@ -321,8 +331,13 @@ class Recorder:
     def _flush(self) -> None:
         if self._file is None or not self._lines:
             return
-        data = ("\n".join(self._lines) + "\n").encode()
+        places = iter(_places(b"".join(self._packed), len(self._ids)))
+        lines = [
+            line if isinstance(line, str) else f"{line[0]}{next(places)}{line[1]}" for line in self._lines
+        ]
+        data = ("\n".join(lines) + "\n").encode()
         self._lines.clear()
+        self._packed.clear()
         if self._deflate is not None:
             data = self._deflate.compress(data) + self._deflate.flush(zlib.Z_SYNC_FLUSH)
         self._file.write(data)
@@ -341,17 +356,86 @@ class Recorder:
 class _TreeWatch:
     """What a tree looked like at the tick before."""
 
-    __slots__ = ("error", "feedback", "nodes", "places", "robot", "runner", "slot", "speakers", "statuses")
+    __slots__ = (
+        "error",
+        "feedback",
+        "look_at_feedback",
+        "look_at_statuses",
+        "places",
+        "robot",
+        "runner",
+        "slot",
+        "statuses",
+    )
 
     def __init__(self, slot: int, robot: RobotId, runner: TreeRunner) -> None:
         self.slot, self.robot, self.runner = slot, robot, runner
-        self.nodes = runner.nodes
-        self.statuses: list[Status] = []
+        nodes = runner.nodes
+        self.look_at_statuses = _look_at("status", nodes)
+        self.statuses: _Seen = ()
         # py_trees' own composites never say anything, and a third of all nodes are such.
-        self.places = [place for place, node in enumerate(self.nodes) if type(node) not in _SILENT]
-        self.speakers = [self.nodes[place] for place in self.places]
-        self.feedback = [""] * len(self.speakers)
+        self.places = [place for place, node in enumerate(nodes) if type(node) not in _SILENT]
+        self.look_at_feedback = _look_at("feedback_message", [nodes[place] for place in self.places])
+        self.feedback: _Seen = tuple([("",) * len(some) for some in self.look_at_feedback()])
         self.error: str | None = None
+
+
+_Seen: TypeAlias = tuple[tuple[Any, ...], ...]
+
+
+def _look_at(attribute: str, nodes: SequenceOf[Behaviour]) -> Callable[[], _Seen]:
+    """A function that gives this attribute of every node, in tuples of up to 30."""
+    # With a place in the code for each node, the interpreter remembers at each where in
+    # that class the attribute is found; in a loop over nodes of many classes it has to search
+    # every time, which takes three times as long. Longer tuples are built item by item.
+    names = [f"n{place}" for place in range(len(nodes))]
+    tuples = [
+        "(" + "".join([f"{name}.{attribute}," for name in names[start : start + 30]]) + ")"
+        for start in range(0, len(names), 30)
+    ]
+    source = f"lambda {','.join(names)}: lambda: ({''.join([part + ',' for part in tuples])})"
+    look: Callable[[], _Seen] = eval(source)(*nodes)
+    return look
+
+
+def _places(packed: bytes, robots: int) -> list[str]:
+    """What stands between the time and the changes in the lines of some ticks: ball and robots.
+
+    Args:
+        packed: the ticks' numbers in SI units, see :meth:`Recorder.tick`.
+        robots: how many there are in a tick.
+    """
+    sizes = [_BALL, *[_ROBOT] * robots]
+    with np.errstate(over="ignore"):
+        table = np.rint(
+            np.frombuffer(packed).reshape(-1, sum(sizes)) * [*_BALL_SCALE, *_ROBOT_SCALE * robots]
+        )
+    known = np.isfinite(table)
+    table[~known] = 0.0
+    # Whole floats are written just the same, only slower.
+    fits = np.abs(table).max(initial=0.0) < 2.0**63
+    rows = (table.astype(np.int64) if fits else table).tolist()
+    patterns: dict[tuple[bool, ...], str] = {}
+    places = []
+    for row, there in zip(rows, _groups(known, sizes).tolist(), strict=True):
+        key = tuple(there)
+        pattern = patterns.get(key)
+        if pattern is None:
+            ball, *others = map(_pattern, sizes, key)
+            pattern = patterns[key] = f'{ball},"r":[{",".join(others)}]'
+        places.append(pattern % tuple(row))
+    return places
+
+
+def _groups(known: NDArray[np.bool_], sizes: SequenceOf[int]) -> NDArray[np.bool_]:
+    """For each row and each group of columns whether all of it is known."""
+    return np.logical_and.reduceat(known, [0, *accumulate(sizes[:-1])], axis=1)
+
+
+def _pattern(size: int, known: bool) -> str:
+    """How to print this many integers; null when they are not all known."""
+    # A string of length 0 takes a number and prints nothing.
+    return "[" + ",".join(["%d"] * size) + "]" if known else "null" + "%.0s" * size
 
 
 def _with_tree(robot: RecordedRobot, runner: TreeRunner | None) -> RecordedRobot:

@@ -20,7 +20,8 @@ from robobt.match.recording import (
     RobotFlag,
     load_recording,
 )
-from robobt.tree import Selector, TreeRunner
+from robobt.skills.store import Store
+from robobt.tree import Leaf, Parallel, Selector, Sequence, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
 from tests.match.made_recording import (
     BLUE_1,
@@ -33,6 +34,7 @@ from tests.match.made_recording import (
     record,
     runners,
 )
+from tests.tree.random_trees import random_tree
 
 
 @pytest.fixture
@@ -89,6 +91,42 @@ def test_every_status_and_every_word_is_there_at_its_tick(path: Path) -> None:
             assert recording.statuses_at(robot, tick) == statuses
             said = recording.feedback_at(robot, tick)
             assert [said.get(place, "") for place in range(len(words))] == words
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_whatever_a_tree_does_is_recorded_as_it_was_seen(path: Path, seed: int) -> None:
+    rng = random.Random(seed)
+    runner = TreeRunner(random_tree(rng, f"recorded{seed}")([], "once"), Store(frame(0), frame(0).own[0]))
+    seen = []
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(40):
+            now = frame(tick)
+            for node in runner.nodes:
+                if isinstance(node, Leaf):
+                    node.store.frame = now
+            if rng.random() < 0.8:
+                runner.tick()
+            if rng.random() < 0.1:
+                runner.stop()
+            recorder.tick(now)
+            silent = (Selector, Sequence, Parallel)
+            words = ["" if type(node) in silent else node.feedback_message for node in runner.nodes]
+            seen.append((runner.statuses(), words))
+        recorder.close({})
+    recording = load_recording(path)
+    for tick, (statuses, words) in enumerate(seen):
+        assert recording.statuses_at(BLUE_1, tick) == statuses
+        said = recording.feedback_at(BLUE_1, tick)
+        assert [said.get(place, "") for place in range(len(words))] == words
+
+
+def test_a_number_of_any_size_is_written_out(path: Path) -> None:
+    far = frame(0)
+    far.own = (replace(far.own[0], x=2.0**70), replace(far.own[1], x=1e307))
+    record_frames(path, [far, frame(1)])
+    rows = json.loads(path.read_text().splitlines()[1])["r"]
+    assert rows[0][0] == round(2.0**70 * 1e4)
+    assert rows[1] is None
 
 
 def test_trees_are_written_only_when_they_change(path: Path) -> None:
