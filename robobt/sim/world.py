@@ -52,7 +52,7 @@ class SimWorld:
         self._delayed = realism.vision_delay > 0.0
         self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
         self._lossy = any((realism.missing_ball, realism.missing_robot))
-        self._arenas = Arenas(field, self._limits, self.settings, period, keep_history=self._delayed)
+        self._arenas = self._make_arenas()
         self._commands = np.zeros((1, len(self._ids), 6))
         self._rng = np.random.default_rng(0)
         self._ticks = 0
@@ -81,6 +81,8 @@ class SimWorld:
             _check_inside(str(robot), pose, outer_x, outer_y)
             poses[self._index[robot]] = pose
         _check_inside("the ball", placement.ball, outer_x, outer_y)
+        # A new space: the old one remembers the contacts of its last steps and would act on them.
+        self._arenas = self._make_arenas()
         self._arenas.place(poses[None], np.array([placement.ball]))
         self._commands[:] = 0.0
         self._rng = np.random.default_rng(seed)
@@ -133,8 +135,8 @@ class SimWorld:
                     command.vy,
                     command.omega,
                     command.kick_speed,
-                    command.kick_trigger is KickTrigger.ON_CONTACT,
-                    command.dribbler,
+                    command.kick_trigger == KickTrigger.ON_CONTACT,
+                    bool(command.dribbler),
                 )
         self._arenas.step(self._commands)
         self._ticks += 1
@@ -159,6 +161,9 @@ class SimWorld:
             self.field.half_width + self.field.margin,
         )
         self._arenas.place_ball(0, x, y)
+
+    def _make_arenas(self) -> Arenas:
+        return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
 
     def _rows(self) -> FloatArray:
         """Robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, 0, vx, vy, 0)."""

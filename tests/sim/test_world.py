@@ -72,6 +72,38 @@ def test_vision_is_late_by_its_delay() -> None:
         assert seen == (past[len(past) - 7] if len(past) >= 7 else past[0])
 
 
+@pytest.mark.parametrize("level", ["none", "realistic"])
+def test_a_world_that_was_used_before_plays_as_a_new_one(level: str) -> None:
+    robots = {RobotId(team, number): None for team in Team for number in range(3)}
+    settings = preset("default", realism=REALISM[level])
+
+    def crowd(apart: float) -> Placement:
+        poses = {robot: (apart * (robot.number + 1), 0.1 * (robot.team is ME.team), 0.5) for robot in robots}
+        return Placement(poses, (0, 0, 1, 0))
+
+    def play(world: SimWorld) -> list[float]:
+        world.reset(crowd(0.2), seed=3)
+        for tick in range(60):
+            world.act({robot: RobotCommand(3, robot.number - 1, tick % 7, 4.0) for robot in robots})
+        return [number for state in world.truth().own for number in (state.x, state.y, state.heading)]
+
+    used = SimWorld(DIVISION_B, robots, settings)
+    used.reset(crowd(0.1), seed=4)
+    for _ in range(20):
+        used.act({robot: RobotCommand(-3) for robot in robots})
+    assert play(used) == play(SimWorld(DIVISION_B, robots, settings))
+
+
+def test_a_trigger_may_be_given_by_its_word() -> None:
+    world = one_robot(ball=(0.3, 0, 0, 0))
+    command = RobotCommand(1, kick_speed=5, kick_trigger="on_contact")  # type: ignore[arg-type]
+    for _ in range(200):
+        world.act({ME: command})
+        if world.kicks:
+            return
+    pytest.fail("it never kicked")
+
+
 def test_realistic_noise_has_the_stated_spread_and_the_seed_fixes_it() -> None:
     def run(seed: int) -> np.ndarray:
         world = pair("realistic")
