@@ -57,7 +57,9 @@ class PrepareRestart(Skill):
 
 
 def _before(spot: Point, point: Point, gap: float) -> Point:
-    """``gap`` metres from ``spot`` towards ``point``; behind ``spot`` when negative."""
+    """``gap`` metres from ``spot`` towards ``point``, towards +x where both are one; behind when negative."""
     dx, dy = point[0] - spot[0], point[1] - spot[1]
     length = hypot(dx, dy)
+    if length == 0.0:
+        return (spot[0] + gap, spot[1])
     return (spot[0] + gap * dx / length, spot[1] + gap * dy / length)

@@ -6,7 +6,7 @@ import pytest
 
 from robobt.skills.prepare_restart import PrepareRestart
 from robobt.tree import Status
-from robobt.world import DIVISION_B, Restart, Team
+from robobt.world import DIVISION_B, FieldGeometry, Restart, Team
 from robobt.world.geometry import direction, wrap_angle
 from tests.skills.fixed_world import Alone, frame, robot
 from tests.skills.refereed import OPEN, Drive, free_kick, kickoff, penalty, stop_before
@@ -21,6 +21,15 @@ def test_in_a_stop_it_waits_half_a_metre_from_the_spot(spot: tuple[float, float]
     assert 0.59 < hypot(drive.end.x - spot[0], drive.end.y - spot[1]) < 0.8
     assert drive.status is Status.RUNNING
     assert max(state.speed for state in drive.way) <= 1.5 + 1e-9
+
+
+def test_on_a_field_too_small_for_the_distance_it_waits_beyond_the_middle() -> None:
+    tiny = FieldGeometry(length=0.9, width=0.9, goal_width=0.3, defense_width=0.3, defense_depth=0.1)
+    game = stop_before(Restart.KICKOFF, Team.BLUE, (0.0, 0.0))
+    view = frame(robot(-0.2, 0.1, number=1), (0.0, 0.0), game=game, field=tiny)
+    alone = Alone(PrepareRestart())
+    assert alone.tick(view, 1) is Status.RUNNING
+    assert alone.command.finite()
 
 
 def test_before_a_kick_off_it_waits_in_the_circle_behind_the_ball() -> None:
