@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from robobt.tree.parameters import say_value
 
@@ -30,7 +31,7 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object) 
         data: plain data.
     """
     problems = error.errors(include_url=False)
-    problem = problems[0]
+    problem = _most_telling(problems)
     place = _real_place(problem["loc"], data)
     cause = problem.get("ctx", {}).get("error")
     message = problem["msg"].replace("valid array", "list").replace("an object", "a mapping")
@@ -47,6 +48,16 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object) 
         message = f"{message}, not {say_value(problem['input'])}"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     return ".".join(place), message[:1].lower() + message[1:] + more
+
+
+def _most_telling(problems: list[ErrorDetails]) -> ErrorDetails:
+    """The first problem; an unknown field before a missing one beside it, which it may be, misspelled."""
+    first = problems[0]
+    if first["type"] == "missing":
+        for other in problems:
+            if other["type"] == "extra_forbidden" and other["loc"][:-1] == first["loc"][:-1]:
+                return other
+    return first
 
 
 def message_of(error: Exception) -> str:
@@ -83,7 +94,7 @@ def _fields_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
             models = [model for hint in below for model in _models_in(hint)]
         else:
             # A place in a list, or the name of a union's member.
-            models = [model for model in models if model.__name__.lower() == part] or models
+            models = [model for model in models if model.__name__ == part] or models
     return [name for model in models for name in model.model_fields]
 
 

@@ -92,17 +92,17 @@ class Around(Part):
 
 def _position_kind(value: Any) -> str:
     if isinstance(value, Box | Disc | Around):
-        return type(value).__name__.lower()
+        return type(value).__name__
     if not isinstance(value, dict):
-        return "place"
-    return "around" if "around" in value else "disc" if "center" in value or "radius" in value else "box"
+        return "Place"
+    return "Around" if "around" in value else "Disc" if "center" in value or "radius" in value else "Box"
 
 
 Position = Annotated[
-    Annotated[Place, Tag("place")]
-    | Annotated[Box, Tag("box")]
-    | Annotated[Disc, Tag("disc")]
-    | Annotated[Around, Tag("around")],
+    Annotated[Place, Tag("Place")]
+    | Annotated[Box, Tag("Box")]
+    | Annotated[Disc, Tag("Disc")]
+    | Annotated[Around, Tag("Around")],
     Discriminator(_position_kind),
 ]
 """A fixed point or a distribution of points."""

@@ -331,7 +331,11 @@ class TestStarts:
             ),
             (
                 {"robots": {"blue": [robot(start={"position": {"centre": [0, 1]}})]}},
-                "robots.blue.0.start.position.x: is missing",
+                "robots.blue.0.start.position.centre: there is no such field; there are x, y",
+            ),
+            (
+                {"robots": {"blue": [robot(start={"position": {"around": "ball", "baring": [0, 1]}})]}},
+                "robots.blue.0.start.position.baring: there is no such field; there are around, distance",
             ),
             (
                 {"robots": {"blue": [robot(), robot(1, start={"position": [-2.1, 0]})]}},
