@@ -16,14 +16,15 @@ def main(seconds: float = 60.0) -> None:
     scenario = load_scenario("six_v_six")
     ends = scenario.ends.model_copy(update={"time_limit": seconds})
     scenario = scenario.model_copy(update={"ends": ends})
-    match = Match(scenario, seed=1, world_factory=sim_world)
+    match = Match(scenario, seed=1, world_factory=sim_world, record="out/six_v_six.robobt.jsonl.gz")
     command = None
-    while match.tick():
-        game = match.game
-        if game.command is not command:
-            command = game.command
-            time = match.world.truth().time
-            print(f"{time:6.2f} s  {game.blue_score}:{game.yellow_score}  {command.name}")
+    with match:  # closes the recording
+        while match.tick():
+            game = match.game
+            if game.command is not command:
+                command = game.command
+                time = match.world.truth().time
+                print(f"{time:6.2f} s  {game.blue_score}:{game.yellow_score}  {command.name}")
     result = match.result()
     played = f"ball in play {result.in_play:.0%} of {result.time:.0f} s"
     print(f"\n{result.blue_score}:{result.yellow_score}, {played}")
@@ -31,6 +32,7 @@ def main(seconds: float = 60.0) -> None:
         tip = player.runner.root.tip()
         doing = "nothing" if tip is None else f"{tip.name}: {tip.feedback_message}"
         print(f"  {player.robot!s:9} {doing}")
+    print("robobt replay out/six_v_six.robobt.jsonl.gz   makes a page of it")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from robobt.world.state import ROBOT_RADIUS
 
 @skill
 class BallAtDefenseEdge(Skill):
-    """SUCCESS from when such a ball may be fetched until it is fetched or lost.
+    """SUCCESS from when a ball at the own defence area's edge may be fetched until it is or is lost.
 
     It may be fetched while it rests between a robot's diameter outside the area's
     edge and half a radius inside it, and no opponent is about as near to it as
