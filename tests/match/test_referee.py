@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, sin
 
 import pytest
 
@@ -468,7 +468,7 @@ def test_a_short_gap_does_not_start_the_metre_anew(story: Story) -> None:
     story.touch(1)
     for step in range(60):
         x = 0.03 * step
-        gap = 0.03 if step == 30 else 0.0
+        gap = 0.05 if step == 30 else 0.0
         story.ours(1, x - 0.097 - gap, 0.5, ball_contact=not gap).roll(x, 0.5)
     assert EventKind.DRIBBLING in story.kinds
 
@@ -614,6 +614,15 @@ def test_robots_too_near_the_ball_in_stop_are_noted(us: Team, gap: float, near: 
     assert story.events.count((EventKind.STOP_DISTANCE, us)) == (1 if near else 0)
 
 
+def test_a_robot_too_near_is_noted_once_a_stop(us: Team) -> None:
+    story = Story(us, OPEN.model_copy(update={"stop_time": 3.0, "kick_timeout": 0.5})).tick()
+    story.ours(1, 1.0, SPOT[1] - 0.3)
+    for times in (1, 2):
+        story.touch(3, story.them).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(4.0)
+        assert story.game.in_play
+        assert story.events.count((EventKind.STOP_DISTANCE, us)) == times
+
+
 def test_robots_at_the_speed_allowed_in_stop_are_not_noted(us: Team) -> None:
     story = Story(us, OPEN.model_copy(update={"stop_time": 4.0})).tick().ours(1, 0.0, 0.0, vx=1.5)
     story.touch(3, story.them).roll(1.0, TOUCH_LINE - 0.01).roll(1.0, TOUCH_LINE + 0.05).wait(3.0)
@@ -714,3 +723,29 @@ def test_a_ball_before_the_flat_front_is_measured_from_the_flat() -> None:
     ball = BallState(0.108, 0.0)
     assert hypot(ball.x, ball.y) < ROBOT_RADIUS + BALL_RADIUS
     assert not touches(robot, ball)
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.5708, -1.5708, 3.1416])
+def test_the_flat_front_turns_with_the_robot(heading: float) -> None:
+    robot = RobotState(1, 0.0, 0.0, heading=heading)
+    front = BallState(0.108 * cos(heading), 0.108 * sin(heading))
+    back = BallState(-0.108 * cos(heading), -0.108 * sin(heading))
+    assert not touches(robot, front)
+    assert touches(robot, back)
+
+
+def test_a_ball_well_aside_is_not_touched() -> None:
+    assert not touches(RobotState(1, 0.0, 0.0), BallState(0.05, 0.15))
+
+
+def test_where_the_world_says_nothing_contact_tells_who_touched_last(us: Team) -> None:
+    story = Story(us).tick().ours(4, 1.0, TOUCH_LINE - 0.1 - 0.11, heading=-1.5708)
+    story.roll(1.0, TOUCH_LINE - 0.1).roll(1.0, TOUCH_LINE + 0.05)
+    assert story.events == [(EventKind.BALL_OUT, us)]
+
+
+def test_on_a_narrow_field_a_free_kick_moves_out_before_the_area() -> None:
+    narrow = DIVISION_B.model_copy(update={"width": 3.8})
+    x, y = free_kick_spot(narrow, -3.9, 0.9)
+    assert abs(y) <= narrow.half_width - 0.2
+    assert x == pytest.approx(-(narrow.half_length - narrow.defense_depth - 1.0))
