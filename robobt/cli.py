@@ -8,10 +8,12 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial, wraps
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ParamSpec
 
@@ -30,6 +32,7 @@ _console = Console(highlight=False)
 _errors = Console(stderr=True, highlight=False)
 
 _RECORDING = ".robobt.jsonl.gz"
+_PAGE = ".html"
 _MAX_SEED = 2**53 - 1
 
 
@@ -83,6 +86,10 @@ def _main(
     ] = False,
 ) -> None:
     _log.setLevel(logging.DEBUG if debug else logging.ERROR)
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal or file that lacks a sign is shown a question mark for it.
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 @app.command()
@@ -164,12 +171,15 @@ def match(
         there = f"there is no trial {recorded}; they are 0 to {count - 1}"
         raise typer.BadParameter(there, param_hint="--record")
     if replay is None and record is not None:
-        replay = Path(f"{loaded.name}-{record}{_RECORDING}")
+        # The name is anybody's words: it may not lead to another folder.
+        name = re.sub(r"[^\w.-]+", "_", loaded.name)
+        replay = Path(f"{name}-{record}{_RECORDING}")
     if replay is not None:
+        _check_replay(replay, out)
         # Now, not when an hour of trials has been played.
         replay.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        page = replay is not None and replay.suffix == ".html"
+        page = replay is not None and replay.suffix.lower() == _PAGE
         recording = Path(folder) / f"trial{_RECORDING}" if page else replay
         with _Progress(loaded.name, count) as progress:
             run = run_trials(
@@ -216,10 +226,15 @@ def replay(
     ] = None,
 ) -> None:
     """Make a recorded match a page that opens in any browser and needs no network."""
+    from robobt.match.recording import load_recording
     from robobt.match.replay_html import write_html
 
+    loaded = load_recording(recording)
     stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
-    _say(f"Replay: {write_html(recording, html or recording.with_name(f'{stem}.html'))}")
+    page = recording.with_name(f"{stem}{_PAGE}") if html is None else html
+    if page.exists() and page.samefile(recording):
+        raise typer.BadParameter("is the recording itself; give another name", param_hint="--html")
+    _say(f"Replay: {write_html(loaded, page)}")
 
 
 @app.command()
@@ -451,6 +466,16 @@ def bench_tree(as_json: _Json = False) -> None:
         return
     for name, figure in figures.items():
         _say(f"{name.replace('_', ' '):32} {figure:8.2f}")
+
+
+def _check_replay(path: Path, out: Path | None) -> None:
+    """Refuse a name that is more likely another file's: what is there is replaced."""
+    ends = (_PAGE, _RECORDING, _RECORDING.removesuffix(".gz"))
+    if not path.name.lower().endswith(ends):
+        there = f"takes a name that ends in {', '.join(ends)}, not '{path}'"
+        raise typer.BadParameter(there, param_hint="--replay")
+    if out is not None and path.resolve() == out.resolve():
+        raise typer.BadParameter("the replay and the results need a file each", param_hint="--replay")
 
 
 class _Progress:

@@ -113,6 +113,28 @@ class TestMatch:
         robobt("match", scenario, "--record", "0")
         assert (tmp_path / "test-0.robobt.jsonl.gz").exists()
 
+    def test_a_name_with_a_path_in_it_leads_nowhere_else(
+        self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        scenario.write_text(yaml.safe_dump({**data(), "name": "../elsewhere/mine"}))
+        inside = tmp_path / "inside"
+        inside.mkdir()
+        monkeypatch.chdir(inside)
+        robobt("match", scenario, "--record", "0")
+        assert [path.name for path in inside.iterdir()] == [".._elsewhere_mine-0.robobt.jsonl.gz"]
+
+    @pytest.mark.parametrize("name", ["mine.yaml", "results.jsonl", "replay.mp4", "replay"])
+    def test_a_replay_does_not_replace_a_file_that_is_none(self, scenario: Path, tmp_path: Path, name: str):
+        before = scenario.read_text()
+        complained = complaint("match", scenario, "--replay", tmp_path / name, code=2)
+        assert "takes a name that ends in" in complained
+        assert [path.name for path in tmp_path.iterdir()] == [scenario.name]
+        assert scenario.read_text() == before
+
+    def test_replay_and_results_are_two_files(self, scenario: Path, tmp_path: Path):
+        both = tmp_path / "both.robobt.jsonl"
+        assert "a file each" in complaint("match", scenario, "--replay", both, "--out", both, code=2)
+
     def test_results_are_kept_and_a_run_goes_on_from_there(self, scenario: Path, tmp_path: Path):
         out = tmp_path / "results.jsonl"
         robobt("match", scenario, "-n", "2", "--out", out)
@@ -136,6 +158,17 @@ class TestReplay:
         assert robobt("replay", recording).stdout == f"Replay: {tmp_path / 'a.html'}\n"
         robobt("replay", recording, "--html", tmp_path / "b.html")
         assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
+
+    def test_a_page_does_not_replace_its_recording(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "a.robobt.jsonl.gz"
+        robobt("match", scenario, "--replay", recording)
+        before = recording.read_bytes()
+        assert "is the recording itself" in complaint("replay", recording, "--html", recording, code=2)
+        assert recording.read_bytes() == before
+
+    def test_a_folder_is_no_recording(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+        monkeypatch.chdir(tmp_path)
+        assert "Is a directory" in complaint("replay", ".")
 
 
 class TestLists:
@@ -180,6 +213,11 @@ class TestTree:
         printed = robobt("tree", "goalkeeper").stdout
         assert "ShotComing" in printed
 
+    def test_a_terminal_that_lacks_a_sign_is_shown_another(self):
+        result = CliRunner(charset="ascii").invoke(app, ["tree", "goalkeeper"])
+        assert result.exit_code == 0, result.output
+        assert "?" in result.stdout
+
     def test_it_is_drawn(self, tmp_path: Path):
         svg, dot = tmp_path / "tree.svg", tmp_path / "tree.dot"
         robobt("tree", "goalkeeper", "--svg", svg, "--dot", dot, "--param", "speed=0.5")
@@ -218,7 +256,6 @@ class TestBench:
         assert printed["real_time_factor_py_trees"] > 0
         assert printed["recording_share"] < 1
         assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
-
 
     def test_trees(self):
         printed = told("bench", "tree")
