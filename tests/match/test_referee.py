@@ -745,7 +745,7 @@ def test_where_the_world_says_nothing_contact_tells_who_touched_last(us: Team) -
 
 
 def test_on_a_narrow_field_a_free_kick_moves_out_before_the_area() -> None:
-    narrow = DIVISION_B.model_copy(update={"width": 3.8})
+    narrow = FieldGeometry(**{**DIVISION_B.model_dump(), "width": 3.8})
     x, y = free_kick_spot(narrow, -3.9, 0.9)
     assert abs(y) <= narrow.half_width - 0.2
     assert x == pytest.approx(-(narrow.half_length - narrow.defense_depth - 1.0))
