@@ -335,7 +335,7 @@ def test_values_of_all_kinds_are_written(root: Behaviour) -> None:
     assert tree_differences(root, again, vocabulary) == []
 
 
-@pytest.mark.parametrize("play", list(PLAYS))
+@pytest.mark.parametrize("play", [name for name in PLAYS if PLAYS[name].__module__.startswith("robobt.")])
 def test_every_play_that_ships_goes_through_xml_unchanged(play: str) -> None:
     root = PLAYS[play]()
     again = build_tree(read(tree_xml(root, play), PLAY_VOCABULARY), PLAY_VOCABULARY)
