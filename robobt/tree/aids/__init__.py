@@ -1,6 +1,23 @@
-"""Aids for writing and testing trees: a linter, see docs/trees.md."""
+"""Aids for writing and testing trees: a linter, scripts in the place of nodes; see docs/trees.md."""
 
 from robobt.tree.aids.linter import Finding, lint_tree
 from robobt.tree.aids.outcomes import Outcomes, outcomes
+from robobt.tree.aids.substitution import (
+    ScriptedLeaf,
+    Substitution,
+    read_substitutions,
+    substitute,
+    substitutions,
+)
 
-__all__ = ["Finding", "Outcomes", "lint_tree", "outcomes"]
+__all__ = [
+    "Finding",
+    "Outcomes",
+    "ScriptedLeaf",
+    "Substitution",
+    "lint_tree",
+    "outcomes",
+    "read_substitutions",
+    "substitute",
+    "substitutions",
+]
