@@ -52,6 +52,9 @@ class ResultsFile:
             "robobt": __version__,
         }
         self.path.parent.mkdir(parents=True, exist_ok=True)
+        # A pipe or a device is read for ever.
+        if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
+            raise ResultsFileError(f"{self.path}: not an ordinary file, so it holds nothing to go on from")
         kept = self._read(head) if self.path.exists() else 0
         if kept:
             with self.path.open("r+b") as file:

@@ -87,6 +87,13 @@ class TestOut:
         with pytest.raises(ResultsFileError, match="seed"):
             run_trials(scenario(), PlainWorld, 1, seed=9, out=out)
 
+    @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes have no names here")
+    def test_a_pipe_is_refused_instead_of_waited_for(self, tmp_path: Path):
+        pipe = tmp_path / "pipe"
+        os.mkfifo(pipe)
+        with pytest.raises(ResultsFileError, match="not an ordinary file"):
+            run_trials(scenario(), PlainWorld, 1, out=pipe)
+
 
 class _FailsAtTrial2(PlainWorld):
     def reset(self, placement: Any, seed: int) -> None:

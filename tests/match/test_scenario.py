@@ -99,6 +99,7 @@ class TestFiles:
             ("", "a scenario is a mapping of fields"),
             ("name: " + "[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), "line 1: nested deeper"),
             ("seed: " + "9" * 5000, "line 1: '9999"),
+            ("seed: 0x" + "f" * 5000, "line 1: '0xff"),
             ('seed: !!int ""', "line 1: '' is no int"),
             ("seed: !!bool x", "line 1: 'x' is no bool"),
             (b"name: \xff\xfe\x00", "is not text"),

@@ -109,7 +109,11 @@ class _PlainLoader(yaml.SafeLoader):
         if isinstance(node, yaml.SequenceNode):
             return Marked([self.marked(part) for part in node.value], line)
         try:
-            return Marked(self.construct_object(node), line)
+            value = self.construct_object(node)
+            if isinstance(value, int):
+                # In base 16 a number can have more digits than can be said, or written as JSON.
+                str(value)
+            return Marked(value, line)
         except (ValueError, OverflowError, IndexError, KeyError) as error:
             raise _problem(
                 f"{node.value!r:.40} is no {node.tag.rpartition(':')[2]}", node.start_mark
