@@ -559,7 +559,7 @@ def _goals(summary: Summary) -> Table:
 def _say_spread(spread: Any) -> str:
     if spread.mean is None:
         return "-"
-    return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (s² {spread.variance:.4f})")
+    return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (var. {spread.variance:.4f})")
 
 
 def _print_scenario(scenario: Scenario) -> None:
@@ -691,6 +691,8 @@ def _say_error(error: Exception) -> str:
     text = " ".join(str(error.args[0] if error.args else "").split())
     if isinstance(error, RecordingError | ResultsFileError | RunError | ScenarioError | TreeFileError):
         return text
+    if isinstance(error, KeyError | ValueError) and text:
+        return f"{text} (robobt --debug shows where)"
     return f"{type(error).__name__}: {text} (robobt --debug shows where)"
 
 
