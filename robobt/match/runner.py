@@ -223,6 +223,7 @@ def _receive(worker: _Worker) -> MatchResult | Exception:
 
 def _work(job: _Job, connection: Connection, trial: int | None) -> None:
     """A worker process: play what is asked for until told to stop."""
+    threading.Thread(target=_leave_with_the_run, daemon=True).start()
     # One core a worker; numeric libraries that start threads of their own would take the others'.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
@@ -240,6 +241,14 @@ def _work(job: _Job, connection: Connection, trial: int | None) -> None:
         except (EOFError, OSError):
             # The run is over without us.
             return
+
+
+def _leave_with_the_run() -> None:
+    """End this process as soon as the one that started it has; one that is killed tells nobody."""
+    run = multiprocessing.parent_process()
+    if run is not None:
+        run.join()
+        os._exit(1)
 
 
 @contextmanager

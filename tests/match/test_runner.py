@@ -1,6 +1,10 @@
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +141,48 @@ class TestFailures:
 def test_a_worker_that_dies_is_named_with_its_trial():
     with pytest.raises(RunError, match=r"a worker process died in trial \d \(exit code 3\)"):
         run_trials(scenario(), DyingWorld, 2, workers=2)
+
+
+_SLEEPY_RUN = """
+import os, sys, time
+from pathlib import Path
+from robobt.match import run_trials
+from tests.match.scripted import PlainWorld
+from tests.match.test_runner import scenario
+
+class SleepyWorld(PlainWorld):
+    def reset(self, placement, seed):
+        Path(sys.argv[1], str(os.getpid())).touch()
+        time.sleep(60)
+
+if __name__ == "__main__":
+    run_trials(scenario(), SleepyWorld, 2, workers=2)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs /proc to look for processes")
+def test_workers_end_with_a_run_that_is_killed(tmp_path: Path):
+    script, ids = tmp_path / "run.py", tmp_path / "ids"
+    script.write_text(_SLEEPY_RUN)
+    ids.mkdir()
+    root = Path(__file__).resolve().parents[2]
+    run = subprocess.Popen([sys.executable, script, ids], env={**os.environ, "PYTHONPATH": str(root)})
+    assert _soon(lambda: len(list(ids.iterdir())) == 2)
+    run.kill()
+    run.wait()
+    assert _soon(lambda: not any(_lives(path.name) for path in ids.iterdir()))
+
+
+def _soon(what: Callable[[], bool]) -> bool:
+    return any(what() or time.sleep(0.05) for _ in range(600))
+
+
+def _lives(process: str) -> bool:
+    # One that nobody has waited for yet has ended all the same.
+    try:
+        return Path("/proc", process, "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_a_world_that_cannot_be_sent_to_workers_is_said_so():
