@@ -7,6 +7,7 @@ from typing import Literal
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from py_trees.visitors import VisitorBase
 
 from robobt.tree.engine import abandon, compile_tree
 from robobt.tree.leaf import bind
@@ -79,6 +80,19 @@ class TreeRunner:
             return self.root.status
 
         self._tick = tick
+
+    def show_to(self, visitor: VisitorBase) -> None:
+        """From now on show every node that has been ticked to this py_trees visitor, and to no other."""
+        tick = compile_tree(self.root, visitor.run)
+
+        def visited() -> Status:
+            visitor.initialise()
+            try:
+                return tick()
+            finally:
+                visitor.finalise()
+
+        self._tick = visited
 
     def statuses(self) -> str:
         """One letter a node in the order of ``nodes``: S, F, R or - (not ticked)."""

@@ -1,7 +1,8 @@
-"""Aids for writing and testing trees: a linter, scripts in the place of nodes; see docs/trees.md."""
+"""Aids for writing and testing trees: a linter, substitution, statistics; see docs/trees.md."""
 
 from robobt.tree.aids.linter import Finding, lint_tree
 from robobt.tree.aids.outcomes import Outcomes, outcomes
+from robobt.tree.aids.statistics import NodeCounts, NodeStatistics
 from robobt.tree.aids.substitution import (
     ScriptedLeaf,
     Substitution,
@@ -12,6 +13,8 @@ from robobt.tree.aids.substitution import (
 
 __all__ = [
     "Finding",
+    "NodeCounts",
+    "NodeStatistics",
     "Outcomes",
     "ScriptedLeaf",
     "Substitution",
