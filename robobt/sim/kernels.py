@@ -331,6 +331,17 @@ def _carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: 
 
 
 @njit(cache=True)
+def _in_a_wall(x: float, y: float, walls: FloatArray, radius: float) -> bool:
+    """Whether a disc reaches into one of the boxes."""
+    for k in range(walls.shape[0]):
+        beside = max(walls[k, 0] - x, x - walls[k, 2], 0.0)
+        above = max(walls[k, 1] - y, y - walls[k, 3], 0.0)
+        if beside * beside + above * above < radius * radius:
+            return True
+    return False
+
+
+@njit(cache=True)
 def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: IntArray, a: int) -> None:
     """Remember who touches the ball; of several, one that did not touch it before."""
     ball = rows[first + robots]
@@ -482,6 +493,13 @@ def control_tick(
                     _hold(ball, velocity, robot, p, p[IDLE_HOLD], dt, pull)
             if glued >= 0:
                 _carry(ball, rows[first + glued], p, dt, move)
+                x = ball[0] + move[0] * dt - origins[a, 0]
+                y = ball[1] + move[1] * dt - origins[a, 1]
+                if _in_a_wall(x, y, walls, p[BALL_R]):
+                    # Glue knows no contacts and would carry the ball through; force gives way.
+                    _hold(ball, velocity, rows[first + glued], p, -1.0, dt, pull)
+                    glued = -1
+            if glued >= 0:
                 velocity[0] = spin[0] = move[0]
                 velocity[1] = spin[1] = move[1]
             elif held:

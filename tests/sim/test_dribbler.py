@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import pi, sqrt
 
 import pytest
 
-from robobt.sim import SimWorld, preset
-from robobt.world import DIVISION_A, Placement, RobotCommand
-from tests.sim.rig import IT, ME, ball_offset, holding, time_lost
+from robobt.sim import PRESETS, SimWorld, preset
+from robobt.world import DIVISION_A, DIVISION_B, Placement, RobotCommand
+from tests.sim.rig import IT, ME, ball_offset, holding, one_robot, time_lost
 
 
 def turning(rate: float) -> RobotCommand:
@@ -129,3 +129,14 @@ def test_a_glued_mouth_catches_an_arriving_ball(speed: float) -> None:
         world.act({ME: RobotCommand(dribbler=True)})
     assert world.truth().own[0].ball_contact
     assert world.truth().ball.speed < 0.1
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+def test_no_dribbler_carries_the_ball_through_the_side_of_a_goal(name: str) -> None:
+    side = DIVISION_B.goal_width / 2
+    pose, ball = (DIVISION_B.half_length + 0.02, side + 0.17, -pi / 2), (4.52, side + 0.05, 0, 0)
+    world = one_robot(name, pose, ball, field=DIVISION_B)
+    for _ in range(200):
+        world.act({ME: RobotCommand(5, dribbler=True)})
+        # The middle of the wall, from where it would be pushed out on the other side.
+        assert world.truth().ball.y > side + 0.01
