@@ -1,7 +1,7 @@
 """Aids for writing and testing trees: a linter, substitution, statistics; see docs/trees.md."""
 
 from robobt.tree.aids.linter import Finding, lint_tree
-from robobt.tree.aids.outcomes import Outcomes, outcomes
+from robobt.tree.aids.possible_outcomes import Outcomes, outcomes
 from robobt.tree.aids.statistics import NodeCounts, NodeStatistics
 from robobt.tree.aids.substitution import (
     ScriptedLeaf,

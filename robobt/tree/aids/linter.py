@@ -10,7 +10,7 @@ from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
 from py_trees.decorators import Repeat, Retry
 
-from robobt.tree.aids.outcomes import outcomes, sets_any
+from robobt.tree.aids.possible_outcomes import outcomes, sets_any
 from robobt.tree.nodes import TickDivider
 from robobt.tree.runner import node_path, preorder
 
@@ -48,7 +48,7 @@ def lint_tree(root: Behaviour, per_tick: Collection[str] = ("command",)) -> list
     | ``divided-motion`` | a ``TickDivider`` around what moves the robot |
 
     A condition is a node that may fail and of which no leaf ever runs or declares that it
-    writes to the store; which statuses a leaf can come to, :func:`~robobt.tree.aids.outcomes.outcomes` says.
+    writes to the store; which statuses a leaf can come to, :func:`~robobt.tree.aids.outcomes` says.
 
     Args:
         root: the tree, bound or not; it is not ticked.
