@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
+from functools import cache
 from statistics import fmean, variance
 from typing import Any
 
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
 from robobt.statistics import wilson_interval
+
+_AS_WRITTEN = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 @dataclass(slots=True, frozen=True)
@@ -23,6 +29,8 @@ class RobotResult:
         errors: ticks at which its tree failed and the robot was stopped.
         first_error: the first of them, None without one.
     """
+
+    __pydantic_config__ = _AS_WRITTEN
 
     go_to_ball: float | None = None
     shoot: float | None = None
@@ -54,6 +62,8 @@ class MatchResult:
         wall_time: how long it took to play [s]; the only figure that may differ between two runs.
     """
 
+    __pydantic_config__ = _AS_WRITTEN
+
     scenario: str
     trial: int
     seed: int
@@ -79,10 +89,18 @@ class MatchResult:
             ValueError: the data is not such a result.
         """
         try:
-            robots = {name: RobotResult(**figures) for name, figures in data["robots"].items()}
-            return cls(**{**{field.name: data[field.name] for field in fields(cls)}, "robots": robots})
-        except (KeyError, TypeError, AttributeError) as error:
+            return _adapter().validate_json(json.dumps(data, allow_nan=False), strict=True)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            place = ".".join([str(part) for part in first["loc"]])
+            raise ValueError(f"not the result of a trial: {place}: {first['msg']}") from error
+        except (TypeError, ValueError, RecursionError) as error:
             raise ValueError(f"not the result of a trial: {error}") from error
+
+
+@cache
+def _adapter() -> TypeAdapter[MatchResult]:
+    return TypeAdapter(MatchResult)
 
 
 @dataclass(slots=True, frozen=True)

@@ -14,6 +14,7 @@ from typing import Any, Self, TextIO
 from robobt import __version__
 from robobt.match.results import MatchResult
 from robobt.match.scenario import Scenario
+from robobt.plays.files import is_play_file
 
 FORMAT = "robobt-results"
 
@@ -112,4 +113,9 @@ class ResultsFile:
 def _digest(scenario: Scenario) -> str:
     """Equal for scenarios that play the same; how often and with which seed is not part of it."""
     text = scenario.model_dump_json(exclude={"trials", "seed", "description"})
-    return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+    digest = hashlib.blake2b(text.encode(), digest_size=16)
+    for _, setup in scenario.robots:
+        if is_play_file(setup.play):
+            # Its words, not only its name: whoever edits a tree plays another match.
+            digest.update(Path(setup.play).read_bytes())
+    return digest.hexdigest()

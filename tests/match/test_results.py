@@ -82,7 +82,17 @@ def test_a_result_survives_json():
 
 
 @pytest.mark.parametrize(
-    "broken", [{}, {"robots": []}, {**trial(0).to_json(), "robots": {"blue 0": {"x": 1}}}]
+    "broken",
+    [
+        {},
+        {"robots": []},
+        {**trial(0).to_json(), "robots": {"blue 0": {"x": 1}}},
+        {**trial(0).to_json(), "robots": {"blue 0": {"kicks": "many"}}},
+        {**trial(0).to_json(), "time": None},
+        {**trial(0).to_json(), "time": float("inf")},
+        {**trial(0).to_json(), "outcome": []},
+    ],
+    ids=str,
 )
 def test_what_is_no_result_is_refused(broken: dict[str, object]):
     with pytest.raises(ValueError, match="not the result of a trial"):
@@ -128,6 +138,18 @@ class TestResultsFile:
             ResultsFile(path, scenario_from(data(period=0.03), "test.yaml"), 0)
         with pytest.raises(ResultsFileError, match="scenario 'test'"):
             ResultsFile(path, scenario_from(data(name="other"), "test.yaml"), 0)
+
+    def test_another_tree_in_the_same_file_is_another_scenario(self, tmp_path: Path):
+        tree, path = tmp_path / "tree.yaml", tmp_path / "results.jsonl"
+        start = {"position": [-1.0, 0.0]}
+        robots = {"blue": [{"number": 0, "play": str(tree), "start": start}]}
+        scenario = data(robots=robots)
+        tree.write_text("play: mine\ntree: Stop\n")
+        with ResultsFile(path, scenario_from(scenario, "test.yaml"), 0) as file:
+            file.add(trial(0))
+        tree.write_text("play: mine\ntree: GoToBall\n")
+        with pytest.raises(ResultsFileError, match="another version of the scenario"):
+            ResultsFile(path, scenario_from(scenario, "test.yaml"), 0)
 
     @pytest.mark.parametrize("content", ["", "hello\n", "[]\n", '{"format": "x"}\n', "{}"])
     def test_another_file_is_not_overwritten(self, tmp_path: Path, content: str):
