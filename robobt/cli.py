@@ -341,6 +341,7 @@ def tree(
     ] = None,
 ) -> None:
     """Show the tree of a play, or write it to a file."""
+    from robobt.match.problems import naming
     from robobt.plays import PLAYS
     from robobt.plays.files import find_play, is_play_file, tree_xml, tree_yaml
     from robobt.tree.drawing import tree_dot, tree_svg, tree_text
@@ -362,7 +363,8 @@ def tree(
     ]
     for path, write in writers:
         if path is not None:
-            path.write_text(write(), encoding="utf-8")
+            with naming(path):
+                path.write_text(write(), encoding="utf-8")
             _say(f"Tree: {path}")
     if all(path is None for path, _ in writers):
         _say(tree_text(root))

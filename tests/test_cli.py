@@ -135,6 +135,13 @@ class TestMatch:
         both = tmp_path / "both.robobt.jsonl"
         assert "a file each" in complaint("match", scenario, "--replay", both, "--out", both, code=2)
 
+    @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
+    @pytest.mark.parametrize("name", ["full.html", "full.robobt.jsonl", "full.robobt.jsonl.gz"])
+    def test_a_full_disk_is_told_with_the_file(self, scenario: Path, tmp_path: Path, name: str):
+        path = tmp_path / name
+        path.symlink_to("/dev/full")
+        assert complaint("match", scenario, "--replay", path) == f"robobt: {path}: No space left on device\n"
+
     def test_results_are_kept_and_a_run_goes_on_from_there(self, scenario: Path, tmp_path: Path):
         out = tmp_path / "results.jsonl"
         robobt("match", scenario, "-n", "2", "--out", out)

@@ -42,6 +42,7 @@ from py_trees.common import Status
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from robobt import __version__
+from robobt.match.problems import naming
 from robobt.tree import Parallel, Selector, Sequence, TreeRunner
 from robobt.tree.drawing import NodeKind, describe
 from robobt.world.command import RobotCommand
@@ -220,7 +221,11 @@ class Recorder:
         self._deflate = zlib.compressobj(_EFFORT, wbits=31) if self.path.suffix == ".gz" else None
         start = {"format": FORMAT, "version": VERSION, **self.header.model_dump(mode="json")}
         self._lines.append(_encode(start))
-        self._flush()
+        try:
+            self._flush()
+        except OSError:
+            self._release()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -340,17 +345,22 @@ class Recorder:
         self._packed.clear()
         if self._deflate is not None:
             data = self._deflate.compress(data) + self._deflate.flush(zlib.Z_SYNC_FLUSH)
-        self._file.write(data)
-        self._file.flush()
+        with naming(self.path):
+            self._file.write(data)
+            self._file.flush()
 
     def _release(self) -> None:
         if self._file is None:
             return
-        self._flush()
-        if self._deflate is not None:
-            self._file.write(self._deflate.flush())
-        self._file.close()
-        self._file = None
+        file = self._file
+        try:
+            self._flush()
+            if self._deflate is not None:
+                file.write(self._deflate.flush())
+        finally:
+            self._file = None
+            with naming(self.path):
+                file.close()
 
 
 class _TreeWatch:

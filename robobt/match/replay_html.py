@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from robobt.match.problems import naming
 from robobt.match.recording import Recording, load_recording
 from robobt.world.game import GameState
 from robobt.world.geometry import FloatArray
@@ -40,7 +41,8 @@ def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
     path = Path(path)
-    path.write_text(replay_html(recording), encoding="utf-8")
+    with naming(path):
+        path.write_text(replay_html(recording), encoding="utf-8")
     return path
 
 

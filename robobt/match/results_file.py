@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import Any, Self, TextIO
 
 from robobt import __version__
+from robobt.match.problems import naming
 from robobt.match.results import MatchResult
 from robobt.match.scenario import Scenario
 from robobt.plays.files import is_play_file
@@ -62,7 +63,11 @@ class ResultsFile:
                 file.truncate(kept)
         self._file: TextIO = self.path.open("a" if kept else "w", encoding="utf-8")
         if not kept:
-            self._write(head)
+            try:
+                self._write(head)
+            except OSError:
+                self.__exit__(None, None, None)
+                raise
 
     def __enter__(self) -> Self:
         return self
@@ -70,15 +75,17 @@ class ResultsFile:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._file.close()
+        with naming(self.path):
+            self._file.close()
 
     def add(self, result: MatchResult) -> None:
         """Append a result; it is on disk when this returns."""
         self._write(result.to_json())
 
     def _write(self, line: dict[str, Any]) -> None:
-        self._file.write(json.dumps(line, separators=(",", ":")) + "\n")
-        self._file.flush()
+        with naming(self.path):
+            self._file.write(json.dumps(line, separators=(",", ":")) + "\n")
+            self._file.flush()
 
     def _read(self, head: dict[str, Any]) -> int:
         """Take in what the file holds; the length of it that is sound, in bytes."""
