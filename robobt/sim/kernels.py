@@ -12,7 +12,9 @@ A ball kicked from rest then rolls from ``switch_share`` of its first speed on.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, hypot, pi, sin, sqrt
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -23,6 +25,8 @@ from robobt.sim.chipmunk import call_each_body, call_step
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Columns of a command.
 VX, VY, OMEGA, KICK, ON_CONTACT, DRIBBLE = range(6)
@@ -76,7 +80,17 @@ _GLUE_GAP = 2e-4
 """Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
 
 
-@njit(cache=True)
+def compiled(function: Function) -> Function:
+    """Decorator: compile on first use, and keep what was compiled where a folder can be written to."""
+    try:
+        made: Any = njit(cache=True)(function)
+    except RuntimeError:
+        # A read-only installation, run by somebody without a home: compile anew each time.
+        made = njit(function)
+    return cast(Function, made)
+
+
+@compiled
 def _drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> None:
     """Move a robot's velocity towards its command within its limits."""
     c, s = cos(row[2]), sin(row[2])
@@ -107,7 +121,7 @@ def _drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> No
     row[5] += min(max(turn, -most), most)
 
 
-@njit(cache=True)
+@compiled
 def _friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
     """Let a free ball slide and roll for ``dt``; ``move`` receives its mean velocity."""
     start_x, start_y = velocity[0], velocity[1]
@@ -145,7 +159,7 @@ def _friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, 
     move[1] = moved_y / dt
 
 
-@njit(cache=True)
+@compiled
 def _enters(
     start: float, step: float, low: float, high: float, t_in: float, t_out: float
 ) -> tuple[float, float]:
@@ -160,7 +174,7 @@ def _enters(
     return max(t_in, first), min(t_out, second)
 
 
-@njit(cache=True)
+@compiled
 def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tuple[float, float]:
     """When p + t * d enters and leaves the disc of radius ``reach`` around the origin; (2, -1) if never."""
     a = dx * dx + dy * dy
@@ -172,7 +186,7 @@ def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tup
     return (-b - root) / a, (-b + root) / a
 
 
-@njit(cache=True)
+@compiled
 def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius: float) -> float:
     """When in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
     first = 1.0
@@ -193,7 +207,7 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
     return first
 
 
-@njit(cache=True)
+@compiled
 def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
     """When in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
     radius, round_, face = p[BALL_R], p[ROBOT_R], p[FACE]
@@ -214,7 +228,7 @@ def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> flo
     return first
 
 
-@njit(cache=True)
+@compiled
 def _sweep(
     rows: FloatArray,
     first: int,
@@ -252,7 +266,7 @@ def _sweep(
     return share
 
 
-@njit(cache=True)
+@compiled
 def _hold(
     ball: FloatArray,
     velocity: FloatArray,
@@ -286,7 +300,7 @@ def _hold(
     pull[1] += s * want_along + c * want_across
 
 
-@njit(cache=True)
+@compiled
 def _in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -> bool:
     """Whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
     px, py = ball[0] - robot[0], ball[1] - robot[1]
@@ -299,7 +313,7 @@ def _in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) 
     return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
 
 
-@njit(cache=True)
+@compiled
 def _kick(velocity: FloatArray, spin: FloatArray, robot: FloatArray, speed: float, p: FloatArray) -> None:
     """Send the ball along the heading; its sideways velocity stays, its spin is lost."""
     c, s = cos(robot[2]), sin(robot[2])
@@ -315,7 +329,7 @@ def _kick(velocity: FloatArray, spin: FloatArray, robot: FloatArray, speed: floa
     spin[0] = spin[1] = 0.0
 
 
-@njit(cache=True)
+@compiled
 def _carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
     """The velocity that keeps the ball where it sits in the mouth while the robot moves."""
     c, s = cos(robot[2]), sin(robot[2])
@@ -330,7 +344,7 @@ def _carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: 
     move[1] = (y - ball[1]) / dt
 
 
-@njit(cache=True)
+@compiled
 def _in_a_wall(x: float, y: float, walls: FloatArray, radius: float) -> bool:
     """Whether a disc reaches into one of the boxes."""
     for k in range(walls.shape[0]):
@@ -341,7 +355,7 @@ def _in_a_wall(x: float, y: float, walls: FloatArray, radius: float) -> bool:
     return False
 
 
-@njit(cache=True)
+@compiled
 def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: IntArray, a: int) -> None:
     """Remember who touches the ball; of several, one that did not touch it before."""
     ball = rows[first + robots]
@@ -360,7 +374,7 @@ def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch:
         touch[a] = found
 
 
-@njit(cache=True)
+@compiled
 def _report(row: FloatArray, origin: FloatArray, out: FloatArray) -> None:
     """A robot's row relative to its arena, heading in (-pi, pi]."""
     out[0] = row[0] - origin[0]
@@ -372,7 +386,7 @@ def _report(row: FloatArray, origin: FloatArray, out: FloatArray) -> None:
     out[5] = row[5]
 
 
-@njit(cache=True)
+@compiled
 def report(
     rows: FloatArray,
     origins: FloatArray,
@@ -398,7 +412,7 @@ def report(
         balls_out[a, 3] = ball_velocity[a, 1]
 
 
-@njit(cache=True)
+@compiled
 def control_tick(
     handles: NDArray[np.uint64],
     cursor: NDArray[np.int32],
