@@ -27,7 +27,7 @@ from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import Decorator, EternalGuard, OneShot
 from py_trees.trees import BehaviourTree
 
-from robobt.tree.leaf import Leaf
+from robobt.tree.leaf import Leaf, no_status
 
 _log = logging.getLogger(__name__)
 
@@ -542,7 +542,13 @@ def _has_method_of(cls: Any, node: Behaviour, method: str) -> bool:
 
 
 def not_a_status(node: Behaviour, status: object) -> Status:
-    """INVALID, after py_trees' complaint that ``update`` returned something else."""
+    """INVALID, after py_trees' complaint that ``update`` returned something else.
+
+    Raises:
+        TypeError: the node is a :class:`Leaf`, which has to return a status.
+    """
+    if isinstance(node, Leaf):
+        raise no_status(status)
     node.logger.error(f"A behaviour returned an invalid status, setting to INVALID [{status}][{node.name}]")
     return _I
 

@@ -113,8 +113,15 @@ class Leaf(Behaviour, Bound[StoreT]):
         self.on_start()
 
     def update(self) -> Status:
-        """Called by py_trees; override :meth:`on_running` instead."""
-        return self.on_running()
+        """Called by py_trees; override :meth:`on_running` instead.
+
+        Raises:
+            TypeError: ``on_running`` returned no status.
+        """
+        status = self.on_running()
+        if not isinstance(status, Status):
+            raise no_status(status)
+        return status
 
     def terminate(self, new_status: Status) -> None:
         """Called by py_trees; override :meth:`on_done` or :meth:`on_interrupt` instead.
@@ -126,6 +133,12 @@ class Leaf(Behaviour, Bound[StoreT]):
             self.on_done(new_status)
         elif self.status is Status.RUNNING:
             self.on_interrupt()
+
+
+def no_status(answer: object) -> TypeError:
+    """What a leaf is told whose ``on_running`` returned something else than a status."""
+    forgotten = " (a forgotten return?)" if answer is None else ""
+    return TypeError(f"on_running returned {type(answer).__name__}, not a Status{forgotten}")
 
 
 def bind(root: Behaviour, store: object) -> None:

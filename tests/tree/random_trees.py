@@ -202,7 +202,9 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
         return lambda log, word: behaviours.Periodic(name, period)
     if kind > 8:
         cls = rng.choice(LEAVES)
-        return lambda log, word: cls(name, script, log)
+        # The package's own leaves raise where they return no status.
+        sound = [status for status in script if isinstance(status, Status)]
+        return lambda log, word: cls(name, sound, log)
     if kind == 7:
         return lambda log, word: Wait(name, seconds=0.1 * period)
     return lambda log, word: rng_free_stock(name, period)

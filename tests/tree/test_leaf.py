@@ -136,3 +136,22 @@ def test_a_name_is_taken_once() -> None:
     assert list(registry) == ["one"]
     assert "one" in registry
     assert len(registry) == 1
+
+
+@pytest.mark.parametrize("answer", [None, True, "SUCCESS"])
+@pytest.mark.parametrize("hooked", [False, True])
+def test_a_leaf_that_returns_no_status_is_an_error_with_its_path(answer: object, hooked: bool) -> None:
+    class Forgetful(Leaf[None]):
+        def on_running(self) -> Status:
+            return answer  # type: ignore[return-value]
+
+    if hooked:
+        Forgetful.on_start = lambda self: None  # type: ignore[method-assign]
+    for root in (Forgetful("f"), Sequence("f", memory=False, children=[Forgetful("inner")])):
+        runner = TreeRunner(root, None)
+        assert runner.tick() is Status.INVALID
+        assert runner.error is not None
+        assert f"TypeError: on_running returned {type(answer).__name__}, not a Status" in runner.error
+        assert runner.error.startswith("f/inner: " if root.children else "f: ")
+        with pytest.raises(TypeError, match="not a Status"):
+            root.tick_once()
