@@ -81,13 +81,17 @@ class RobotSetup(Part):
     @model_validator(mode="after")
     def _playable(self) -> Self:
         try:
-            check_tree(self.build_tree(), Store, GIVEN)
+            tree, another = self.build_tree(), self.build_tree()
+            check_tree(tree, Store, GIVEN)
         except ParameterError as error:
             raise FieldError(f"params.{error.parameter}", str(error)) from error
         except (TreeFileError, WiringError) as error:
             raise FieldError("play", message_of(error)) from error
         except Exception as error:
             raise FieldError("params", message_of(error)) from error
+        if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
+            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
+            raise FieldError("play", f"{self.play} {problem}")
         return self
 
     def build_tree(self) -> Behaviour:

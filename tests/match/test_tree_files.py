@@ -8,6 +8,9 @@ import pytest
 import yaml
 
 from robobt.match import ScenarioError, load_scenario, run_trials
+from robobt.match.scenario import scenario_from
+from robobt.plays import PLAYS
+from robobt.skills import Stop
 from robobt.worlds import sim_world
 
 TREE = """
@@ -49,3 +52,11 @@ def test_a_wrong_file_is_named_with_its_line(tmp_path: Path) -> None:
 def test_a_need_that_nothing_meets_is_told_before_the_match(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"robots.blue.0.play: .*kicker/DribbleTo: reads 'target'"):
         load_scenario(scenario(tmp_path, "DribbleTo"))
+
+
+def test_a_play_that_gives_every_robot_the_same_tree_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    shared = Stop()
+    monkeypatch.setitem(PLAYS._entries, "shared", lambda: shared)
+    robot = {"number": 1, "play": "shared", "start": {"position": [-1.0, 0.0]}}
+    with pytest.raises(ScenarioError, match=r"robots.blue.0.play: shared returns the same nodes each time"):
+        scenario_from({"robots": {"blue": [robot]}, "ends": {"time_limit": 1.0}}, "here")
