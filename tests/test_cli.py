@@ -324,3 +324,9 @@ class TestErrors:
 
 def test_models_lie_where_the_package_looks_for_them():
     assert models_folder().is_dir()
+
+
+def test_the_package_runs_as_the_command_does():
+    run = subprocess.run([sys.executable, "-m", "robobt", "--version"], capture_output=True, text=True)
+    assert run.stdout == f"robobt {__version__}\n"
+    assert run.returncode == 0

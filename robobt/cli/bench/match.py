@@ -1,0 +1,59 @@
+"""``robobt bench match``: measures a whole match."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import MAX_SEED, Json, errors, one_line_errors, print_json, say
+
+
+def add_to(bench: typer.Typer) -> None:
+    """Enter the command."""
+    bench.command("match")(bench_match)
+
+
+@one_line_errors
+def bench_match(
+    scenario: Annotated[
+        str, typer.Argument(help="A scenario file or the name of a bundled one.")
+    ] = "six_v_six",
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=1, max=3600, help="Simulated time to play.")
+    ] = 60.0,
+    seed: Annotated[
+        int | None, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="By default the scenario's.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Measure a whole match on one core: every robot's tree, the physics and the recording.
+
+    The match is played three times over in turns: recorded, unrecorded, and
+    with the trees ticked by py_trees itself.
+
+    Keys of --json: scenario, seed, robots (how many), period, simulated_s,
+    wall_s (of the recorded match), real_time_factor (of it),
+    real_time_factor_unrecorded, real_time_factor_py_trees (unrecorded),
+    speedup_vs_py_trees, recording_share (of the recorded match's time), in_play
+    (share of the time with the ball in play), ticks, errors (ticks a tree
+    failed).
+    """
+    from robobt.match import load_scenario
+    from robobt.match.bench import bench_match as measure
+    from robobt.worlds import sim_world
+
+    loaded = load_scenario(scenario)
+    with errors.status(f"playing {escape(loaded.name)}"):
+        figures = measure(loaded, sim_world, seconds, seed)
+    if as_json:
+        print_json(figures)
+        return
+    say(
+        f"{loaded.name}: {figures['simulated_s']:.1f} s of {figures['robots']} robots at "
+        f"{1 / loaded.period:.0f} Hz in {figures['wall_s']:.2f} s: "
+        f"{figures['real_time_factor']:.1f} times real time, of which recording takes "
+        f"{figures['recording_share']:.1%}; ball in play {figures['in_play']:.0%} of the time. "
+        f"With py_trees' own ticking {figures['real_time_factor_py_trees']:.1f} times real time."
+    )

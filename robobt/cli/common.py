@@ -1,0 +1,143 @@
+"""What the commands share: consoles, one-line errors, options, tables and bars.
+
+Nothing heavy may be imported at the top of any module of this package:
+``robobt --help`` loads them all. A command imports what it needs itself.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from typing import Annotated, Any, ParamSpec
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+console = Console(highlight=False)
+errors = Console(stderr=True, highlight=False)
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+"""The option of every command that can print its figures for another program."""
+
+RECORDING = ".robobt.jsonl.gz"
+"""How the name of a recorded match ends."""
+
+PAGE = ".html"
+
+MAX_SEED = 2**53 - 1
+"""The largest seed that JSON keeps exactly."""
+
+log = logging.getLogger("robobt")
+_P = ParamSpec("_P")
+
+
+def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
+    """Turns whatever goes wrong in a command into one line on stderr and exit code 1."""
+
+    @wraps(command)
+    def guarded(*args: _P.args, **kwargs: _P.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except (typer.Exit, typer.Abort, typer.BadParameter, BrokenPipeError):
+            raise
+        except Exception as error:
+            if log.isEnabledFor(logging.DEBUG):
+                raise
+            errors.print(f"[red]robobt:[/red] {escape(_say_error(error))}", soft_wrap=True)
+            raise typer.Exit(1) from error
+
+    return guarded
+
+
+def _say_error(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    text = " ".join(str(error.args[0] if error.args else "").split())
+    # An error of robobt's own was written for whoever reads this line; any other may be a fault of ours.
+    if type(error).__module__.startswith("robobt."):
+        return text
+    if isinstance(error, KeyError | ValueError) and text:
+        return f"{text} (robobt --debug shows where)"
+    return f"{type(error).__name__}: {text} (robobt --debug shows where)"
+
+
+def unknown(kind: str, name: str | None, registry: Iterable[str]) -> typer.BadParameter:
+    """The usage error for a name that is none, with the names there are."""
+    return typer.BadParameter(f"no {kind} is called {name!r}; there are {', '.join(registry)}")
+
+
+def parse_assignments(texts: Iterable[str], option: str) -> dict[str, Any]:
+    """What ``name=value`` texts say, the values read as YAML; ``option`` is named in the usage error."""
+    from robobt.match.yaml_reader import YamlError, parse_yaml
+
+    given: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name:
+            raise typer.BadParameter(f"takes name=value, not {text!r}", param_hint=option)
+        try:
+            given[name] = parse_yaml(value)
+        except YamlError as error:
+            raise typer.BadParameter(f"{name}: {error}", param_hint=option) from error
+    return given
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def say(text: str) -> None:
+    """Print a line as it is, however long."""
+    console.print(escape(text), soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    """Print a line on stderr."""
+    errors.print(f"[yellow]robobt:[/yellow] {escape(text)}", soft_wrap=True)
+
+
+def print_json(data: Mapping[str, Any]) -> None:
+    """Print one JSON object, and nothing that JSON has not (NaN, infinity: ValueError)."""
+    sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
+
+
+def table(*columns: str) -> Table:
+    """A table without lines, to be printed on ``console``."""
+    return Table(*columns, box=None, padding=(0, 2, 0, 0))
+
+
+class Progress:
+    """A bar on stderr for ``total`` steps; nothing where stderr is no terminal."""
+
+    def __init__(self, name: str, total: int) -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+        from rich.progress import Progress as Bars
+
+        self._bars = Bars(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(),
+            console=errors,
+            transient=True,
+            disable=not errors.is_terminal,
+        )
+        self._bar = self._bars.add_task(escape(name), total=total)
+
+    def __enter__(self) -> Progress:
+        self._bars.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bars.stop()
+
+    def advance(self, steps: int = 1) -> None:
+        """So many more are done."""
+        self._bars.advance(self._bar, steps)

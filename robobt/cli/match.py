@@ -1,0 +1,222 @@
+"""``robobt match``: plays a scenario and prints what came out."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from robobt.cli.common import (
+    MAX_SEED,
+    PAGE,
+    RECORDING,
+    Json,
+    Progress,
+    console,
+    cores,
+    errors,
+    one_line_errors,
+    print_json,
+    say,
+    table,
+)
+
+if TYPE_CHECKING:
+    from robobt.match import Run, Scenario, Summary
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    app.command()(match)
+
+
+@one_line_errors
+def match(
+    scenario: Annotated[
+        str, typer.Argument(help="A scenario file, or the name of a bundled one (see 'robobt scenarios').")
+    ],
+    trials: Annotated[
+        int | None,
+        typer.Option(
+            "--trials", "-n", min=1, max=100_000, help="How often; by default what the scenario says."
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers", "-w", min=1, max=256, help="Processes; by default one a core, for 4 trials each."
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            "--seed",
+            "-s",
+            min=0,
+            max=MAX_SEED,
+            help="What all randomness follows from; by default the scenario's.",
+        ),
+    ] = None,
+    replay: Annotated[
+        Path | None,
+        typer.Option(
+            "--replay",
+            help="Record a trial to this file: a page for the browser (.html) or a recording for "
+            f"'robobt replay' ({RECORDING}).",
+        ),
+    ] = None,
+    record: Annotated[
+        int | None,
+        typer.Option(
+            "--record",
+            min=0,
+            help=f"Which trial to record, from 0; without --replay to SCENARIO-N{RECORDING}.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            help="Append each trial's result to this file (JSON lines) as it finishes; "
+            "a run that was stopped goes on from there.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Play a scenario, once or many times, and print what came out.
+
+    Ctrl-C stops the run; the trials that are finished are kept and printed.
+
+    Keys of --json: scenario, seed, trials (played), requested, interrupted;
+    outcomes: for each outcome count, rate, low and high (95 % Wilson interval);
+    goals: for blue and yellow total, and trials: in how many it scored (count, rate, low, high);
+    time: seconds a trial; in_play: share of the time with the ball in play;
+    robots: for each robot go_to_ball, shoot and total (seconds) and kicks, each
+    with n, mean and variance, errors (ticks its tree failed) and first_error;
+    real_time_factor: simulated over computing time, a core; trace: a hash that
+    is equal for equal runs; replay: the file written, or null.
+    """
+    from robobt.match import load_scenario, run_trials, summarise
+    from robobt.worlds import sim_world
+
+    loaded = load_scenario(scenario)
+    # The simulator's settings are checked before any worker is started.
+    sim_world(loaded)
+    count = loaded.trials if trials is None else trials
+    recorded = 0 if record is None else record
+    if recorded >= count:
+        there = f"there is no trial {recorded}; they are 0 to {count - 1}"
+        raise typer.BadParameter(there, param_hint="--record")
+    if replay is None and record is not None:
+        # The name is anybody's words: it may not lead to another folder.
+        name = re.sub(r"[^\w.-]+", "_", loaded.name)
+        replay = Path(f"{name}-{record}{RECORDING}")
+    if replay is not None:
+        _check_replay(replay, out)
+        # Now, not when an hour of trials has been played.
+        replay.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        page = replay is not None and replay.suffix.lower() == PAGE
+        recording = Path(folder) / f"trial{RECORDING}" if page else replay
+        with Progress(loaded.name, count) as progress:
+            run = run_trials(
+                loaded,
+                sim_world,
+                count,
+                min(cores(), -(-count // 4)) if workers is None else workers,
+                seed,
+                out,
+                {} if recording is None else {recorded: recording},
+                lambda _: progress.advance(),
+            )
+        if not run.results:
+            errors.print("robobt: stopped before the first trial was finished")
+            raise typer.Exit(130)
+        written = replay if any(result.trial == recorded for result in run.results) else None
+        if page and written is not None:
+            from robobt.match.replay_html import write_html
+
+            write_html(recording, written)  # type: ignore[arg-type]
+    summary = summarise(run.results, loaded.seed if seed is None else seed)
+    if as_json:
+        extra = {
+            "requested": count,
+            "interrupted": run.interrupted,
+            "replay": None if written is None else str(written),
+        }
+        print_json({**summary.to_json(), **extra})
+    else:
+        _print_summary(summary, loaded, run, count)
+        if written is not None:
+            say(f"Replay of trial {recorded}: {written}")
+    if run.interrupted:
+        raise typer.Exit(130)
+
+
+def _check_replay(path: Path, out: Path | None) -> None:
+    """Refuse a name that is more likely another file's: what is there is replaced."""
+    ends = (PAGE, RECORDING, RECORDING.removesuffix(".gz"))
+    if not path.name.lower().endswith(ends):
+        there = f"takes a name that ends in {', '.join(ends)}, not '{path}'"
+        raise typer.BadParameter(there, param_hint="--replay")
+    if out is not None and path.resolve() == out.resolve():
+        raise typer.BadParameter("the replay and the results need a file each", param_hint="--replay")
+
+
+def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: int) -> None:
+    played = f"{summary.trials} trial{'s' if summary.trials > 1 else ''}"
+    stopped = f" of {requested} (stopped)" if run.interrupted else ""
+    console.print(f"[bold]{escape(summary.scenario)}[/bold]: {played}{stopped}, seed {summary.seed}")
+    listed = table("outcome", "trials", "rate", "95 % interval")
+    for outcome, rate in summary.outcomes.items():
+        listed.add_row(
+            outcome.replace("_", " "),
+            str(rate.count),
+            f"{rate.rate:.1%}",
+            f"{rate.low:.1%} to {rate.high:.1%}",
+        )
+    console.print(listed)
+    console.print(_times(summary) if scenario.referee is None else _goals(summary))
+    goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
+    say(
+        f"Goals: {goals}. Mean time {summary.time.mean:.1f} s, ball in play {summary.in_play:.0%} of it. "
+        f"{summary.real_time_factor:.0f} times real time a core. Trace {summary.trace}."
+    )
+    for name, robot in summary.robots.items():
+        if robot.errors:
+            errors.print(
+                f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; "
+                f"the first: {escape(str(robot.first_error))}",
+                soft_wrap=True,
+            )
+
+
+def _times(summary: Summary) -> Table:
+    listed = table("robot", "GoToBall, s", "Shoot, s", "total, s", "kicks")
+    for name, robot in summary.robots.items():
+        if robot.go_to_ball.n:
+            spreads = [robot.go_to_ball, robot.shoot, robot.total]
+            kicks = robot.kicks.mean or 0.0
+            listed.add_row(name, *[_say_spread(spread) for spread in spreads], f"{kicks:.1f}")
+    return listed
+
+
+def _goals(summary: Summary) -> Table:
+    listed = table("team", "goals a trial", "trials with a goal", "kicks a trial")
+    for team, goals in summary.goals.items():
+        own = [robot for name, robot in summary.robots.items() if name.startswith(team)]
+        kicks = sum(robot.kicks.mean or 0.0 for robot in own)
+        scored = f"{goals.trials.rate:.0%} ({goals.trials.low:.0%} to {goals.trials.high:.0%})"
+        listed.add_row(team, f"{goals.total / summary.trials:.2f}", scored, f"{kicks:.1f}")
+    return listed
+
+
+def _say_spread(spread: Any) -> str:
+    if spread.mean is None:
+        return "-"
+    return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (var. {spread.variance:.4f})")

@@ -1,0 +1,35 @@
+"""``robobt replay``: makes recordings pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robobt.cli.common import PAGE, RECORDING, one_line_errors, say
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    app.command()(replay)
+
+
+@one_line_errors
+def replay(
+    recording: Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}, *.robobt.jsonl).")],
+    html: Annotated[
+        Path | None,
+        typer.Option("--html", help="The page to write; by default beside the recording, named .html."),
+    ] = None,
+) -> None:
+    """Make a recorded match a page that opens in any browser and needs no network."""
+    from robobt.match.recording import load_recording
+    from robobt.match.replay_html import write_html
+
+    loaded = load_recording(recording)
+    stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
+    page = recording.with_name(f"{stem}{PAGE}") if html is None else html
+    if page.exists() and page.samefile(recording):
+        raise typer.BadParameter("is the recording itself; give another name", param_hint="--html")
+    say(f"Replay: {write_html(loaded, page)}")

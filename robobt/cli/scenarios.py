@@ -1,0 +1,84 @@
+"""``robobt scenarios``: what there is to play."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import Json, console, one_line_errors, print_json, say, table
+
+if TYPE_CHECKING:
+    from robobt.match import Scenario
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    app.command()(scenarios)
+
+
+@one_line_errors
+def scenarios(
+    name: Annotated[
+        str | None, typer.Argument(help="One scenario, bundled or a file, with all of it.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """List the bundled scenarios, or show one.
+
+    Keys of --json: scenarios, a list with name, description, file, field (length
+    and width in metres), period and time_limit (seconds), trials, referee
+    (whether there is one), ball (where it starts) and robots (robot, play,
+    params, start: in the own team's view, own goal at -x).
+    """
+    from robobt.match import load_scenario
+    from robobt.resources import bundled_scenarios
+
+    loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]
+    if as_json:
+        print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
+        return
+    if name is not None:
+        _print_scenario(loaded[0])
+        return
+    listed = table("scenario", "robots", "trials", "what it is")
+    listed.columns[0].no_wrap = True
+    for scenario in loaded:
+        size = f"{len(scenario.robots.blue)} v {len(scenario.robots.yellow)}"
+        about = " ".join(scenario.description.split()).partition(". ")[0].removesuffix(".")
+        listed.add_row(escape(scenario.name), size, str(scenario.trials), escape(about))
+    console.print(listed)
+
+
+def _print_scenario(scenario: Scenario) -> None:
+    console.print(f"[bold]{escape(scenario.name)}[/bold]  {escape(scenario.source)}", soft_wrap=True)
+    say(" ".join(scenario.description.split()))
+    listed = table("", "play", "start, in the own team's view")
+    for robot, setup in scenario.robots:
+        given = ", ".join([f"{key}={value}" for key, value in setup.params.items()])
+        listed.add_row(str(robot), escape(f"{setup.play}({given})"), escape(str(setup.start)))
+    listed.add_row("ball", "", escape(str(scenario.ball)))
+    console.print(listed)
+    ends = scenario.ends.model_dump(exclude_none=True)
+    say(f"Ends: {', '.join([f'{key} {value}' for key, value in ends.items()])}")
+    referee = "with a referee" if scenario.referee is not None else "no referee"
+    say(f"Control every {scenario.period:g} s, {referee}, simulator {scenario.simulator}")
+
+
+def _scenario_data(scenario: Scenario) -> dict[str, Any]:
+    return {
+        "name": scenario.name,
+        "description": " ".join(scenario.description.split()),
+        "file": scenario.source,
+        "field": {"length": scenario.field.length, "width": scenario.field.width},
+        "period": scenario.period,
+        "trials": scenario.trials,
+        "referee": scenario.referee is not None,
+        "time_limit": scenario.ends.time_limit,
+        "ball": str(scenario.ball),
+        "robots": [
+            {"robot": str(robot), "play": setup.play, "params": setup.params, "start": str(setup.start)}
+            for robot, setup in scenario.robots
+        ],
+    }
