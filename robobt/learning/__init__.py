@@ -1,0 +1,1 @@
+"""Learning: environments, learners, shot data, predictors, export. Torch lives here."""
