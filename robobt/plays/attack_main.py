@@ -27,6 +27,7 @@ def attack_main(
     min_score: float = 0.0,
     max_distance: float | None = None,
     kick: Literal["default", "robobulls"] = "default",
+    shot_speed: float | None = None,
     speed: float = 1.0,
     dribble_speed: float = 2.0,
     steady: float = 0.1,
@@ -46,6 +47,7 @@ def attack_main(
         max_distance: no shots from farther than this from the goal [m]; None is any.
         kick: "default", or "robobulls" for the paper's baseline, which also gets
             to the ball with RoboBulls' pilot.
+        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
         steady: see above [s]; RoboBulls' own is 0.9.
@@ -66,7 +68,7 @@ def attack_main(
                         ),
                     ),
                     ShotIsSteady(rise=steady, fall=steady),
-                    KickToTarget(style=kick, limits=limits, speed=speed),
+                    KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed=speed),
                 ],
             ),
             Sequence(
