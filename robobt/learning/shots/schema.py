@@ -109,7 +109,8 @@ RECORDED = frozenset(
 )
 """What a collector records; :func:`complete_row` works out the rest."""
 
-_UNKNOWN: dict[str, Any] = {"text": "", "int": -1, "real": float("nan"), "reals": ()}
+UNKNOWN: dict[str, Any] = {"text": "", "int": -1, "real": float("nan"), "reals": ()}
+"""What stands for an unknown value, by a column's type."""
 
 
 def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
@@ -129,7 +130,7 @@ def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
     needed = ("robot_x", "robot_y", "target_x", "target_y", "success")
     if missing := [name for name in needed if name not in recorded]:
         raise ValueError(f"a shot needs {missing[0]!r}")
-    row = {column.name: recorded.get(column.name, _UNKNOWN[column.type]) for column in COLUMNS}
+    row = {column.name: recorded.get(column.name, UNKNOWN[column.type]) for column in COLUMNS}
     row["schema_version"] = VERSION
     for column in COLUMNS:
         if column.type == "reals":
@@ -139,21 +140,22 @@ def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
     dx, dy = target - origin
     angle = float(np.arctan2(dy, dx))
     row["angle_to_goal"], row["distance_to_goal"] = angle, float(np.hypot(dx, dy))
-    row["robot_vx"], row["robot_vy"] = _turned(row["robot_field_vx"], row["robot_field_vy"], angle)
-    row["ball_forward"], row["ball_left"] = _turned(
+    row["robot_vx"], row["robot_vy"] = turned(row["robot_field_vx"], row["robot_field_vy"], angle)
+    row["ball_forward"], row["ball_left"] = turned(
         row["ball_x"] - origin[0], row["ball_y"] - origin[1], row["robot_heading"]
     )
     if row["opponents_x"]:
         places = np.stack([row["opponents_x"], row["opponents_y"]], axis=-1)
         which = nearest_to_line(origin, target, places)
         row["opp_x_global"], row["opp_y_global"] = (float(value) for value in places[which])
-        along, across = _turned(*(places[which] - origin).tolist(), angle)
+        offset = places[which] - origin
+        along, across = turned(offset[0], offset[1], angle)
         row["opp_x"], row["opp_y"] = along, across
         row["distance_to_opp"] = float(np.hypot(along, across))
         velocity = [
             row[name][which] if row[name] else float("nan") for name in ("opponents_vx", "opponents_vy")
         ]
-        row["opp_vx"], row["opp_vy"] = _turned(velocity[0], velocity[1], angle)
+        row["opp_vx"], row["opp_vy"] = turned(velocity[0], velocity[1], angle)
         row["v_towards_ball"] = -float(np.sign(across)) * row["opp_vy"]
     return row
 
@@ -174,7 +176,7 @@ def nearest_to_line(origin: ArrayLike, target: ArrayLike, opponents: ArrayLike) 
     return int(np.argmin(np.hypot(gaps[:, 0], gaps[:, 1])))
 
 
-def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+def turned(x: float, y: float, angle: float) -> tuple[float, float]:
     """A field-frame vector in a frame whose first axis points along ``angle``."""
     cos, sin = float(np.cos(angle)), float(np.sin(angle))
     return float(cos * x + sin * y), float(cos * y - sin * x)

@@ -1,0 +1,7 @@
+"""What is wrong with shot data."""
+
+from __future__ import annotations
+
+
+class ShotDataError(ValueError):
+    """A file of shots is not what it should be; the message names the file, the row and the column."""
