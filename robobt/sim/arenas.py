@@ -54,6 +54,8 @@ class Arenas:
         sub_steps: physics steps a control period.
         arena_parameters, robot_parameters: what the kernels use; columns are
             named in :mod:`robobt.sim.kernels`. Writing to them randomises arenas.
+        switch: (n,) sub-step of a period from which a command is in force, the
+            part of the command delay that is no whole period; also to be written to.
     """
 
     def __init__(
@@ -101,28 +103,29 @@ class Arenas:
         self._spin = np.zeros((n, 2))
         self._cooldown = np.zeros((n, count))
         delay = round(settings.realism.command_delay / self.dt)
-        self._switch = delay % self.sub_steps
+        self.switch: NDArray[np.int64] = np.full(n, delay % self.sub_steps, dtype=np.int64)
         # The command in force before the switch, the one after it, and those still on their way.
         self._pipeline = [np.zeros((n, count, k.COMMAND)) for _ in range(delay // self.sub_steps + 2)]
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
-        """Set arenas up anew: positions, everything at rest or rolling, no command on its way.
+        """Set arenas up anew: positions and velocities, no command on its way.
 
         Args:
-            robots: (m, R, 3) x, y, heading.
+            robots: (m, R, 3) x, y, heading, at rest, or (m, R, 6) with vx, vy, omega.
             balls: (m, 4) x, y, vx, vy; a moving ball rolls.
             arenas: indices of the m arenas; all of them without.
         """
         which = np.arange(len(self.origins)) if arenas is None else np.atleast_1d(np.asarray(arenas))
         count = self.contact.shape[1]
-        poses = np.asarray(robots, dtype=np.float64).reshape(len(which), count, 3)
+        poses = np.asarray(robots, dtype=np.float64)
+        poses = poses.reshape(len(which), count, poses.shape[-1])
         ball = np.asarray(balls, dtype=np.float64).reshape(len(which), 4)
         rows = self._buffer.rows.reshape(len(self.origins), count + 1, 6)
         self._buffer.read()
         origin = self.origins[which]
         rows[which] = 0.0
-        rows[which, :count, :2] = poses[..., :2] + origin[:, None, :]
-        rows[which, :count, 2] = poses[..., 2]
+        rows[which, :count, : poses.shape[-1]] = poses
+        rows[which, :count, :2] += origin[:, None, :]
         rows[which, count, :2] = ball[:, :2] + origin
         rows[which, count, 3:5] = ball[:, 2:]
         self._velocity[which] = ball[:, 2:]
@@ -147,6 +150,13 @@ class Arenas:
         self._buffer.write()
         self._refresh()
 
+    def weigh(self, arena: int, mass: float) -> None:
+        """Give the robots of one arena another mass [kg]."""
+        count = self.contact.shape[1]
+        for body in self._bodies[arena * (count + 1) : arena * (count + 1) + count]:
+            body.mass = mass
+            body.moment = _moment(mass)
+
     def step(self, commands: NDArray[np.float64]) -> None:
         """Let one control period pass under ``commands``.
 
@@ -169,7 +179,7 @@ class Arenas:
             self.robot_parameters,
             self._pipeline[0],
             self._pipeline[1],
-            self._switch,
+            self.switch,
             self.sub_steps,
             self.dt,
             self._velocity,
@@ -285,7 +295,7 @@ def _fill(
             _finish(box, *material[kind], _STATIC, _DISC | _BALL)
             space.add(box)
         for i in range(robots):
-            robot = pymunk.Body(body.mass, 0.5 * body.mass * ROBOT_RADIUS**2)
+            robot = pymunk.Body(body.mass, _moment(body.mass))
             # Somewhere of their own until placed, so that no two start inside each other.
             robot.position = (origin_x, origin_y + 3 * ROBOT_RADIUS * (i + 1))
             disc = pymunk.Circle(robot, ROBOT_RADIUS)
@@ -306,6 +316,11 @@ def _fill(
         space.add(ball, round_)
         bodies.append(ball)
     return bodies
+
+
+def _moment(mass: float) -> float:
+    """Moment of inertia of a robot, as of a disc [kg m^2]."""
+    return 0.5 * mass * ROBOT_RADIUS**2
 
 
 def _finish(shape: pymunk.Shape, restitution: float, friction: float, category: int, mask: int) -> None:

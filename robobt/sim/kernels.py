@@ -423,7 +423,7 @@ def control_tick(
     robot_parameters: FloatArray,
     old: FloatArray,
     new: FloatArray,
-    switch: int,
+    switch: IntArray,
     sub_steps: int,
     dt: float,
     ball_velocity: FloatArray,
@@ -443,8 +443,8 @@ def control_tick(
         origins: (N, 2) centre of each arena in the space [m].
         walls: (W, 4) boxes x0, y0, x1, y1 relative to an arena's centre [m].
         arena_parameters: (N, ARENA_PARAMETERS); robot_parameters: (N, R, ROBOT_PARAMETERS).
-        old, new: (N, R, COMMAND) commands before and after sub-step ``switch``
-            (how a command delay works); a fired kick is set to 0 in place.
+        old, new: (N, R, COMMAND) commands before and after each arena's sub-step
+            ``switch``, (N,) (how a command delay works); a fired kick is set to 0 in place.
         ball_velocity, ball_spin: (N, 2), kept between calls [m/s].
         cooldown: (N, R) time until a kicker is ready again [s].
         contact: (N, R) out: ball in the mouth. touch: (N,) last robot to touch, -1 none.
@@ -465,7 +465,7 @@ def control_tick(
             ball = rows[first + robots]
             velocity = ball_velocity[a]
             spin = ball_spin[a]
-            commands = new[a] if step >= switch else old[a]
+            commands = new[a] if step >= switch[a] else old[a]
             glued = -1
             held = fired = False
             pull[0] = pull[1] = 0.0
