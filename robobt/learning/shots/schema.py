@@ -41,6 +41,7 @@ COLUMNS = (
     Column("trial", "int", "1", "trial of the collection that the shot was taken in; -1 where not recorded"),
     Column("early_stop_split", "text", "", "train, valid (for early stopping) or test; may be empty"),
     Column("tolerance", "real", "m", "clearance that the attacker asked of the line ball -> target"),
+    Column("goalkeeper_speed", "real", "1", "factor on the top speed of the opponents' goalkeeper"),
     Column("time", "real", "s", "simulated time of the kick in its trial"),
     # The scene at the kick, in the field frame: the shooter attacks +x.
     Column("robot_x", "real", "m", "shooter"),
