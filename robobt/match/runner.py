@@ -24,6 +24,7 @@ from robobt.match.results_file import ResultsFile
 from robobt.match.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
+from robobt.plays.python_files import import_file, imported_files
 
 MAX_WORKERS = 256
 """Most worker processes of a run."""
@@ -172,12 +173,12 @@ class _Worker:
 def _play_over_workers(job: _Job, trials: list[int], count: int) -> Iterator[MatchResult]:
     """Results in the order in which they finish."""
     try:
-        pickle.dumps(job)
+        packed = pickle.dumps(job)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise RunError(f"the match cannot be sent to worker processes: {error}") from error
     waiting = deque(trials)
     with _ignoring_interrupts():
-        workers = [_start(job, waiting.popleft()) for _ in range(count)]
+        workers = [_start(packed, waiting.popleft()) for _ in range(count)]
     try:
         while workers:
             ready = wait([worker.connection for worker in workers])
@@ -200,11 +201,11 @@ def _play_over_workers(job: _Job, trials: list[int], count: int) -> Iterator[Mat
             worker.process.join()
 
 
-def _start(job: _Job, trial: int) -> _Worker:
+def _start(job: bytes, trial: int) -> _Worker:
     # Spawned, not forked: forking a process whose threads hold locks (torch, numba) can hang.
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(job, theirs, trial), daemon=True)
+    process = context.Process(target=_work, args=(imported_files(), job, theirs, trial), daemon=True)
     process.start()
     theirs.close()
     return _Worker(process, ours, trial)
@@ -221,7 +222,7 @@ def _receive(worker: _Worker) -> MatchResult | Exception:
     return answer
 
 
-def _work(job: _Job, connection: Connection, trial: int | None) -> None:
+def _work(files: tuple[Path, ...], packed: bytes, connection: Connection, trial: int | None) -> None:
     """A worker process: play what is asked for until told to stop."""
     threading.Thread(target=_leave_with_the_run, daemon=True).start()
     # One core a worker; numeric libraries that start threads of their own would take the others'.
@@ -229,6 +230,10 @@ def _work(job: _Job, connection: Connection, trial: int | None) -> None:
         os.environ.setdefault(variable, "1")
     # What trees raise is counted in the results; a line on stderr each tick helps nobody.
     logging.getLogger("robobt").setLevel(logging.ERROR)
+    # First, for the job may name what these files define.
+    for file in files:
+        import_file(file)
+    job: _Job = pickle.loads(packed)
     while trial is not None:
         answer: MatchResult | Exception
         try:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.metadata import EntryPoint, entry_points
 from types import ModuleType
-from typing import Generic, TypeVar
+from typing import Generic, Self, TypeVar
 
 T = TypeVar("T")
 
@@ -62,6 +63,25 @@ class Registry(Generic[T]):
             return entry
 
         return enter
+
+    @contextmanager
+    def temporarily(self) -> Iterator[Self]:
+        """What is registered within this context is gone after it, and what was there is as it was."""
+        undo = self.undo_point()
+        try:
+            yield self
+        finally:
+            undo()
+
+    def undo_point(self) -> Callable[[], None]:
+        """A function that takes back whatever will have been registered since, other packages' things aside."""
+        self._load()
+        entries, sources = dict(self._entries), dict(self._sources)
+
+        def undo() -> None:
+            self._entries, self._sources = dict(entries), dict(sources)
+
+        return undo
 
     @property
     def problems(self) -> tuple[str, ...]:

@@ -217,3 +217,24 @@ def test_skills_plays_and_raters_take_in_other_packages(registry: Registry[objec
     assert registry.group == group
     assert registry.problems == ()
     assert len(registry) > 0
+
+
+def test_what_is_registered_temporarily_is_gone_afterwards() -> None:
+    registry = things()
+    own = registry["own"]
+    with pytest.raises(RuntimeError), registry.temporarily() as same:
+        assert same is registry
+        registry.register("guest")("guest")
+        assert registry["guest"] == "guest"
+        raise RuntimeError
+    assert list(registry) == ["own"]
+    assert registry["own"] is own
+    registry.register("guest")("another")
+
+
+def test_what_other_packages_bring_while_something_is_temporary_stays(install: Install) -> None:
+    install("extra", {"staying": "thing = object()\n"}, {"thing": "staying:thing"})
+    registry = things()
+    with registry.temporarily():
+        assert "thing" in registry
+    assert list(registry) == ["own", "thing"]

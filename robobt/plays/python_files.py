@@ -1,0 +1,99 @@
+"""Plays, skills and raters in a Python file of the user's that no package installs."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+from robobt.plays.base import PLAYS
+from robobt.skills import SKILLS
+from robobt.skills.go_to_ball import POLICIES
+from robobt.skills.raters import RATERS
+
+_imported: dict[Path, ModuleType] = {}
+
+
+class PythonFileError(ValueError):
+    """A Python file cannot be used; the message is one line that names the file and the line."""
+
+
+def import_file(path: str | Path) -> ModuleType:
+    """Run a Python file, so that the plays, skills, raters and policies it registers are there.
+
+    A file is run once; asked for again it is the same module. Modules that lie
+    beside it can be imported by it. When it raises, nothing of what it has registered stays.
+    Worker processes of a match run the same files (:func:`imported_files`).
+
+    Args:
+        path: the file; its name ends in ``.py``.
+
+    Raises:
+        PythonFileError: it cannot be read, or raises as it runs.
+    """
+    shown, path = str(path), Path(path)
+    try:
+        path = path.resolve()
+        if path in _imported:
+            return _imported[path]
+        source = path.read_bytes()
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise PythonFileError(f"{shown}: cannot be read: {reason}") from error
+    if path.suffix != ".py":
+        raise PythonFileError(f"{shown}: is no Python file; its name ends in .py")
+    module = _run(path, source, shown)
+    _imported[path] = module
+    return module
+
+
+def imported_files() -> tuple[Path, ...]:
+    """The files that :func:`import_file` has run in this process, in that order."""
+    return tuple(_imported)
+
+
+def _run(path: Path, source: bytes, shown: str) -> ModuleType:
+    spec = spec_from_file_location(_free_name(path), path)
+    assert spec is not None
+    module = module_from_spec(spec)
+    # Behind all else, so that a file called like an installed module does not take its place.
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
+    sys.modules[module.__name__] = module
+    undo = [registry.undo_point() for registry in (PLAYS, SKILLS, RATERS, POLICIES)]
+    try:
+        exec(compile(source, str(path), "exec"), module.__dict__)
+    except (Exception, SystemExit) as error:
+        del sys.modules[module.__name__]
+        for take_back in undo:
+            take_back()
+        raise PythonFileError(_say(error, path, shown)) from error
+    return module
+
+
+def _free_name(path: Path) -> str:
+    """A name that no installed module has; the same in a process that runs the same files."""
+    stem = path.stem.replace(".", "_")
+    name = f"file_{stem}"
+    number = 1
+    while name in sys.modules:
+        number += 1
+        name = f"file_{stem}_{number}"
+    return name
+
+
+def _say(error: BaseException, path: Path, shown: str) -> str:
+    """The error with the line of the file that it came from, or that led to it."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        line, reason = error.lineno or None, error.msg
+    else:
+        lines = [
+            part.lineno for part in traceback.extract_tb(error.__traceback__) if part.filename == str(path)
+        ]
+        line = lines[-1] if lines else None
+        said = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
+        reason = f"{type(error).__name__}: {said}" if said else type(error).__name__
+    where = shown if line is None else f"{shown}:{line}"
+    return " ".join(f"{where}: {reason}".split())

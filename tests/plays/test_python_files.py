@@ -1,0 +1,175 @@
+"""Python files of the user's: what they register is there, what is wrong with them is one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from robobt.match import run_trials
+from robobt.match.scenario import scenario_from
+from robobt.plays import PLAYS, python_files
+from robobt.plays.python_files import PythonFileError, import_file, imported_files
+from robobt.skills import SKILLS
+from robobt.skills.go_to_ball import POLICIES
+from robobt.skills.raters import RATERS
+from tests.match.scripted import PlainWorld, data
+
+Write = Callable[..., Path]
+
+MINE = '''
+    from math import hypot
+
+    from robobt.plays import PLAYS
+    from robobt.skills.base import Skill, skill
+    from robobt.tree import Sequence, Status
+    from robobt.world import RobotCommand
+
+
+    @skill
+    class Advance(Skill):
+        """Drives ahead."""
+
+        def __init__(self, *, speed: float = 1.0, name: str = "") -> None:
+            super().__init__(name)
+            self.speed = speed
+
+        def on_running(self) -> Status:
+            self.store.command = RobotCommand(vx=self.speed)
+            return self.run()
+
+
+    @PLAYS.register("advance")
+    def advance(*, speed: float = 1.0):
+        """Advance and nothing else."""
+        return Sequence("advance", memory=False, children=[Advance(speed=speed)])
+'''
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
+    """Writes a Python file; what it registers, and that it was imported, is forgotten after the test."""
+    monkeypatch.setattr(python_files, "_imported", {})
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    before = set(sys.modules)
+    with PLAYS.temporarily(), SKILLS.temporarily(), RATERS.temporarily(), POLICIES.temporarily():
+
+        def make(source: str = MINE, name: str = "mine.py") -> Path:
+            path = tmp_path / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(textwrap.dedent(source), encoding="utf-8")
+            return path
+
+        yield make
+    for name in set(sys.modules) - before:
+        if name.startswith("file_"):
+            del sys.modules[name]
+
+
+def test_what_a_file_registers_is_there(write: Write) -> None:
+    module = import_file(write())
+    assert SKILLS["Advance"] is module.Advance
+    assert PLAYS["advance"](speed=0.5).children[0].speed == 0.5
+
+
+def test_a_file_is_run_once(write: Write) -> None:
+    path = write()
+    assert import_file(path) is import_file(str(path))
+    assert imported_files() == (path,)
+
+
+def test_files_of_one_name_in_two_folders_are_two(write: Write) -> None:
+    one = import_file(write("x = 1", "one/plays.py"))
+    other = import_file(write("x = 2", "other/plays.py"))
+    assert (one.x, other.x) == (1, 2)
+    assert one.__name__ != other.__name__
+
+
+def test_a_file_called_like_an_installed_module_takes_nobodys_place(write: Write) -> None:
+    import_file(write("x = 1", "json.py"))
+    import json
+
+    assert json.dumps([1]) == "[1]"
+
+
+def test_a_file_can_import_what_lies_beside_it(write: Write) -> None:
+    write("ANSWER = 42", "beside_mine.py")
+    assert import_file(write("from beside_mine import ANSWER")).ANSWER == 42
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("x = 1\nx = = 2\n", ":2: invalid syntax"),
+        ("x = 1\n\ny = 1 / 0\n", ":3: ZeroDivisionError: division by zero"),
+        ("def f():\n    raise KeyError('what')\n\nf()\n", ":2: KeyError: what"),
+        ("import no_such_module_here\n", ":1: ModuleNotFoundError: No module named 'no_such_module_here'"),
+        ("raise SystemExit(3)\n", ":1: SystemExit: 3"),
+        ("import json\n\njson.loads('{')\n", ":3: JSONDecodeError: "),
+        ("# -*- coding: nothing -*-\n", ": unknown encoding: nothing"),
+        ("x = '\0'\n", ": "),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_file_and_line(write: Write, source: str, said: str) -> None:
+    path = write(source)
+    with pytest.raises(PythonFileError) as raised:
+        import_file(path)
+    assert str(raised.value).startswith(f"{path}{said}")
+    assert "\n" not in str(raised.value)
+
+
+def test_a_name_that_is_taken_is_told_with_both(write: Write) -> None:
+    path = write(MINE.replace('"advance"', '"goalkeeper"'))
+    with pytest.raises(
+        PythonFileError, match=r"mine.py:\d+: ValueError: play 'goalkeeper' is registered twice"
+    ):
+        import_file(path)
+
+
+def test_a_file_that_raises_leaves_nothing_behind_and_may_be_mended(write: Write) -> None:
+    path = write(textwrap.dedent(MINE) + "\nraise RuntimeError\n")
+    with pytest.raises(PythonFileError):
+        import_file(path)
+    assert "Advance" not in SKILLS
+    assert "advance" not in PLAYS
+    assert imported_files() == ()
+    write()
+    assert import_file(path).Advance is SKILLS["Advance"]
+
+
+@pytest.mark.parametrize("name", ["nowhere.py", "fol\0der.py", "."])
+def test_a_file_that_cannot_be_read_is_told(name: str) -> None:
+    with pytest.raises(PythonFileError, match="cannot be read"):
+        import_file(name)
+
+
+def test_another_file_is_refused(write: Write) -> None:
+    with pytest.raises(PythonFileError, match=r"its name ends in \.py"):
+        import_file(write("x = 1", "mine.txt"))
+
+
+def test_worker_processes_run_the_files_too(write: Write, tmp_path: Path) -> None:
+    import_file(write())
+    # A tree file names the skill; nothing that is sent to the worker does.
+    (tmp_path / "ahead.yaml").write_text("play: ahead\ntree: {Advance: {speed: 0.5}}\n")
+    robots = [
+        {"number": number, "play": play, "start": {"position": [-2.0, number], "heading": 0.0}}
+        for number, play in enumerate(("advance", str(tmp_path / "ahead.yaml")))
+    ]
+    played = scenario_from(
+        data(robots={"blue": robots, "yellow": []}, ends={"time_limit": 0.2}, ball={"position": [0, 2]}),
+        "test",
+    )
+    here, there = (run_trials(played, PlainWorld, 2, workers=workers).results for workers in (1, 2))
+    assert [result.trace for result in here] == [result.trace for result in there]
+    assert not any(robot.errors for result in there for robot in result.robots.values())
+
+
+def test_importing_needs_no_test_around_it(write: Write) -> None:
+    code = f"from robobt.plays.python_files import import_file; print(import_file({str(write())!r}).advance)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert "function advance" in said
