@@ -1,0 +1,339 @@
+"""Trained models as functions of arrays. Only here a skill meets torch, and only when it loads a model."""
+
+from __future__ import annotations
+
+import ast
+import pickletools
+import re
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robobt.skills.model_card import ModelCard
+from robobt.skills.model_file import (
+    Format,
+    ModelError,
+    ModelFile,
+    find_model,
+    read_model_file,
+    unpack_archive,
+)
+from robobt.world.features import ObservationSpec
+
+Floats = NDArray[np.float32]
+
+_PROBES = 64
+_SLACK = 1e-4
+"""How far an output may lie outside its range for the rounding of single precision."""
+
+
+class Network(Protocol):
+    """What a format's loader returns."""
+
+    def batch(self, inputs: Floats) -> Floats:
+        """(n, size) -> (n, outputs), in single precision."""
+
+    def single(self) -> Callable[[Sequence[float]], list[float]]:
+        """A function of one observation, with memory of its own: not for two threads at once."""
+
+
+class Policy:
+    """A loaded model: a function of arrays, and the card that says what they mean.
+
+    Attributes:
+        card: what the model says about itself.
+        path: the file it was loaded from.
+        sha256: of that file.
+    """
+
+    def __init__(self, file: ModelFile, network: Network) -> None:
+        self.card = file.card
+        self.path = file.path
+        self.sha256 = file.sha256
+        self._network = network
+
+    def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
+        """What the model answers.
+
+        Args:
+            inputs: (size,) or (n, size), in SI units.
+
+        Returns:
+            (outputs,) or (n, outputs).
+
+        Raises:
+            ValueError: the inputs have another shape.
+        """
+        given = np.asarray(inputs, dtype=np.float32)
+        size = self.card.observation.size
+        if given.ndim not in (1, 2) or given.shape[-1] != size:
+            raise ValueError(f"{self.card.name} takes ({size},) or (n, {size}), not {given.shape}")
+        if not len(given):
+            return np.zeros((0, len(self.card.outputs)))
+        answers = self._network.batch(np.ascontiguousarray(given.reshape(-1, size)))
+        return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
+
+    def single(self) -> Callable[[Sequence[float]], list[float]]:
+        """A quick function of one observation, for one robot's control loop.
+
+        It does not check what it is given. Each one has memory of its own.
+        """
+        return self._network.single()
+
+
+def load_policy(
+    name_or_path: str | Path, *, skill: str | None = None, observation: ObservationSpec | None = None
+) -> Policy:
+    """Load a model: a shipped one by its name, any other by its path.
+
+    Before it is run: size, archive, checksums, card, and that it consists of nothing
+    but arithmetic (:data:`OPERATIONS`, no loops). Then it is tried on zeros and on
+    random inputs: it has to answer finite numbers of its card's shape and range, the
+    same each time, and for a batch what it answers one by one. The same file is
+    loaded once per process. From then on torch computes on one thread in this process.
+
+    Args:
+        skill: what it shall be used for; None for anything.
+        observation: what it shall be given; None for anything.
+
+    Raises:
+        ModelError: it cannot be used; the message names the file and says why.
+    """
+    path = find_model(name_or_path)
+    file = read_model_file(path)
+    card = file.card
+    problem = card.observation.problem()
+    if skill is not None and card.skill != skill:
+        problem = f"is a model for {card.skill}, not for {skill}"
+    elif observation is not None and card.observation.name != observation.name:
+        problem = f"takes the observation {card.observation.name!r}, not {observation.name!r}"
+    if problem is not None:
+        raise ModelError(f"{path}: {problem}")
+    key = (path.resolve(), file.sha256)
+    if key not in _LOADED:
+        try:
+            network = LOADERS[file.format](file)
+            _probe(network, card)
+        except ModelError as error:
+            raise ModelError(f"{path}: {error}") from error
+        _LOADED[key] = Policy(file, network)
+    return _LOADED[key]
+
+
+_TORCH = """
+abs add add_ addmm atan2 cat clamp clamp_ concat contiguous cos detach div div_ elu exp flatten gelu hardtanh
+hardtanh_ hypot layer_norm leaky_relu linear log log1p log_softmax matmul max maximum mean min minimum mm mul
+mul_ neg pow reciprocal relu relu_ relu6 reshape rsqrt rsub select sigmoid sigmoid_ sign silu sin slice softmax
+softplus sqrt square squeeze stack sub sub_ sum t tanh tanh_ transpose unsqueeze view where
+"""
+_LANGUAGE = "CallMethod Constant GetAttr ListConstruct ListUnpack NumToTensor TupleConstruct TupleUnpack"
+_ONNX = """
+Abs Add Clip Concat Constant Cos Div Elu Erf Exp Flatten Gather Gelu Gemm Identity LayerNormalization LeakyRelu
+Log LogSoftmax MatMul Max Mean Min Mul Neg Pow Reciprocal ReduceMax ReduceMean ReduceMin ReduceSum Relu Reshape
+Sigmoid Sign Sin Slice Softmax Softplus Sqrt Squeeze Sub Sum Tanh Transpose Unsqueeze Where
+"""
+
+OPERATIONS: Mapping[Format, frozenset[str]] = {
+    "torchscript": frozenset(
+        [f"aten::{name}" for name in _TORCH.split()] + [f"prim::{name}" for name in _LANGUAGE.split()]
+    ),
+    "onnx": frozenset(_ONNX.split()),
+}
+"""What a model may do: the operations of feed-forward networks, by the formats' own names."""
+
+
+class _TorchScript:
+    """A frozen TorchScript module."""
+
+    def __init__(self, file: ModelFile) -> None:
+        import torch
+
+        members = unpack_archive(file.content)
+        _check_code(members)
+        if torch.get_num_threads() != 1:
+            torch.set_num_threads(1)
+        with _quiet():
+            try:
+                loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
+                loaded.eval()
+                module = torch.jit.freeze(loaded)
+            except Exception as error:
+                raise ModelError(f"torch cannot load it: {_first_line(error)}") from error
+        foreign = {node.kind() for node in module.inlined_graph.nodes()} - OPERATIONS["torchscript"]
+        if foreign:
+            raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign))}")
+        self.module = module
+        self._torch = torch
+        self._size = file.card.observation.size
+        # Without Module.__call__, which looks for hooks that a frozen module cannot have.
+        self._forward: Callable[[Any], Any] = module.forward
+
+    def batch(self, inputs: Floats) -> Floats:
+        with self._torch.inference_mode():
+            answer = self._forward(self._torch.from_numpy(inputs))
+        if not isinstance(answer, self._torch.Tensor):
+            raise ModelError("answers no tensor")
+        return np.asarray(answer.numpy(), dtype=np.float32)
+
+    def single(self) -> Callable[[Sequence[float]], list[float]]:
+        buffer = np.zeros((1, self._size), dtype=np.float32)
+        tensor = self._torch.from_numpy(buffer)
+        forward, no_gradient = self._forward, self._torch.inference_mode()
+
+        def infer(observation: Sequence[float]) -> list[float]:
+            buffer[0] = observation
+            with no_gradient:
+                return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
+
+        return infer
+
+
+class _Onnx:
+    """A session of onnxruntime on one thread."""
+
+    def __init__(self, file: ModelFile) -> None:
+        _check_onnx(file.content)
+        import onnxruntime  # type: ignore[import-untyped]
+
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = options.inter_op_num_threads = 1
+        options.log_severity_level = 4
+        try:
+            self._session = onnxruntime.InferenceSession(
+                file.content, options, providers=["CPUExecutionProvider"]
+            )
+        except Exception as error:
+            raise ModelError(f"onnxruntime cannot load it: {_first_line(error)}") from error
+        inputs, outputs = self._session.get_inputs(), self._session.get_outputs()
+        if len(inputs) != 1 or len(outputs) != 1 or inputs[0].type != "tensor(float)":
+            raise ModelError("does not take one array of single precision and answer one")
+        self._input, self._output = inputs[0].name, [outputs[0].name]
+        self._size = file.card.observation.size
+
+    def batch(self, inputs: Floats) -> Floats:
+        return np.asarray(self._session.run(self._output, {self._input: inputs})[0], dtype=np.float32)
+
+    def single(self) -> Callable[[Sequence[float]], list[float]]:
+        buffer = np.zeros((1, self._size), dtype=np.float32)
+        run, wanted, given = self._session.run, self._output, {self._input: buffer}
+
+        def infer(observation: Sequence[float]) -> list[float]:
+            buffer[0] = observation
+            return run(wanted, given)[0].tolist()[0]  # type: ignore[no-any-return]
+
+        return infer
+
+
+LOADERS: Mapping[Format, Callable[[ModelFile], Network]] = {"torchscript": _TorchScript, "onnx": _Onnx}
+"""What makes a file of each format a function. They raise :class:`ModelError` without the file's name."""
+
+_LOADED: dict[tuple[Path, str], Policy] = {}
+
+
+def _probe(network: Network, card: ModelCard) -> None:
+    """Try the network on zeros and on inputs of the size of those on a field."""
+    size, outputs = card.observation.size, len(card.outputs)
+    inputs = np.random.default_rng(0).normal(0.0, 2.0, (_PROBES, size)).astype(np.float32)
+    inputs[0] = 0.0
+    low, high = card.output_range
+    try:
+        first, again = network.batch(inputs), network.batch(inputs)
+        if first.shape != (_PROBES, outputs):
+            raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({_PROBES}, {outputs})")
+        one = network.single()
+        singles = np.array([one(row.tolist()) for row in inputs])
+    except ModelError:
+        raise
+    except Exception as error:
+        raise ModelError(f"fails on an observation of {size} entries: {_first_line(error)}") from error
+    if not np.isfinite(first).all():
+        raise ModelError("answers what is no finite number")
+    if first.min() < low - _SLACK or first.max() > high + _SLACK:
+        raise ModelError(f"answers {first.min():.3g} to {first.max():.3g}, not within [{low:g}, {high:g}]")
+    if not np.array_equal(first, again):
+        raise ModelError("does not answer the same twice")
+    if singles.shape != first.shape or not np.allclose(singles, first, rtol=0.0, atol=1e-5):
+        raise ModelError("answers other than one by one when asked in a batch")
+
+
+def _check_code(members: Mapping[str, bytes]) -> None:
+    """Look over what torch would read and run, with Python's own parsers, which do neither.
+
+    Torch's archive holds a restricted dialect of Python and pickles of its own. What
+    they may not hold is what could keep the process busy, or run while being loaded.
+    """
+    for name, content in members.items():
+        try:
+            if name.endswith(".py"):
+                _check_source(content.decode())
+            elif name.endswith(".pkl"):
+                _check_pickle(content)
+        except ModelError:
+            raise
+        except Exception as error:
+            raise ModelError(f"{name} in it is damaged ({type(error).__name__})") from error
+
+
+def _check_source(text: str) -> None:
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.While | ast.For):
+            raise ModelError("has a loop in it; a policy is a plain network")
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("__"):
+            raise ModelError(f"has a function {node.name} in it, which would run while it is loaded")
+
+
+def _check_pickle(content: bytes) -> None:
+    # Follows the stack and the memo, which torch's own reader takes on trust.
+    pickletools.dis(content, out=StringIO())
+    for code, argument, _ in pickletools.genops(content):
+        if code.name in ("GLOBAL", "INST") and not _GLOBAL.match(str(argument)):
+            raise ModelError(f"names {argument} in it, which no network needs")
+        if code.name in ("STACK_GLOBAL", "EXT1", "EXT2", "EXT4"):
+            raise ModelError("is pickled in another way than torch does it")
+
+
+_GLOBAL = re.compile(
+    r"(__torch__[.\w]* \w+|torch\._utils _rebuild_\w+|torch \w+Storage|torch\.jit\._pickle \w+"
+    r"|collections OrderedDict)$"
+)
+
+
+def _check_onnx(content: bytes) -> None:
+    import onnx
+
+    try:
+        model = onnx.load_from_string(content)
+    except Exception as error:
+        raise ModelError(f"is no intact ONNX file ({type(error).__name__})") from error
+    foreign = {
+        node.op_type
+        for node in model.graph.node
+        if node.domain not in ("", "ai.onnx") or node.op_type not in OPERATIONS["onnx"]
+    }
+    if foreign or model.functions:
+        raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign)) or 'functions'}")
+    tensors = [
+        *model.graph.initializer,
+        *[field.t for node in model.graph.node for field in node.attribute if field.HasField("t")],
+    ]
+    if any(tensor.data_location == onnx.TensorProto.EXTERNAL for tensor in tensors):
+        raise ModelError("keeps its weights in another file")
+
+
+def _first_line(error: Exception) -> str:
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return f"{type(error).__name__}: {lines[0][:200]}" if lines else type(error).__name__
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Whoever plays with a model cannot do anything about TorchScript being deprecated upstream."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
