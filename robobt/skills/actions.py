@@ -10,6 +10,8 @@ Go-To-Ball and Shoot-Towards-Goal, in the form of the authors' published code.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from math import hypot
 from typing import Literal, Self
 
 import numpy as np
@@ -98,7 +100,18 @@ def commands_of(actions: ArrayLike, scaling: ActionScaling) -> FloatArray:
     return commands
 
 
-def command_of(action: ArrayLike, scaling: ActionScaling) -> RobotCommand:
-    """The command that one action (A,) stands for; kicks fire at once or not at all."""
-    vx, vy, omega, kick, _, dribbler = commands_of(action, scaling).tolist()
-    return RobotCommand(vx, vy, omega, kick, KickTrigger.NOW, dribbler > 0.0)
+def command_of(action: Iterable[float], scaling: ActionScaling) -> RobotCommand:
+    """The command that one action (A,) stands for; kicks fire at once or not at all.
+
+    :func:`commands_of` for a single action, without arrays, which would take several times as long.
+    """
+    entries = [min(max(float(entry), -1.0), 1.0) for entry in action]
+    if scaling.kind == "drive":
+        x, y, turn = entries
+        norm = max(hypot(x, y), 1.0)
+        vx, vy, kick = scaling.max_speed * x / norm, scaling.max_speed * y / norm, 0.0
+    else:
+        turn, trigger = entries
+        vx = vy = 0.0
+        kick = scaling.kick_speed if trigger > 0.0 else 0.0
+    return RobotCommand(vx, vy, scaling.max_turn * turn, kick, KickTrigger.NOW, scaling.dribbler)
