@@ -127,16 +127,17 @@ def load_policy(
 
 
 _TORCH = """
-abs add add_ addmm atan2 cat clamp clamp_ concat contiguous cos detach div div_ elu exp flatten gelu hardtanh
-hardtanh_ hypot layer_norm leaky_relu linear log log1p log_softmax matmul max maximum mean min minimum mm mul
-mul_ neg pow reciprocal relu relu_ relu6 reshape rsqrt rsub select sigmoid sigmoid_ sign silu sin slice softmax
-softplus sqrt square squeeze stack sub sub_ sum t tanh tanh_ transpose unsqueeze view where
+abs add add_ addmm atan2 cat clamp clamp_ concat contiguous cos detach div div_ elu exp flatten gelu
+hardtanh hardtanh_ hypot layer_norm leaky_relu linear log log1p log_softmax matmul max maximum mean min
+minimum mm mul mul_ neg pow reciprocal relu relu_ relu6 reshape rsqrt rsub select sigmoid sigmoid_ sign silu
+sin slice softmax softplus sqrt square squeeze stack sub sub_ sum t tanh tanh_ transpose unsqueeze view
+where
 """
 _LANGUAGE = "CallMethod Constant GetAttr ListConstruct ListUnpack NumToTensor TupleConstruct TupleUnpack"
 _ONNX = """
-Abs Add Clip Concat Constant Cos Div Elu Erf Exp Flatten Gather Gelu Gemm Identity LayerNormalization LeakyRelu
-Log LogSoftmax MatMul Max Mean Min Mul Neg Pow Reciprocal ReduceMax ReduceMean ReduceMin ReduceSum Relu Reshape
-Sigmoid Sign Sin Slice Softmax Softplus Sqrt Squeeze Sub Sum Tanh Transpose Unsqueeze Where
+Abs Add Clip Concat Constant Cos Div Elu Erf Exp Flatten Gather Gelu Gemm Identity LayerNormalization
+LeakyRelu Log LogSoftmax MatMul Max Mean Min Mul Neg Pow Reciprocal ReduceMax ReduceMean ReduceMin ReduceSum
+Relu Reshape Sigmoid Sign Sin Slice Softmax Softplus Sqrt Squeeze Sub Sum Tanh Transpose Unsqueeze Where
 """
 
 OPERATIONS: Mapping[Format, frozenset[str]] = {
