@@ -1,0 +1,52 @@
+"""The environments in which skills are trained: Go-To-Ball and Shoot-Towards-Goal.
+
+A learner steps many arenas at once (:class:`GoToBallTask`, :class:`ShootTask`);
+Gymnasium's interface is over the same.
+"""
+
+from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.episodes import Episodes, straight_line_time
+from robobt.learning.envs.evaluation import Decide, run_starts
+from robobt.learning.envs.go_to_ball import GoToBallTask
+from robobt.learning.envs.settings import (
+    HARDWARE_CHALLENGE,
+    SHOOT_REWARDS,
+    ContactRule,
+    GoToBallReward,
+    GoToBallSettings,
+    GoToBallStarts,
+    NoiseSettings,
+    RandomisationSettings,
+    ShootReward,
+    ShootSettings,
+    ShootStarts,
+    TaskSettings,
+)
+from robobt.learning.envs.shoot import ShootTask
+from robobt.learning.envs.starts import START_COLUMNS
+from robobt.learning.envs.task import StepResult, VectorTask
+
+__all__ = [
+    "HARDWARE_CHALLENGE",
+    "SHOOT_REWARDS",
+    "START_COLUMNS",
+    "ArenaTask",
+    "ContactRule",
+    "Decide",
+    "Episodes",
+    "GoToBallReward",
+    "GoToBallSettings",
+    "GoToBallStarts",
+    "GoToBallTask",
+    "NoiseSettings",
+    "RandomisationSettings",
+    "ShootReward",
+    "ShootSettings",
+    "ShootStarts",
+    "ShootTask",
+    "StepResult",
+    "TaskSettings",
+    "VectorTask",
+    "run_starts",
+    "straight_line_time",
+]

@@ -1,0 +1,86 @@
+"""What became of episodes, and the time in which they could be done at best."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+
+
+def straight_line_time(distance: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> FloatArray:
+    """Shortest time from rest over ``distance`` [s]: speed up to ``speed``, drive on, do not brake.
+
+    Args:
+        distance: [m], any shape; the others broadcast.
+        speed: top speed [m/s].
+        acceleration: [m/s^2].
+    """
+    d = np.maximum(np.asarray(distance, dtype=np.float64), 0.0)
+    v, a = np.asarray(speed, dtype=np.float64), np.asarray(acceleration, dtype=np.float64)
+    return np.where(d * a * 2.0 <= v * v, np.sqrt(2.0 * d / a), d / v + v / (2.0 * a))
+
+
+@dataclass(slots=True)
+class Episodes:
+    """Episodes that have ended, one an entry of each array.
+
+    Attributes:
+        start: index in the given starts, -1 for a start that was drawn.
+        success: ball reached, or goal scored.
+        truncated: cut off by the time limit.
+        ticks: how long it took.
+        time: the same [s].
+        optimum: the straight line's time for the robot's limits [s]; nan where
+            robot or ball started in motion, and for Shoot.
+        kick_time: start to the end of the tick in which the kicker first fired
+            [s]; nan without a kick.
+        way: length of the way driven [m].
+        straight_way: straight way to where the ball counts as reached [m]; nan as ``optimum``.
+        total_reward: undiscounted.
+    """
+
+    start: IntArray
+    success: BoolArray
+    truncated: BoolArray
+    ticks: IntArray
+    time: FloatArray
+    optimum: FloatArray
+    kick_time: FloatArray
+    way: FloatArray
+    straight_way: FloatArray
+    total_reward: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @property
+    def time_ratio(self) -> float:
+        """Mean time over mean optimum of the successes that have one; nan without any."""
+        counts = self.success & np.isfinite(self.optimum) & (self.optimum > 0.0)
+        return float(self.time[counts].sum() / self.optimum[counts].sum()) if counts.any() else float("nan")
+
+    @property
+    def way_ratio(self) -> float:
+        """The same of ways."""
+        counts = self.success & np.isfinite(self.straight_way) & (self.straight_way > 0.0)
+        whole = self.straight_way[counts].sum()
+        return float(self.way[counts].sum() / whole) if counts.any() else float("nan")
+
+    @property
+    def mean_kick_time(self) -> float:
+        """Mean time to the kick of the episodes with one [s]; nan without any."""
+        kicked = np.isfinite(self.kick_time)
+        return float(self.kick_time[kicked].mean()) if kicked.any() else float("nan")
+
+    def pick(self, which: IntArray | BoolArray) -> Episodes:
+        """The episodes at these indices."""
+        return Episodes(**{item.name: getattr(self, item.name)[which] for item in fields(self)})
+
+    @classmethod
+    def joined(cls, parts: list[Episodes]) -> Episodes:
+        """All episodes of at least one part in one table."""
+        names = [item.name for item in fields(cls)]
+        return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})

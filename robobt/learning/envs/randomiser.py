@@ -1,0 +1,79 @@
+"""Domain randomisation: what differs from episode to episode in each arena."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robobt.learning.envs.settings import RandomisationSettings, Span, TaskSettings
+from robobt.learning.envs.task import FloatArray, IntArray
+from robobt.sim import kernels as sim
+from robobt.sim.arenas import Arenas
+
+_ACCELERATIONS = (sim.FORWARD_UP, sim.FORWARD_DOWN, sim.SIDE_UP, sim.SIDE_DOWN, sim.TURN_RATE)
+
+
+class Randomiser:
+    """Sets each arena's parameters at the start of an episode, and holds its commands back.
+
+    Attributes:
+        kick: (n,) factor on the speed of kicks.
+        acceleration: (n,) factor on the robot's accelerations.
+    """
+
+    def __init__(self, settings: TaskSettings, arenas: Arenas, rng: np.random.Generator) -> None:
+        n = len(arenas.balls)
+        self.kick = np.ones(n)
+        self.acceleration = np.ones(n)
+        self._ranges = settings.randomisation
+        self._active = settings.randomisation != RandomisationSettings()
+        self._arenas = arenas
+        self._rng = rng
+        self._arena_parameters = arenas.arena_parameters.copy()
+        self._robot_parameters = arenas.robot_parameters.copy()
+        self._mass = settings.simulator.body.mass
+        self._own_delay = settings.simulator.realism.command_delay
+        longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
+        self._delay: IntArray = np.zeros(n, dtype=np.int64)
+        # Whole periods of delay wait here; the rest is the arenas' own switch.
+        self._waiting = np.zeros((longest + 2, *arenas.contact.shape, sim.COMMAND))
+        self._newest = 0
+        self._all = np.arange(n)
+
+    def draw(self, which: IntArray) -> None:
+        """Draw the parameters of these arenas, whose episodes start."""
+        if not self._active:
+            return
+        count, arenas, ranges = len(which), self._arenas, self._ranges
+        friction = self._draw(ranges.friction, count)
+        self.acceleration[which] = self._draw(ranges.acceleration, count)
+        mass = self._draw(ranges.mass, count)
+        self.kick[which] = self._draw(ranges.kick_speed, count)
+        dribbler = self._draw(ranges.dribbler, count)
+        delay = self._draw(ranges.control_delay, count)
+        for column in (sim.SLIDE, sim.ROLL):
+            arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * friction
+        for column in (sim.PULL, sim.SIDE):
+            arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * dribbler
+        for column in _ACCELERATIONS:
+            own = self._robot_parameters[which, 0, column]
+            arenas.robot_parameters[which, 0, column] = own * self.acceleration[which]
+        if ranges.mass != (1.0, 1.0):
+            for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):
+                arenas.weigh(arena, self._mass * factor)
+        if ranges.control_delay != (0.0, 0.0):
+            sub_steps = np.rint((delay + self._own_delay % arenas.period) / arenas.dt).astype(np.int64)
+            arenas.switch[which] = sub_steps % arenas.sub_steps
+            self._delay[which] = sub_steps // arenas.sub_steps
+            self._waiting[:, which] = 0.0
+
+    def delayed(self, commands: FloatArray) -> FloatArray:
+        """The commands that reach the robots in this period, (n, 1, 6), of those given now and before."""
+        if self._ranges.control_delay == (0.0, 0.0):
+            return commands
+        self._newest = (self._newest + 1) % len(self._waiting)
+        self._waiting[self._newest] = commands
+        late: FloatArray = self._waiting[(self._newest - self._delay) % len(self._waiting), self._all]
+        return late
+
+    def _draw(self, span: Span, count: int) -> FloatArray:
+        return self._rng.uniform(*span, count)
