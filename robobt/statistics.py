@@ -1,10 +1,18 @@
-"""Intervals for figures that come from counting trials."""
+"""Intervals, paired tests and folds for figures that come from trials; usable by itself.
+
+scipy is imported by the functions that need it: matches use this module too and start quickly.
+"""
 
 from __future__ import annotations
 
-from math import sqrt
+from math import comb, sqrt
 from statistics import NormalDist
-from typing import NamedTuple
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Indices = NDArray[np.intp]
 
 
 class Interval(NamedTuple):
@@ -31,10 +39,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
     Source: Wilson, "Probable inference, the law of succession, and statistical
     inference", 1927.
     """
-    if trials < 0 or not 0 <= successes <= trials:
-        raise ValueError(f"{successes} successes of {trials} trials is not a count")
-    if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
+    _check_count(successes, trials, confidence)
     if trials == 0:
         return Interval(0.0, 1.0)
     z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
@@ -45,3 +50,279 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
     low = 0.0 if successes == 0 else max(0.0, middle - half)
     high = 1.0 if successes == trials else min(1.0, middle + half)
     return Interval(low, high)
+
+
+def clopper_pearson_interval(successes: int, trials: int, confidence: float = 0.95) -> Interval:
+    """Clopper and Pearson's interval for a proportion, which never covers less than it says.
+
+    Args and errors as for :func:`wilson_interval`.
+
+    Source: Clopper and Pearson, "The use of confidence or fiducial limits
+    illustrated in the case of the binomial", 1934.
+    """
+    from scipy.special import betaincinv
+
+    _check_count(successes, trials, confidence)
+    tail = (1.0 - confidence) / 2.0
+    failures = trials - successes
+    low = float(betaincinv(successes, failures + 1, tail)) if successes else 0.0
+    high = float(betaincinv(successes + 1, failures, 1.0 - tail)) if failures else 1.0
+    return Interval(low, high)
+
+
+def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
+    """Student's interval for the mean of independent values; without bounds for a single one.
+
+    Raises:
+        ValueError: no values, or confidence out of range.
+    """
+    from scipy.special import stdtrit
+
+    sample = np.asarray(values, dtype=np.float64)
+    if sample.ndim != 1 or len(sample) == 0:
+        raise ValueError("a mean needs a list of values")
+    if not 0.0 < confidence < 1.0:
+        raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
+    if len(sample) == 1:
+        return Interval(-np.inf, np.inf)
+    quantile = float(stdtrit(len(sample) - 1, 0.5 + confidence / 2.0))
+    half = quantile * float(sample.std(ddof=1)) / sqrt(len(sample))
+    middle = float(sample.mean())
+    return Interval(middle - half, middle + half)
+
+
+class PairedTest(NamedTuple):
+    """A paired t-test: mean and variance of the differences, t, its degrees of freedom, two-sided p."""
+
+    mean: float
+    variance: float
+    t: float
+    degrees: int
+    p: float
+
+
+def corrected_resampled_t_test(differences: ArrayLike, test_to_train: float) -> PairedTest:
+    """The corrected resampled paired t-test.
+
+    The runs of a repeated cross-validation share training data, so that their
+    differences vary less than independent ones would. The correction takes
+    variance x (1/k + n_test/n_train) for the variance of the mean of k runs.
+
+    Args:
+        differences: one a run, at least two.
+        test_to_train: n_test / n_train of a run; 1/9 for ten folds, 0 for no correction.
+
+    Returns:
+        the test; where all differences are equal, t is infinite and p 0 (equal
+        and zero: t is 0 and p 1).
+
+    Raises:
+        ValueError: fewer than two differences, one that is not finite, or a negative ratio.
+
+    Source: Nadeau and Bengio, "Inference for the generalization error", 2003.
+    """
+    from scipy.special import stdtr
+
+    sample = np.asarray(differences, dtype=np.float64)
+    if sample.ndim != 1 or len(sample) < 2 or not np.isfinite(sample).all():
+        raise ValueError("a paired test needs at least two finite differences")
+    if not test_to_train >= 0.0:
+        raise ValueError(f"test_to_train must not be negative: {test_to_train}")
+    mean, variance = float(sample.mean()), float(sample.var(ddof=1))
+    spread = sqrt(variance * (1.0 / len(sample) + test_to_train))
+    degrees = len(sample) - 1
+    if spread > 0.0:
+        t = mean / spread
+        return PairedTest(mean, variance, t, degrees, 2.0 * float(stdtr(degrees, -abs(t))))
+    if mean == 0.0:
+        return PairedTest(0.0, 0.0, 0.0, degrees, 1.0)
+    return PairedTest(mean, 0.0, float(np.copysign(np.inf, mean)), degrees, 0.0)
+
+
+class McNemar(NamedTuple):
+    """McNemar's test: trials that only the first and only the second got right, and two-sided ``p``."""
+
+    only_first: int
+    only_second: int
+    p: float
+
+
+def mcnemar(
+    first: ArrayLike, second: ArrayLike, method: Literal["exact", "mid_p", "chi2"] = "exact"
+) -> McNemar:
+    """Whether two classifiers that judged the same trials are right equally often.
+
+    Args:
+        first, second: (n,) whether each was right on a trial.
+        method: ``exact``, the binomial test on the trials they differ in;
+            ``mid_p``, the same less half the probability of what was seen, which is
+            less conservative; ``chi2``, the approximation with continuity correction.
+
+    Raises:
+        ValueError: lists of different length, or an unknown method.
+
+    Source: McNemar, "Note on the sampling error of the difference between
+    correlated proportions or percentages", 1947; mid-p: Fagerland, Lydersen and
+    Laake, "The McNemar test for binary matched-pairs data", 2013.
+    """
+    a, b = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
+    if a.ndim != 1 or a.shape != b.shape:
+        raise ValueError("both lists must judge the same trials")
+    only_first, only_second = int((a & ~b).sum()), int((b & ~a).sum())
+    return McNemar(only_first, only_second, mcnemar_p(only_first, only_second, method))
+
+
+def mcnemar_p(
+    only_first: int, only_second: int, method: Literal["exact", "mid_p", "chi2"] = "exact"
+) -> float:
+    """Two-sided p of :func:`mcnemar` from the two counts of trials on which the classifiers differ."""
+    if only_first < 0 or only_second < 0:
+        raise ValueError("counts must not be negative")
+    if method not in ("exact", "mid_p", "chi2"):
+        raise ValueError(f"method must be exact, mid_p or chi2, not {method!r}")
+    trials = only_first + only_second
+    if trials == 0 or only_first == only_second:
+        return 1.0
+    if method == "chi2":
+        from scipy.special import chdtrc
+
+        return float(chdtrc(1, max(0, abs(only_first - only_second) - 1) ** 2 / trials))
+    fewer = min(only_first, only_second)
+    below = sum(comb(trials, count) for count in range(fewer + 1))
+    seen = comb(trials, fewer) if method == "mid_p" else 0
+    # Whole numbers until the last step: no rounding, however many trials.
+    return float(min(1.0, (2 * below - seen) / 2**trials))
+
+
+class Fold(NamedTuple):
+    """A run of a cross-validation: indices to train on and to test on, each in ascending order."""
+
+    train: Indices
+    test: Indices
+
+
+def repeated_stratified_folds(
+    labels: ArrayLike, folds: int = 10, repeats: int = 10, seed: int = 0
+) -> list[Fold]:
+    """Folds of a repeated stratified cross-validation.
+
+    Each repeat tests every sample once; sizes of folds differ by at most one, and
+    so do the counts of every class in them.
+
+    Args:
+        labels: (n,) class of every sample.
+
+    Returns:
+        repeats x folds runs, repeat by repeat.
+
+    Raises:
+        ValueError: fewer than 2 folds, no repeat, or a class with fewer samples than folds.
+    """
+    classes, members = np.unique(np.asarray(labels), return_inverse=True)
+    if folds < 2 or repeats < 1:
+        raise ValueError(f"{repeats} repeats of {folds} folds are no cross-validation")
+    counts = np.bincount(members, minlength=len(classes))
+    if len(counts) == 0 or counts.min() < folds:
+        raise ValueError(f"every class needs at least {folds} samples, one a fold")
+    rng = np.random.default_rng(seed)
+    everyone = np.arange(len(members))
+    runs = []
+    for _ in range(repeats):
+        # Dealt out like cards, class after class, to the folds in a random order.
+        deck = np.concatenate([rng.permutation(np.flatnonzero(members == c)) for c in range(len(classes))])
+        owner = np.empty(len(members), dtype=np.intp)
+        owner[deck] = rng.permutation(folds)[everyone % folds]
+        runs += [Fold(np.flatnonzero(owner != k), np.flatnonzero(owner == k)) for k in range(folds)]
+    return runs
+
+
+def stratified_hold_out(labels: ArrayLike, share: float, rng: np.random.Generator) -> Fold:
+    """One random split that keeps the classes' shares: ceil(share x n) samples are held out.
+
+    Which class gives the samples that do not divide evenly is settled by largest
+    remainder. Each class keeps at least one sample on both sides.
+
+    Raises:
+        ValueError: a share that is not between 0 and 1, or a class with fewer than two samples.
+    """
+    classes, members = np.unique(np.asarray(labels), return_inverse=True)
+    counts = np.bincount(members, minlength=len(classes))
+    if not 0.0 < share < 1.0:
+        raise ValueError(f"the held-out share must lie between 0 and 1, not {share}")
+    if len(counts) == 0 or counts.min() < 2:
+        raise ValueError("every class needs at least two samples to be split")
+    total = int(np.ceil(share * len(members)))
+    wanted = counts * total / len(members)
+    held = np.floor(wanted).astype(int)
+    most_left = np.argsort(held - wanted, kind="stable")
+    held[most_left[: total - held.sum()]] += 1
+    held = np.clip(held, 1, counts - 1)
+    out = np.concatenate(
+        [rng.permutation(np.flatnonzero(members == c))[: held[c]] for c in range(len(classes))]
+    )
+    mask = np.zeros(len(members), dtype=bool)
+    mask[out] = True
+    return Fold(np.flatnonzero(~mask), np.flatnonzero(mask))
+
+
+class ReliabilityBin(NamedTuple):
+    """Trials with predictions in ``low`` to ``high``: how many, mean prediction, share of successes."""
+
+    low: float
+    high: float
+    trials: int
+    predicted: float
+    observed: float
+
+
+def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
+    """What was predicted beside what came true, in bins of equal width; empty bins are left out.
+
+    Raises:
+        ValueError: lists of different length or none, no bin, or values outside [0, 1].
+    """
+    predicted, came = np.asarray(probabilities, dtype=np.float64), np.asarray(outcomes, dtype=np.float64)
+    if predicted.ndim != 1 or predicted.shape != came.shape or len(predicted) == 0:
+        raise ValueError("a reliability needs as many outcomes as probabilities, and at least one")
+    if bins < 1:
+        raise ValueError(f"{bins} bins")
+    if not (((predicted >= 0.0) & (predicted <= 1.0)).all() and np.isin(came, (0.0, 1.0)).all()):
+        raise ValueError("probabilities lie in [0, 1] and outcomes are 0 or 1")
+    places = np.minimum((predicted * bins).astype(int), bins - 1)
+    return [
+        ReliabilityBin(
+            k / bins,
+            (k + 1) / bins,
+            int((places == k).sum()),
+            float(predicted[places == k].mean()),
+            float(came[places == k].mean()),
+        )
+        for k in np.unique(places)
+    ]
+
+
+def calibration_error(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> float:
+    """Expected calibration error: the mean gap between predicted and observed, weighted by trials.
+
+    Arguments and errors as for :func:`reliability`.
+
+    Source: Naeini, Cooper and Hauskrecht, "Obtaining well calibrated probabilities
+    using Bayesian binning", 2015.
+    """
+    table = reliability(probabilities, outcomes, bins)
+    total = sum(row.trials for row in table)
+    return sum(row.trials * abs(row.predicted - row.observed) for row in table) / total
+
+
+def log_loss(probabilities: ArrayLike, outcomes: ArrayLike) -> float:
+    """Mean negative log-likelihood of 0/1 outcomes; a certainty that fails counts as 1e-15."""
+    predicted, came = np.asarray(probabilities, dtype=np.float64), np.asarray(outcomes, dtype=np.float64)
+    given = np.where(came == 1.0, predicted, 1.0 - predicted)
+    return float(-np.log(np.maximum(given, 1e-15)).mean())
+
+
+def _check_count(successes: int, trials: int, confidence: float) -> None:
+    if trials < 0 or not 0 <= successes <= trials:
+        raise ValueError(f"{successes} successes of {trials} trials is not a count")
+    if not 0.0 < confidence < 1.0:
+        raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")

@@ -1,8 +1,23 @@
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy import stats
+from sklearn.metrics import log_loss as sklearn_log_loss
 
-from robobt.statistics import wilson_interval
+from robobt.statistics import (
+    calibration_error,
+    clopper_pearson_interval,
+    corrected_resampled_t_test,
+    log_loss,
+    mcnemar,
+    mcnemar_p,
+    mean_interval,
+    reliability,
+    repeated_stratified_folds,
+    stratified_hold_out,
+    wilson_interval,
+)
 
 
 def test_known_values_of_the_wilson_interval():
@@ -44,3 +59,161 @@ def test_more_confidence_is_a_wider_interval():
 def test_impossible_counts_are_refused(successes: int, trials: int, confidence: float):
     with pytest.raises(ValueError, match=r"count|confidence"):
         wilson_interval(successes, trials, confidence)
+
+
+@given(st.integers(0, 60), st.integers(1, 60), st.sampled_from([0.8, 0.95, 0.99]))
+def test_intervals_of_a_proportion_agree_with_scipy(successes: int, trials: int, confidence: float):
+    successes = min(successes, trials)
+    theirs = stats.binomtest(successes, trials)
+    for ours, method in [(wilson_interval, "wilson"), (clopper_pearson_interval, "exact")]:
+        expected = theirs.proportion_ci(confidence, method=method)
+        assert ours(successes, trials, confidence) == pytest.approx((expected.low, expected.high), abs=1e-9)
+
+
+def test_clopper_pearson_without_trials_knows_nothing():
+    assert clopper_pearson_interval(0, 0) == (0.0, 1.0)
+
+
+@given(st.lists(st.floats(-100, 100), min_size=2, max_size=20))
+def test_the_interval_of_a_mean_agrees_with_scipy(values: list[float]):
+    assume(np.std(values) > 1e-3)
+    low, high = stats.ttest_1samp(values, 0.0).confidence_interval(0.95)
+    assert mean_interval(values) == pytest.approx((low, high))
+
+
+def test_one_value_says_nothing_about_its_mean():
+    assert mean_interval([3.0]) == (-np.inf, np.inf)
+    with pytest.raises(ValueError, match="values"):
+        mean_interval([])
+
+
+@pytest.mark.parametrize(
+    ("mean", "variance", "t", "p"), [(2.9512, 18.5950, 1.9666, 0.0520), (2.9556, 17.0759, 2.0552, 0.0425)]
+)
+def test_the_corrected_test_gives_the_published_values(mean: float, variance: float, t: float, p: float):
+    # The two rows of Table 2, from their printed mean and variance of 100 differences.
+    wave = np.tile([1.0, -1.0], 50)
+    test = corrected_resampled_t_test(mean + wave * np.sqrt(variance / wave.var(ddof=1)), 1 / 9)
+    assert (test.mean, test.variance, test.degrees) == pytest.approx((mean, variance, 99))
+    assert test.t == pytest.approx(t, abs=1e-4)
+    assert test.p == pytest.approx(p, abs=1e-4)
+
+
+@given(st.lists(st.floats(-10, 10), min_size=2, max_size=30))
+def test_without_correction_it_is_the_ordinary_paired_test(values: list[float]):
+    assume(np.std(values) > 1e-6)
+    ours, theirs = corrected_resampled_t_test(values, 0.0), stats.ttest_1samp(values, 0.0)
+    assert ours.t == pytest.approx(theirs.statistic)
+    assert ours.p == pytest.approx(theirs.pvalue)
+    assert abs(corrected_resampled_t_test(values, 0.1).t) <= abs(ours.t)
+
+
+def test_equal_differences_leave_no_doubt():
+    assert corrected_resampled_t_test([0.0, 0.0], 0.1)[2:] == (0.0, 1, 1.0)
+    assert corrected_resampled_t_test([-1.0, -1.0], 0.1)[2:] == (-np.inf, 1, 0.0)
+
+
+@pytest.mark.parametrize(("values", "ratio"), [([1.0], 0.1), ([1.0, np.nan], 0.1), ([1.0, 2.0], -1.0)])
+def test_impossible_paired_tests_are_refused(values: list[float], ratio: float):
+    with pytest.raises(ValueError, match=r"differences|test_to_train"):
+        corrected_resampled_t_test(values, ratio)
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_mcnemar_agrees_with_the_binomial_test_and_is_symmetric(one: int, other: int):
+    assume(one + other > 0)
+    exact = mcnemar_p(one, other)
+    assert exact == pytest.approx(stats.binomtest(one, one + other).pvalue)
+    assert mcnemar_p(one, other, "mid_p") <= exact
+    for method in ("exact", "mid_p", "chi2"):
+        assert mcnemar_p(one, other, method) == mcnemar_p(other, one, method)
+
+
+def test_mcnemar_of_published_examples():
+    # statsmodels' documentation: exact p and corrected chi-square of 121 against 59.
+    assert mcnemar_p(121, 59) == pytest.approx(4.4344e-06, rel=1e-3)
+    assert mcnemar_p(121, 59, "chi2") == pytest.approx(stats.chi2.sf(61**2 / 180, 1))
+    # Fagerland et al., airway hyper-responsiveness: 1 and 7 discordant pairs.
+    assert mcnemar_p(1, 7) == pytest.approx(0.0703, abs=1e-4)
+    assert mcnemar_p(1, 7, "mid_p") == pytest.approx(0.0391, abs=1e-4)
+
+
+def test_mcnemar_counts_the_trials_on_which_two_classifiers_differ():
+    result = mcnemar([True, True, False, True, False], [True, False, True, False, False])
+    assert result[:2] == (2, 1)
+    assert mcnemar([True], [True]).p == 1.0
+    with pytest.raises(ValueError, match="same trials"):
+        mcnemar([True], [True, False])
+    with pytest.raises(ValueError, match="method"):
+        mcnemar_p(1, 2, "magic")  # type: ignore[arg-type]
+
+
+@given(st.integers(10, 60), st.integers(10, 60), st.integers(2, 10), st.integers(0, 5))
+def test_each_repeat_tests_every_sample_once_and_keeps_the_shares(
+    ones: int, zeros: int, folds: int, seed: int
+):
+    labels = np.random.default_rng(seed).permutation([1] * ones + [0] * zeros)
+    runs = repeated_stratified_folds(labels, folds, 2, seed)
+    assert len(runs) == 2 * folds
+    for repeat in (runs[:folds], runs[folds:]):
+        assert sorted(np.concatenate([run.test for run in repeat])) == list(range(len(labels)))
+        for run in repeat:
+            assert sorted(np.concatenate(run)) == list(range(len(labels)))
+        sizes = [len(run.test) for run in repeat]
+        assert max(sizes) - min(sizes) <= 1
+        for kind in (0, 1):
+            counts = [(labels[run.test] == kind).sum() for run in repeat]
+            assert max(counts) - min(counts) <= 1
+
+
+def test_a_seed_fixes_the_folds_and_repeats_differ():
+    labels = np.arange(60) % 3 == 0
+    one, same, other = (repeated_stratified_folds(labels, 5, 2, seed) for seed in (1, 1, 2))
+    assert all((a.test == b.test).all() for a, b in zip(one, same, strict=True))
+    assert any((a.test != b.test).any() for a, b in zip(one, other, strict=True))
+    assert any((a.test != b.test).any() for a, b in zip(one[:5], one[5:], strict=True))
+
+
+@pytest.mark.parametrize(("folds", "repeats"), [(1, 1), (5, 0), (11, 1)])
+def test_impossible_folds_are_refused(folds: int, repeats: int):
+    with pytest.raises(ValueError, match=r"cross-validation|samples"):
+        repeated_stratified_folds([0, 1] * 10, folds, repeats)
+
+
+def test_the_hold_out_of_the_published_split():
+    # 33 % of 542 with 165 goals: 363 with 111 goals and 179 with 54.
+    labels = np.arange(542) < 165
+    fold = stratified_hold_out(labels, 0.33, np.random.default_rng(3))
+    assert (len(fold.train), labels[fold.train].sum()) == (363, 111)
+    assert (len(fold.test), labels[fold.test].sum()) == (179, 54)
+    assert sorted(np.concatenate(fold)) == list(range(542))
+
+
+@pytest.mark.parametrize(("labels", "share"), [([0, 1, 1], 0.5), ([0, 0, 1, 1], 1.0)])
+def test_impossible_hold_outs_are_refused(labels: list[int], share: float):
+    with pytest.raises(ValueError, match=r"samples|share"):
+        stratified_hold_out(labels, share, np.random.default_rng(0))
+
+
+def test_reliability_and_calibration_error_worked_out_by_hand():
+    predicted, came = [0.1, 0.2, 0.9, 1.0], [0, 1, 1, 1]
+    assert reliability(predicted, came, 2) == [
+        (0.0, 0.5, 2, pytest.approx(0.15), 0.5),
+        (0.5, 1.0, 2, pytest.approx(0.95), 1.0),
+    ]
+    assert calibration_error(predicted, came, 2) == pytest.approx(0.5 * 0.35 + 0.5 * 0.05)
+
+
+@pytest.mark.parametrize(
+    ("predicted", "came", "bins"),
+    [([], [], 3), ([0.5], [1, 0], 3), ([1.5], [1], 3), ([0.5], [2], 3), ([0.5], [1], 0)],
+)
+def test_impossible_reliabilities_are_refused(predicted: list[float], came: list[int], bins: int):
+    with pytest.raises(ValueError, match=r"bins|outcomes"):
+        reliability(predicted, came, bins)
+
+
+@given(st.lists(st.tuples(st.floats(0.001, 0.999), st.integers(0, 1)), min_size=1, max_size=30))
+def test_the_log_loss_agrees_with_scikit_learn(pairs: list[tuple[float, int]]):
+    predicted, came = zip(*pairs, strict=True)
+    assert log_loss(predicted, came) == pytest.approx(sklearn_log_loss(came, predicted, labels=[0, 1]))
