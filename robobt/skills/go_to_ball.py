@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import atan2, cos, hypot, radians, sin
+from functools import lru_cache
+from math import atan2, cos, hypot, pi, radians, sin
 from typing import ClassVar, Literal
 
 from robobt.skills.ball_model import DEFAULT_BALL
 from robobt.skills.base import Skill, skill
+from robobt.skills.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.pace import Pace
 from robobt.skills.path_planner import allowed_target, travel
 from robobt.skills.pick_up_ball import LOST_DISTANCE
@@ -59,6 +61,9 @@ Policy = Callable[[Store, Approach], RobotCommand]
 POLICIES: Registry[Policy] = Registry("go-to-ball policy")
 """Every way to get to the ball by its name."""
 
+SHIPPED = {"ddpg": "go_to_ball_ddpg"}
+"""Those of them that are models, which are loaded when a leaf is made."""
+
 
 @skill
 class GoToBall(Skill):
@@ -68,8 +73,13 @@ class GoToBall(Skill):
     succeeding until the ball is 0.3 m away or more than 60 degrees off the
     heading, so that approach and pick-up do not take turns.
 
+    A trained policy hands over where it was trained to end: by the contact rule
+    in its model card, and from any side, so that ``approach`` says nothing to it. Should
+    it answer something that is no action, the skill fails and the robot stops.
+
     Args:
-        policy: what decides the motion, by name: "geometric", or another of ``POLICIES``.
+        policy: what decides the motion, by name: "geometric", or another of
+            ``POLICIES``; or a trained one by its model's name or file.
         approach: "nearest" drives straight at the ball; "behind_target" comes
             from the side opposite to ``store.shot``, else ``store.target``, else
             the attacked goal.
@@ -78,7 +88,7 @@ class GoToBall(Skill):
         goalkeeper: may enter the own defence area.
 
     Raises:
-        ValueError: no policy has that name, or no such approach.
+        ValueError: no policy has that name, its model cannot be used, or no such approach.
     """
 
     reads: ClassVar[tuple[str, ...]] = ("shot", "target")
@@ -95,15 +105,14 @@ class GoToBall(Skill):
         name: str = "",
     ) -> None:
         super().__init__(name)
-        if policy not in POLICIES:
-            raise ValueError(f"no go-to-ball policy is called {policy!r}; there are {', '.join(POLICIES)}")
         if approach not in ("nearest", "behind_target"):
             raise ValueError(f"approach must be 'nearest' or 'behind_target', not {approach!r}")
         self.policy = policy
         self.approach = approach
         self.goalkeeper = goalkeeper
         self.pace = Pace(limits, speed)
-        self._decide = POLICIES[policy]
+        self._decide = find_policy(policy, POLICIES, SHIPPED, LearnedApproach)
+        self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
         self._handed_over = False
 
     def on_running(self) -> Status:
@@ -111,15 +120,21 @@ class GoToBall(Skill):
         me, ball = self.me, self.ball
         limits = self.pace.of(me.limits)
         meeting = meeting_point(self.frame, me, limits)
-        facing = self._facing(meeting)
-        self.store.command = self._decide(self.store, Approach(meeting, facing, limits, self.goalkeeper))
+        facing = None if self._learned is not None else self._facing(meeting)
+        try:
+            self.store.command = self._decide(self.store, Approach(meeting, facing, limits, self.goalkeeper))
+        except PolicyError as error:
+            self.store.command = RobotCommand()
+            return self.fail(str(error))
         self._handed_over = has_ball(me, ball) or self._near(me, ball, facing)
         return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
 
     def _near(self, me: RobotState, ball: BallState, facing: float | None) -> bool:
         within, off = HANDOVER_DISTANCE, _FACING
+        if self._learned is not None:
+            within, off = self._learned.reached
         if self._handed_over:
-            within, off = LOST_DISTANCE, _FACING_STILL
+            within, off = LOST_DISTANCE, max(off, _FACING_STILL)
         dx, dy = ball.x - me.x, ball.y - me.y
         bearing = atan2(dy, dx)
         return (
@@ -163,6 +178,61 @@ def geometric(store: Store, wanted: Approach) -> RobotCommand:
         goalkeeper=wanted.goalkeeper,
         final_speed=0.0 if round_it else _ARRIVAL_SPEED,
     )
+
+
+class LearnedApproach:
+    """An approach that a trained policy decides, within the limits that it is asked to keep.
+
+    Args:
+        model: name or file of a model for GoToBall.
+
+    Attributes:
+        reached: distance to the ball [m] and angle off the heading [rad] at which it was
+            trained to have reached it; a distance of 0 where it was trained to touch it.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+
+    def __init__(self, model: str) -> None:
+        self._control = LearnedControl(model, skill="GoToBall")
+        self.reached = _reached(self._control.card.environment.get("contact"))
+
+    def __call__(self, store: Store, wanted: Approach) -> RobotCommand:
+        """The command of one tick.
+
+        Raises:
+            PolicyError: the policy answers what is no action.
+        """
+        command, limits = self._control.decide(store.frame, store.me), wanted.limits
+        speed = hypot(command.vx, command.vy)
+        if speed > limits.max_speed:
+            command.vx *= limits.max_speed / speed
+            command.vy *= limits.max_speed / speed
+        command.omega = min(limits.max_turn, max(-limits.max_turn, command.omega))
+        return command
+
+
+def _reached(contact: object) -> tuple[float, float]:
+    rule = contact if isinstance(contact, dict) else {}
+    if rule.get("rule") in ("infrared", "held"):
+        return (0.0, pi)
+    distance_, angle = rule.get("distance"), rule.get("angle")
+    within = float(distance_) if isinstance(distance_, int | float) else HANDOVER_DISTANCE
+    if rule.get("rule") == "distance_facing" and isinstance(angle, int | float):
+        return (within, float(angle))
+    return (within, pi)
+
+
+@POLICIES.register("ddpg")
+def ddpg(store: Store, wanted: Approach) -> RobotCommand:
+    """Drive as the shipped model says that was trained with DDPG: straight at the ball, from any side."""
+    return _shipped()(store, wanted)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> LearnedApproach:
+    return LearnedApproach(SHIPPED["ddpg"])
 
 
 def beside(ball: Point, facing: float) -> Point:

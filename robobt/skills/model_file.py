@@ -47,6 +47,10 @@ class ModelError(ValueError):
     """A model that cannot be used: one line that names the file."""
 
 
+class UnknownModelError(ModelError):
+    """No shipped model has that name."""
+
+
 @dataclass(frozen=True)
 class ModelFile:
     """A model file whose card and checksums are in order.
@@ -106,7 +110,7 @@ def find_model(name_or_path: str | Path) -> Path:
     """The file of a model: a path, or the name of a shipped one.
 
     Raises:
-        ModelError: there is no such file or shipped model.
+        UnknownModelError: no shipped model has that name.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
@@ -117,7 +121,7 @@ def find_model(name_or_path: str | Path) -> Path:
         if path.is_file():
             return path
     there = ", ".join(sorted({path.stem for path in list_models(folder)})) or "none"
-    raise ModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+    raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
 
 
 def list_models(folder: Path) -> list[Path]:

@@ -6,7 +6,7 @@ import ast
 import pickletools
 import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -39,7 +39,7 @@ class Network(Protocol):
     def batch(self, inputs: Floats) -> Floats:
         """(n, size) -> (n, outputs), in single precision."""
 
-    def single(self) -> Callable[[Sequence[float]], list[float]]:
+    def single(self) -> Callable[[ArrayLike], list[float]]:
         """A function of one observation, with memory of its own: not for two threads at once."""
 
 
@@ -79,7 +79,7 @@ class Policy:
         answers = self._network.batch(np.ascontiguousarray(given.reshape(-1, size)))
         return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
 
-    def single(self) -> Callable[[Sequence[float]], list[float]]:
+    def single(self) -> Callable[[ArrayLike], list[float]]:
         """A quick function of one observation, for one robot's control loop.
 
         It does not check what it is given. Each one has memory of its own.
@@ -182,12 +182,12 @@ class _TorchScript:
             raise ModelError("answers no tensor")
         return np.asarray(answer.numpy(), dtype=np.float32)
 
-    def single(self) -> Callable[[Sequence[float]], list[float]]:
+    def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
         tensor = self._torch.from_numpy(buffer)
         forward, no_gradient = self._forward, self._torch.inference_mode()
 
-        def infer(observation: Sequence[float]) -> list[float]:
+        def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
             with no_gradient:
                 return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
@@ -220,11 +220,11 @@ class _Onnx:
     def batch(self, inputs: Floats) -> Floats:
         return np.asarray(self._session.run(self._output, {self._input: inputs})[0], dtype=np.float32)
 
-    def single(self) -> Callable[[Sequence[float]], list[float]]:
+    def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
         run, wanted, given = self._session.run, self._output, {self._input: buffer}
 
-        def infer(observation: Sequence[float]) -> list[float]:
+        def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
             return run(wanted, given)[0].tolist()[0]  # type: ignore[no-any-return]
 
