@@ -1,6 +1,7 @@
 import json
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,44 @@ from typer.testing import CliRunner, Result
 from robobt import __version__
 from robobt.cli import app
 from robobt.match.recording import load_recording
-from robobt.plays import PLAYS
+from robobt.plays import PLAYS, python_files
 from robobt.resources import bundled_scenarios, models_folder
 from robobt.skills import SKILLS
+from robobt.skills.go_to_ball import POLICIES
+from robobt.skills.raters import RATERS
 from tests.match.scripted import data
 
-COMMANDS = ("match", "replay", "scenarios", "plays", "skills", "tree", "bench sim", "bench match")
+COMMANDS = (
+    "match",
+    "replay",
+    "scenarios",
+    "plays",
+    "skills",
+    "raters",
+    "policies",
+    "tree",
+    "bench sim",
+    "bench match",
+    "bench tree",
+)
+MINE = """
+from robobt.plays import PLAYS
+from robobt.skills.base import Skill, skill
+
+
+@skill
+class Idle(Skill):
+    \"\"\"Does nothing.\"\"\"
+
+    def on_running(self):
+        return self.run()
+
+
+@PLAYS.register("idle")
+def idle():
+    \"\"\"Nothing at all.\"\"\"
+    return Idle()
+"""
 
 
 def robobt(*arguments: str | Path, code: int = 0) -> Result:
@@ -44,6 +77,17 @@ def complaint(*arguments: str | Path, code: int = 1) -> str:
 
 def help_of(command: str) -> str:
     return " ".join(robobt(*command.split(), "--help").stdout.replace("│", " ").split())
+
+
+@pytest.fixture
+def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A Python file with a skill and a play, which are forgotten after the test."""
+    monkeypatch.setattr(python_files, "_imported", {})
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    path = tmp_path / "mine.py"
+    path.write_text(MINE)
+    with PLAYS.temporarily(), SKILLS.temporarily():
+        yield path
 
 
 @pytest.fixture
@@ -157,6 +201,39 @@ class TestMatch:
             "blue 0: its tree failed in 5 ticks; the first: Scripted: RuntimeError: broken" in result.stderr
         )
 
+    def test_a_tree_that_fails_can_end_the_run(self, scenario: Path):
+        broken = data()
+        broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
+        scenario.write_text(yaml.safe_dump(broken))
+        said = complaint("match", scenario, "--on-error", "raise")
+        assert said.startswith(
+            f"robobt: {scenario}: trial 0: TreeError: blue 0: Scripted: RuntimeError: broken"
+        )
+
+    def test_nodes_can_follow_a_script(self, scenario: Path):
+        substitute = ["--substitute", "blue 0:Scripted=RUNNING"]
+        assert told("match", scenario, *substitute)["robots"]["blue 0"]["kicks"]["mean"] == 0
+        assert told("match", scenario)["robots"]["blue 0"]["kicks"]["mean"] == 1
+
+    @pytest.mark.parametrize(
+        ("rule", "said"),
+        [
+            ("Scripted=RUNNING", "takes ROBOT:PATH=STATUS"),
+            ("blue 0:Scripted", "takes ROBOT:PATH=STATUS"),
+            ("blue 0:Scripted=[", "Scripted: line 1"),
+        ],
+    )
+    def test_a_rule_that_is_none_is_a_usage_error(self, scenario: Path, rule: str, said: str):
+        assert said in " ".join(
+            complaint("match", scenario, "--substitute", rule, code=2).replace("│", " ").split()
+        )
+
+    def test_a_play_of_the_users_own_file_is_played(self, mine: Path, scenario: Path):
+        own = data()
+        own["robots"]["blue"][0].update(play="idle", params={})
+        scenario.write_text(yaml.safe_dump({**own, "ends": {"time_limit": 0.1}}))
+        assert told("match", scenario, "--import", mine)["robots"]["blue 0"]["errors"] == 0
+
 
 class TestReplay:
     def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
@@ -208,6 +285,44 @@ class TestLists:
         assert listed["KickToTarget"]["reads"] == list(SKILLS["KickToTarget"].reads)
         assert all(entry["description"] for entry in listed.values())
 
+    def test_every_rater_is_listed_with_its_settings_and_what_they_mean(self):
+        assert "full_angle: float = 0.3  free angle that scores 1 [rad]" in robobt("raters").stdout
+        listed = {entry["name"]: entry for entry in told("raters")["raters"]}
+        assert list(listed) == list(RATERS)
+        assert {"name": "spacing", "type": "float", "required": False, "default": 0.02} in listed["gaussian"][
+            "parameters"
+        ]
+
+    def test_every_policy_is_listed(self):
+        assert "Drive to the place beside the ball" in robobt("policies").stdout
+        assert [entry["name"] for entry in told("policies")["policies"]] == list(POLICIES)
+
+    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    def test_every_key_is_in_the_help(self, kind: str):
+        printed = told(kind)
+        explained = help_of(kind)
+        assert all(key in explained for key in (*printed, *printed[kind][0]))
+        assert printed["problems"] == []
+
+    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    def test_a_name_that_is_none_is_told_with_those_there_are(self, kind: str):
+        assert "is called 'nothing'; there are" in " ".join(
+            complaint(kind, "nothing", code=2).replace("│", " ").split()
+        )
+
+    def test_what_is_wrong_with_another_package_is_a_warning(self, monkeypatch: pytest.MonkeyPatch):
+        problem = "skill 'Bad' (bad:Bad) of the distribution bad cannot be used: RuntimeError: no"
+        monkeypatch.setitem(SKILLS._problems, "Bad", problem)
+        result = robobt("skills", "Stop")
+        assert result.stderr == f"robobt: {problem}\n"
+        assert "Stop" in result.stdout
+        assert told("skills")["problems"] == [problem]
+
+    def test_what_a_file_of_the_users_registers_is_listed(self, mine: Path):
+        assert "Nothing at all." in robobt("plays", "idle", "--import", mine).stdout
+        (listed,) = told("skills", "Idle", "--import", mine)["skills"]
+        assert listed["description"] == "Does nothing."
+
     def test_one_can_be_looked_at_alone(self):
         assert len(told("plays", "goalkeeper")["plays"]) == 1
         printed = robobt("skills", "KickToTarget").stdout
@@ -243,6 +358,55 @@ class TestTree:
     )
     def test_usage_errors_say_what_there_is(self, arguments: list[str], said: str):
         assert said in " ".join(complaint("tree", *arguments, code=2).replace("│", " ").split())
+
+    def test_it_is_one_object_in_json(self):
+        printed = told("tree", "goalkeeper")
+        assert printed["nodes"][0] == {"path": "goalkeeper", "type": "Selector", "depth": 0}
+        assert printed["nodes"][2]["path"] == "goalkeeper/aim/BallAimedAtGoal"
+        assert printed["nodes"][2]["depth"] == 2
+
+    def test_mistakes_are_looked_for(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        children = ["HasBall", "KickToTarget"]
+        tree = {"Sequence": {"name": "shoot", "memory": True, "children": children}}
+        path.write_text(yaml.safe_dump({"play": "mine", "tree": tree}))
+        printed = robobt("tree", path, "--lint").stdout
+        assert "shoot/HasBall: is not asked again while 'KickToTarget' runs" in printed
+        assert (
+            "shoot/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
+        )
+        found = told("tree", path, "--lint")
+        assert found["findings"][0]["rule"] == "forgotten-condition"
+        assert len(found["wiring"]) == 1
+        explained = help_of("tree")
+        assert all(key in explained for key in (*found, *found["findings"][0], *found["nodes"][0]))
+
+    def test_a_tree_without_mistakes_is_told_too(self):
+        assert robobt("tree", "goalkeeper", "--lint").stdout == "Nothing found.\n"
+
+    def test_what_its_nodes_do_in_a_match_is_counted(self, scenario: Path):
+        printed = robobt("tree", "scripted", "--statistics", scenario).stdout
+        assert printed.startswith("blue 0\nnode ")
+        counted = told("tree", "scripted", "--statistics", scenario, "--seed", "3")
+        assert (counted["scenario"], counted["seed"]) == ("test", 3)
+        (node,) = counted["robots"]["blue 0"]
+        assert node["runs"] == node["ticks"] > 0
+        explained = help_of("tree")
+        assert all(key in explained for key in (*counted, *node))
+
+    def test_counting_needs_a_robot_with_the_play(self, scenario: Path):
+        assert "no robot plays 'goalkeeper'" in complaint("tree", "goalkeeper", "--statistics", scenario)
+
+    def test_a_seed_is_for_counting(self):
+        assert "is for --statistics" in complaint("tree", "goalkeeper", "--seed", "1", code=2)
+
+    def test_a_play_of_the_users_own_file(self, mine: Path):
+        assert "Idle" in robobt("tree", "idle", "--import", mine).stdout
+
+    def test_what_is_wrong_with_that_file_is_told_with_its_line(self, mine: Path):
+        mine.write_text("x = 1\nx.y\n")
+        said = complaint("tree", "idle", "--import", mine)
+        assert said == f"robobt: {mine}:2: AttributeError: 'int' object has no attribute 'y'\n"
 
 
 class TestBench:

@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, Any, ParamSpec
 
 import typer
@@ -24,6 +25,15 @@ errors = Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 """The option of every command that can print its figures for another program."""
+
+Imports = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--import",
+        help="A Python file of your own, for the plays, skills and raters it registers; may be given often.",
+    ),
+]
+"""The option of every command that knows plays or skills by name; see ``import_files``."""
 
 RECORDING = ".robobt.jsonl.gz"
 """How the name of a recorded match ends."""
@@ -65,6 +75,15 @@ def _say_error(error: Exception) -> str:
     if isinstance(error, KeyError | ValueError) and text:
         return f"{text} (robobt --debug shows where)"
     return f"{type(error).__name__}: {text} (robobt --debug shows where)"
+
+
+def import_files(paths: Iterable[Path] | None) -> None:
+    """Run the user's Python files, so that what they register is there."""
+    if paths:
+        from robobt.plays.python_files import import_file
+
+        for path in paths:
+            import_file(path)
 
 
 def unknown(kind: str, name: str | None, registry: Iterable[str]) -> typer.BadParameter:

@@ -1,119 +1,190 @@
-"""``robobt plays`` and ``robobt skills``: what is registered, with parameters."""
+"""What is registered by name: ``robobt plays``, ``skills``, ``raters`` and ``policies``."""
 
 from __future__ import annotations
 
+import inspect
 import json
-from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Json, console, one_line_errors, print_json, unknown
+from robobt.cli.common import Imports, Json, console, import_files, one_line_errors, print_json, unknown, warn
 
 if TYPE_CHECKING:
-    from robobt.tree.parameters import Parameter
+    from collections.abc import Callable
 
-    _Entries = Mapping[str, tuple[str, list[Parameter], dict[str, list[str]]]]
+    from robobt.tree.parameters import Parameter
+    from robobt.tree.registry import Registry
 
 
 def add_to(app: typer.Typer) -> None:
     """Enter the group's commands."""
-    app.command()(plays)
-    app.command()(skills)
+    for command in (plays, skills, raters, policies):
+        app.command()(command)
 
 
 @one_line_errors
 def plays(
     name: Annotated[str | None, typer.Argument(help="One play, with its whole description.")] = None,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """List the plays with their parameters.
 
-    Keys of --json: plays, a list with name, description and parameters (name,
-    type, required, default).
+    Keys of --json: plays, a list with name, description, parameters (name,
+    type, required, default) and package (the distribution it came with, null
+    for robobt's own and imported files'); problems: what is wrong with other
+    packages' plays.
     """
     from robobt.plays import PLAYS
     from robobt.tree.parameters import parameters_of
 
-    builders = {entry: PLAYS[entry] for entry in PLAYS if name in (None, entry)}
-    if not builders:
-        raise unknown("play", name, PLAYS)
-    entries: _Entries = {
-        entry: (_doc(builder), parameters_of(builder), {}) for entry, builder in builders.items()
-    }
-    _list_things("plays", entries, whole=name is not None, as_json=as_json)
+    import_files(imports)
+    _list("plays", PLAYS, name, as_json, lambda play: _Listed(_doc(play), parameters_of(play)))
 
 
 @one_line_errors
 def skills(
     name: Annotated[str | None, typer.Argument(help="One skill, with its whole description.")] = None,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """List the skills and conditions: parameters, what they read and write in the robot's store.
 
     Keys of --json: skills, a list with name, description, parameters (name,
-    type, required, default), reads and writes.
+    type, required, default), reads and writes, and package (the distribution it
+    came with, null for robobt's own and imported files'); problems: what is
+    wrong with other packages' skills.
     """
     from robobt.skills import SKILLS
     from robobt.tree.parameters import parameters_of
 
-    classes = {entry: SKILLS[entry] for entry in SKILLS if name in (None, entry)}
-    if not classes:
-        raise unknown("skill", name, SKILLS)
-    entries = {
-        entry: (
-            _doc(cls),
-            [parameter for parameter in parameters_of(cls) if parameter.name != "name"],
-            {"reads": list(cls.reads), "writes": list(cls.writes)},
-        )
-        for entry, cls in classes.items()
-    }
-    _list_things("skills", entries, whole=name is not None, as_json=as_json)
+    import_files(imports)
+
+    def listed(cls: Any) -> _Listed:
+        own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
+        return _Listed(_doc(cls), own, {"reads": list(cls.reads), "writes": list(cls.writes)})
+
+    _list("skills", SKILLS, name, as_json, listed)
 
 
-def _list_things(
-    kind: str,
-    entries: _Entries,
-    *,
-    whole: bool,
-    as_json: bool,
+@one_line_errors
+def raters(
+    name: Annotated[str | None, typer.Argument(help="One rater, with its whole description.")] = None,
+    imports: Imports = None,
+    as_json: Json = False,
 ) -> None:
-    if as_json:
-        things = [
-            {
-                "name": name,
-                "description": doc,
-                "parameters": [
-                    {
-                        "name": parameter.name,
-                        "type": parameter.kind,
-                        "required": parameter.required,
-                        "default": None if parameter.required else _plain(parameter.default),
-                    }
-                    for parameter in parameters
-                ],
-                **store,
-            }
-            for name, (doc, parameters, store) in entries.items()
+    """List the shot raters, which judge shots for SelectShot and others, with their settings.
+
+    Keys of --json: raters, a list with name, description, parameters (name,
+    type, required, default) and package (the distribution it came with, null
+    for robobt's own and imported files'); problems: what is wrong with other
+    packages' raters.
+    """
+    from robobt.skills.raters import RATERS
+    from robobt.tree.parameters import Parameter
+
+    import_files(imports)
+
+    def listed(cls: Any) -> _Listed:
+        fields = cls.model_fields.items()
+        own = [
+            Parameter(
+                key, given.annotation, inspect.Parameter.empty if given.is_required() else given.default
+            )
+            for key, given in fields
         ]
-        print_json({kind: things})
-        return
-    for name, (doc, parameters, store) in entries.items():
-        console.print(f"[bold]{escape(name)}[/bold]")
+        return _Listed(_doc(cls), own, says={key: given.description or "" for key, given in fields})
+
+    _list("raters", RATERS, name, as_json, listed)
+
+
+@one_line_errors
+def policies(
+    name: Annotated[str | None, typer.Argument(help="One policy, with its whole description.")] = None,
+    imports: Imports = None,
+    as_json: Json = False,
+) -> None:
+    """List the policies of GoToBall: what may stand in its parameter policy.
+
+    Keys of --json: policies, a list with name, description, parameters (none)
+    and package (null); problems (none).
+    """
+    from robobt.skills.go_to_ball import POLICIES
+
+    import_files(imports)
+    _list("policies", POLICIES, name, as_json, lambda policy: _Listed(_doc(policy), []))
+
+
+@dataclass
+class _Listed:
+    """What is said of an entry.
+
+    Attributes:
+        store: verb and entries of the store.
+        says: what parameters mean, where their type does not carry the description.
+    """
+
+    doc: str
+    parameters: list[Parameter]
+    store: dict[str, list[str]] = field(default_factory=dict)
+    says: dict[str, str] = field(default_factory=dict)
+
+
+def _list(
+    kind: str, registry: Registry[Any], name: str | None, as_json: bool, listed: Callable[[Any], _Listed]
+) -> None:
+    if name is not None and name not in registry:
+        raise unknown(registry.kind, name, registry)
+    entries = {entry: listed(registry[entry]) for entry in registry if name in (None, entry)}
+    if as_json:
+        things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]
+        print_json({kind: things, "problems": list(registry.problems)})
+    else:
+        for entry, one in entries.items():
+            _print(entry, one, registry.source(entry), whole=name is not None)
+    for problem in registry.problems:
+        warn(problem)
+
+
+def _data(name: str, listed: _Listed, package: str | None) -> dict[str, Any]:
+    parameters = [
+        {
+            "name": parameter.name,
+            "type": parameter.kind,
+            "required": parameter.required,
+            "default": None if parameter.required else _plain(parameter.default),
+        }
+        for parameter in listed.parameters
+    ]
+    return {
+        "name": name,
+        "description": listed.doc,
+        "parameters": parameters,
+        **listed.store,
+        "package": package,
+    }
+
+
+def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> None:
+    origin = "" if package is None else f"  from {escape(package)}"
+    console.print(f"[bold]{escape(name)}[/bold]{origin}")
+    doc = listed.doc if whole else listed.doc.partition("\n")[0]
+    console.print(f"  {escape(doc)}".replace("\n", "\n  "), soft_wrap=True)
+    for parameter in listed.parameters:
+        meaning = listed.says.get(parameter.name, "")
         console.print(
-            f"  {escape(doc if whole else doc.partition(chr(10))[0])}".replace("\n", "\n  "), soft_wrap=True
+            f"    [cyan]{escape(str(parameter))}[/cyan]" + (f"  {escape(meaning)}" if meaning else ""),
+            soft_wrap=True,
         )
-        for parameter in parameters:
-            console.print(f"    [cyan]{escape(str(parameter))}[/cyan]", soft_wrap=True)
-        for verb, names in store.items():
-            if names:
-                console.print(f"    {verb} {', '.join(names)}", style="dim")
+    for verb, names in listed.store.items():
+        if names:
+            console.print(f"    {verb} {', '.join(names)}", style="dim")
 
 
 def _doc(thing: object) -> str:
-    import inspect
-
     return inspect.getdoc(thing) or ""
 
 

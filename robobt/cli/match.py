@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,12 +16,15 @@ from robobt.cli.common import (
     MAX_SEED,
     PAGE,
     RECORDING,
+    Imports,
     Json,
     Progress,
     console,
     cores,
     errors,
+    import_files,
     one_line_errors,
+    parse_assignments,
     print_json,
     say,
     table,
@@ -28,6 +32,13 @@ from robobt.cli.common import (
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
+
+
+class OnError(StrEnum):
+    """What an exception in a tree does."""
+
+    STOP = "stop"
+    RAISE = "raise"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -86,6 +97,24 @@ def match(
             "a run that was stopped goes on from there.",
         ),
     ] = None,
+    on_error: Annotated[
+        OnError | None,
+        typer.Option(
+            "--on-error",
+            help="What an exception in a tree does: stop that robot for the tick, or raise and end "
+            "the run with the node's path; by default what the scenario says.",
+        ),
+    ] = None,
+    substitute: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--substitute",
+            metavar="ROBOT:PATH=STATUS",
+            help="Let nodes follow a script, as in 'yellow 0:*/BlockShot=FAILURE' or "
+            "'blue:*/KickToTarget=[RUNNING, SUCCESS]'; may be given often.",
+        ),
+    ] = None,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print what came out.
@@ -104,7 +133,8 @@ def match(
     from robobt.match import load_scenario, run_trials, summarise
     from robobt.worlds import sim_world
 
-    loaded = load_scenario(scenario)
+    import_files(imports)
+    loaded = _changed(load_scenario(scenario), on_error, substitute or [])
     # The simulator's settings are checked before any worker is started.
     sim_world(loaded)
     count = loaded.trials if trials is None else trials
@@ -156,6 +186,25 @@ def match(
             say(f"Replay of trial {recorded}: {written}")
     if run.interrupted:
         raise typer.Exit(130)
+
+
+def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]) -> Scenario:
+    """The scenario as the command line wants it."""
+    from robobt.match.substituted import substituted
+
+    rules = []
+    for text in substitute:
+        robot, colon, rule = text.partition(":")
+        path, equals, status = rule.rpartition("=")
+        if not colon or not equals or not path:
+            raise typer.BadParameter(f"takes ROBOT:PATH=STATUS, not {text!r}", param_hint="--substitute")
+        ((_, script),) = parse_assignments([f"{path}={status}"], "--substitute").items()
+        rules.append((" ".join(robot.split()), path, script))
+    if rules:
+        scenario = substituted(scenario, rules)
+    if on_error is not None:
+        scenario = scenario.model_copy(update={"on_error": on_error.value})
+    return scenario
 
 
 def _check_replay(path: Path, out: Path | None) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Json, console, one_line_errors, print_json, say, table
+from robobt.cli.common import Imports, Json, console, import_files, one_line_errors, print_json, say, table
 
 if TYPE_CHECKING:
     from robobt.match import Scenario
@@ -23,6 +23,7 @@ def scenarios(
     name: Annotated[
         str | None, typer.Argument(help="One scenario, bundled or a file, with all of it.")
     ] = None,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """List the bundled scenarios, or show one.
@@ -35,6 +36,7 @@ def scenarios(
     from robobt.match import load_scenario
     from robobt.resources import bundled_scenarios
 
+    import_files(imports)
     loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]
     if as_json:
         print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})

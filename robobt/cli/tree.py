@@ -1,15 +1,29 @@
-"""``robobt tree``: shows the tree of a play."""
+"""``robobt tree``: shows the tree of a play, looks for mistakes in it and counts what its nodes do."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robobt.cli.common import one_line_errors, parse_assignments, say, unknown
+from robobt.cli.common import (
+    MAX_SEED,
+    Imports,
+    Json,
+    errors,
+    import_files,
+    one_line_errors,
+    parse_assignments,
+    print_json,
+    say,
+    unknown,
+)
+
+if TYPE_CHECKING:
+    from robobt.tree import Behaviour
 
 
 def add_to(app: typer.Typer) -> None:
@@ -33,32 +47,154 @@ def tree(
         Path | None,
         typer.Option("--xml", help="Write the tree as XML that Groot2 opens (BehaviorTree.CPP 4)."),
     ] = None,
+    lint: Annotated[
+        bool, typer.Option("--lint", help="Look for what is seldom meant, and for entries nobody writes.")
+    ] = False,
+    statistics: Annotated[
+        str | None,
+        typer.Option(
+            "--statistics",
+            metavar="SCENARIO",
+            help="Play a trial of this scenario and count what the nodes of the robots with this play do.",
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            "--seed", "-s", min=0, max=MAX_SEED, help="For --statistics; by default the scenario's."
+        ),
+    ] = None,
+    imports: Imports = None,
+    as_json: Json = False,
 ) -> None:
-    """Show the tree of a play, or write it to a file."""
-    from robobt.match.problems import naming
+    """Show the tree of a play, write it to a file, look for mistakes in it, or count what its nodes do.
+
+    Keys of --json: play; nodes, each with path, type and depth. With --lint:
+    findings, each with path, rule and message; wiring: entries of the store that
+    are read and that nobody writes, or of another type. With --statistics:
+    scenario, seed, and robots: for each robot its nodes with path, ticks,
+    transitions (of status), successes, failures, runs (ticks that left it
+    running), own_time and time (with all below it), in seconds.
+    """
+    if seed is not None and statistics is None:
+        raise typer.BadParameter("is for --statistics", param_hint="--seed")
+    import_files(imports)
+    root = _build(play, param or [])
+    written = _write(root, Path(play).stem, [svg, dot, yaml, xml], quiet=as_json)
+    data: dict[str, Any] = {"play": play}
+    if lint:
+        data.update(_lint(root))
+    if statistics is not None:
+        data.update(_statistics(play, statistics, seed, quiet=as_json))
+    if as_json:
+        print_json({**data, "nodes": _nodes(root)})
+    elif lint:
+        _print_findings(data)
+    elif statistics is None and not written:
+        from robobt.tree.drawing import tree_text
+
+        say(tree_text(root))
+
+
+def _build(play: str, params: list[str]) -> Behaviour:
     from robobt.plays import PLAYS
-    from robobt.plays.files import find_play, is_play_file, tree_xml, tree_yaml
-    from robobt.tree.drawing import tree_dot, tree_svg, tree_text
+    from robobt.plays.files import find_play, is_play_file
     from robobt.tree.parameters import ParameterError, check_parameters
 
     if not is_play_file(play) and play not in PLAYS:
         raise unknown("play", play, PLAYS)
     builder = find_play(play)
     try:
-        root = builder(**check_parameters(play, builder, parse_assignments(param or [], "--param")))
+        return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
-    name = Path(play).stem
-    writers: list[tuple[Path | None, Callable[[], str]]] = [
-        (svg, partial(tree_svg, root)),
-        (dot, partial(tree_dot, root)),
-        (yaml, partial(tree_yaml, root, name)),
-        (xml, partial(tree_xml, root, name)),
+
+
+def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool) -> bool:
+    """Write the tree to those of the four files that are named; whether there was one."""
+    from robobt.match.problems import naming
+    from robobt.plays.files import tree_xml, tree_yaml
+    from robobt.tree.drawing import tree_dot, tree_svg
+
+    writers: list[Callable[[], str]] = [
+        partial(tree_svg, root),
+        partial(tree_dot, root),
+        partial(tree_yaml, root, name),
+        partial(tree_xml, root, name),
     ]
-    for path, write in writers:
+    for path, write in zip(paths, writers, strict=True):
         if path is not None:
+            text = write()
             with naming(path):
-                path.write_text(write(), encoding="utf-8")
-            say(f"Tree: {path}")
-    if all(path is None for path, _ in writers):
-        say(tree_text(root))
+                path.write_text(text, encoding="utf-8")
+            if not quiet:
+                say(f"Tree: {path}")
+    return any(path is not None for path in paths)
+
+
+def _nodes(root: Behaviour) -> list[dict[str, Any]]:
+    from robobt.tree import node_path, preorder
+
+    depths = {root: 0}
+    for node in preorder(root):
+        depths.update(dict.fromkeys(node.children, depths[node] + 1))
+    return [
+        {"path": node_path(node), "type": type(node).__name__, "depth": depths[node]}
+        for node in preorder(root)
+    ]
+
+
+def _lint(root: Behaviour) -> dict[str, Any]:
+    from robobt.skills.store import GIVEN, Store
+    from robobt.tree import WiringError, check_tree
+    from robobt.tree.aids import lint_tree
+
+    wiring: tuple[str, ...] = ()
+    try:
+        check_tree(root, Store, GIVEN)
+    except WiringError as error:
+        wiring = error.problems
+    findings = [
+        {"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)
+    ]
+    return {"findings": findings, "wiring": list(wiring)}
+
+
+def _print_findings(data: dict[str, Any]) -> None:
+    for problem in data["wiring"]:
+        say(problem)
+    for found in data["findings"]:
+        say(f"{found['path']}: {found['message']} [{found['rule']}]")
+    if not data["wiring"] and not data["findings"]:
+        say("Nothing found.")
+
+
+def _statistics(play: str, source: str, seed: int | None, *, quiet: bool) -> dict[str, Any]:
+    from robobt.match import load_scenario
+    from robobt.match.node_statistics import node_statistics
+    from robobt.worlds import sim_world
+
+    scenario = load_scenario(source)
+    with errors.status("playing"):
+        counted = node_statistics(scenario, sim_world, play, seed)
+    if not quiet:
+        for robot, statistics in counted.items():
+            say(f"{robot}\n{statistics.as_table()}")
+    robots = {
+        str(robot): [
+            {
+                "path": one.path,
+                "ticks": one.ticks,
+                "transitions": one.transitions,
+                "successes": one.successes,
+                "failures": one.failures,
+                "runs": one.runs,
+                "own_time": one.own_time,
+                "time": one.time,
+            }
+            for one in statistics.counts()
+        ]
+        for robot, statistics in counted.items()
+    }
+    used = scenario.seed if seed is None else seed
+    return {"scenario": scenario.name, "seed": used, "robots": robots}

@@ -19,7 +19,7 @@ from robobt.match.referee import Referee, RefereeEvent
 from robobt.match.results import MatchResult, RobotResult
 from robobt.match.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
-from robobt.tree import TreeRunner, node_path
+from robobt.tree import TreeError, TreeRunner, node_path
 from robobt.tree.parameters import say_value
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -121,7 +121,11 @@ class Match:
             self._recorder = None
 
     def tick(self) -> bool:
-        """One control period; False when the match is over, in which case nobody has acted."""
+        """One control period; False when the match is over, in which case nobody has acted.
+
+        Raises:
+            TreeError: a tree raised, and the scenario's ``on_error`` is "raise"; robot and node are named.
+        """
         truth = self.world.truth()
         self._time = truth.time
         if self._referee is not None:
@@ -181,7 +185,9 @@ class Match:
             entropy = (*seeds.spawn_key, list(Team).index(robot.team), robot.number)
             rng = np.random.default_rng(np.random.SeedSequence(seeds.entropy, spawn_key=entropy))
             store = Store(start, RobotState(robot.number, 0.0, 0.0), rng=rng, team=teams[robot.team])
-            players.append(Player(robot, TreeRunner(setup.build_tree(), store), store))
+            players.append(
+                Player(robot, TreeRunner(setup.build_tree(), store, self.scenario.on_error), store)
+            )
         return players
 
     def _decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
@@ -199,7 +205,10 @@ class Match:
     def _decide_for(self, player: Player, view: Frame, me: RobotState) -> RobotCommand:
         store, runner = player.store, player.runner
         store.frame, store.me, store.command = view, me, RobotCommand()
-        runner.tick()
+        try:
+            runner.tick()
+        except TreeError as error:
+            raise TreeError(f"{player.robot}: {error}") from error.__cause__
         if runner.error is None:
             fault = _fault_of(store.command)
             if fault is None:
@@ -208,6 +217,8 @@ class Match:
             problem = f"{node_path(tip)}: {fault}"
             _log.warning("tree stopped: %s", problem)
             runner.stop()
+            if self.scenario.on_error == "raise":
+                raise TreeError(f"{player.robot}: {problem}")
         else:
             problem = runner.error
         figures = self.measures.robots[player.robot]

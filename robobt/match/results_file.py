@@ -119,10 +119,12 @@ class ResultsFile:
 
 def _digest(scenario: Scenario) -> str:
     """Equal for scenarios that play the same; how often and with which seed is not part of it."""
-    text = scenario.model_dump_json(exclude={"trials", "seed", "description"})
+    text = scenario.model_dump_json(exclude={"trials", "seed", "description", "on_error"})
     digest = hashlib.blake2b(text.encode(), digest_size=16)
     for _, setup in scenario.robots:
+        # Their words, not only their names: whoever edits a tree plays another match.
         if is_play_file(setup.play):
-            # Its words, not only its name: whoever edits a tree plays another match.
             digest.update(Path(setup.play).read_bytes())
+        if isinstance(setup.substitute, str):
+            digest.update(Path(setup.substitute).read_bytes())
     return digest.hexdigest()

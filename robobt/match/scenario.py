@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
@@ -20,6 +20,7 @@ from robobt.plays.files import find_play, is_play_file
 from robobt.resources import bundled_scenarios
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
+from robobt.tree.aids import substitute
 from robobt.tree.files import TreeFileError
 from robobt.tree.parameters import ParameterError, check_parameters, say_value
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
@@ -69,6 +70,11 @@ class RobotSetup(Part):
     limits: RobotLimits | None = Field(
         None, description="limits of this robot; those not given are the simulator's"
     )
+    substitute: dict[str, Any] | str = Field(
+        default_factory=dict,
+        description="nodes of its tree that follow a script instead, by the pattern of their paths; "
+        "or a file of such rules beside the scenario",
+    )
     start: RobotStart = Field(description="pose at the start, in the own team's view")
 
     @field_validator("play")
@@ -85,6 +91,8 @@ class RobotSetup(Part):
             check_tree(tree, Store, GIVEN)
         except ParameterError as error:
             raise FieldError(f"params.{error.parameter}", str(error)) from error
+        except _SubstitutionError as error:
+            raise FieldError("substitute", message_of(error)) from error
         except (TreeFileError, WiringError) as error:
             raise FieldError("play", message_of(error)) from error
         except Exception as error:
@@ -97,13 +105,25 @@ class RobotSetup(Part):
     def build_tree(self) -> Behaviour:
         """A new tree of this robot's play."""
         builder = find_play(self.play)
-        return builder(**check_parameters(self.play, builder, self.params))
+        tree = builder(**check_parameters(self.play, builder, self.params))
+        if not self.substitute:
+            return tree
+        try:
+            return substitute(tree, self.substitute)
+        except TreeFileError as error:
+            # Rules in the scenario itself are in no file of their own.
+            told = str(error) if isinstance(self.substitute, str) else error.problem
+            raise _SubstitutionError(told) from error
 
     def limits_over(self, base: RobotLimits) -> RobotLimits:
         """The robot's limits where ``base`` holds for those the scenario leaves out."""
         if self.limits is None:
             return base
         return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
+
+
+class _SubstitutionError(ValueError):
+    """A rule for nodes to be replaced is wrong."""
 
 
 class Robots(Part):
@@ -181,6 +201,10 @@ class Scenario(Part):
     ends: Ends
     referee: RefereeSettings | None = Field(
         None, description="true or settings for a referee on the field, none for free play"
+    )
+    on_error: Literal["stop", "raise"] = Field(
+        "stop",
+        description="what an exception in a tree does: stop that robot for the tick, or end the match",
     )
     _source: str = PrivateAttr("")
 
@@ -301,13 +325,17 @@ def scenario_from(data: object, source: str) -> Scenario:
 
 
 def _beside(data: object, folder: Path) -> object:
-    """The data with its robots' tree files as seen from here, not from the scenario's folder."""
+    """The data with its robots' files as seen from here, not from the scenario's folder."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
-            play = robot.get("play") if isinstance(robot, dict) else None
+            if not isinstance(robot, dict):
+                continue
+            play, rules = robot.get("play"), robot.get("substitute")
             if isinstance(play, str) and is_play_file(play):
                 robot["play"] = str(folder / play)
+            if isinstance(rules, str):
+                robot["substitute"] = str(folder / rules)
     return data
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import MAX_SEED, Json, errors, one_line_errors, print_json, say
+from robobt.cli.common import MAX_SEED, Imports, Json, errors, import_files, one_line_errors, print_json, say
 
 
 def add_to(bench: typer.Typer) -> None:
@@ -26,6 +26,7 @@ def bench_match(
     seed: Annotated[
         int | None, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="By default the scenario's.")
     ] = None,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """Measure a whole match on one core: every robot's tree, the physics and the recording.
@@ -44,6 +45,7 @@ def bench_match(
     from robobt.match.bench import bench_match as measure
     from robobt.worlds import sim_world
 
+    import_files(imports)
     loaded = load_scenario(scenario)
     with errors.status(f"playing {escape(loaded.name)}"):
         figures = measure(loaded, sim_world, seconds, seed)

@@ -1,0 +1,46 @@
+"""What the nodes of a play do in a match."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from robobt.match.loop import Match, WorldFactory
+from robobt.match.runner import trial_seed
+from robobt.match.scenario import Scenario
+from robobt.plays.files import is_play_file
+from robobt.tree.aids import NodeStatistics
+from robobt.world.state import RobotId
+
+
+def node_statistics(
+    scenario: Scenario, world_factory: WorldFactory, play: str | None = None, seed: int | None = None
+) -> dict[RobotId, NodeStatistics]:
+    """Play a scenario's first trial and count what the nodes of its robots' trees do.
+
+    Args:
+        scenario: what is played.
+        world_factory: makes the world.
+        play: of the robots that play this; a file may be named by another path. None for all robots.
+        seed: as of :func:`~robobt.match.runner.run_trials`.
+
+    Raises:
+        ScenarioError: no robot plays it, or the scenario does not fit the world.
+    """
+    match = Match(scenario, trial_seed(scenario.seed if seed is None else seed, 0), world_factory)
+    played = {robot: setup.play for robot, setup in scenario.robots}
+    watched = {}
+    for player in match.players:
+        if play is None or _same_play(play, played[player.robot]):
+            watched[player.robot] = NodeStatistics(player.runner.root)
+            player.runner.show_to(watched[player.robot])
+    if not watched:
+        there = ", ".join(dict.fromkeys(played.values()))
+        raise scenario.error(f"no robot plays {play!r}; they play {there}", "robots")
+    match.play()
+    return watched
+
+
+def _same_play(one: str, other: str) -> bool:
+    if is_play_file(one) and is_play_file(other):
+        return Path(one).resolve() == Path(other).resolve()
+    return one == other

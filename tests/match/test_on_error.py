@@ -1,0 +1,66 @@
+"""What an exception in a robot's tree does to its match."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.match import RunError, Scenario, ScenarioError, run_trials
+from robobt.match.loop import Match
+from robobt.match.recording import load_recording
+from robobt.match.scenario import scenario_from
+from robobt.tree import TreeError
+from tests.match.scripted import PlainWorld, data
+
+
+def breaking(breaks: str, **changes: Any) -> Scenario:
+    given = data(ends={"time_limit": 0.1}, **changes)
+    given["robots"]["blue"][0]["params"] = {"breaks": breaks}
+    return scenario_from(given, "mine.yaml")
+
+
+def test_by_default_the_match_goes_on_without_the_robot() -> None:
+    (result,) = run_trials(breaking("raise"), PlainWorld).results
+    assert result.robots["blue 0"].errors == result.ticks - 1 > 0
+
+
+@pytest.mark.parametrize("breaks", ["raise", "nan"])
+def test_raise_ends_the_match_with_the_robot_and_the_nodes_path(breaks: str) -> None:
+    match = Match(breaking(breaks, on_error="raise"), 0, PlainWorld)
+    with pytest.raises(TreeError, match=r"^blue 0: Scripted: "):
+        match.tick()
+
+
+def test_what_the_node_raised_is_the_cause() -> None:
+    match = Match(breaking("raise", on_error="raise"), 0, PlainWorld)
+    with pytest.raises(TreeError) as raised:
+        match.tick()
+    assert isinstance(raised.value.__cause__, RuntimeError)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_run_ends_with_file_trial_robot_and_node(workers: int) -> None:
+    with pytest.raises(
+        RunError, match=r"^mine\.yaml: trial \d: TreeError: blue 0: Scripted: RuntimeError: brok"
+    ):
+        run_trials(breaking("raise", on_error="raise"), PlainWorld, 2, workers)
+
+
+def test_the_recording_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "raised.robobt.jsonl.gz"
+    with pytest.raises(RunError):
+        run_trials(breaking("raise", on_error="raise"), PlainWorld, record={0: path})
+    assert load_recording(path).header.trial == 0
+
+
+def test_finished_trials_can_be_continued_under_the_other_policy(tmp_path: Path) -> None:
+    out = tmp_path / "results.jsonl"
+    first = run_trials(breaking("", on_error="raise"), PlainWorld, 2, out=out)
+    assert run_trials(breaking(""), PlainWorld, 2, out=out).results == first.results
+
+
+def test_another_word_is_refused() -> None:
+    with pytest.raises(ScenarioError, match=r"mine\.yaml: on_error: input should be 'stop' or 'raise'"):
+        breaking("", on_error="ignore")
