@@ -10,6 +10,7 @@ from robobt.skills.has_ball import HasBall
 from robobt.skills.kick_to_target import KickToTarget
 from robobt.skills.pick_up_ball import PickUpBall
 from robobt.skills.select_shot import SelectShot
+from robobt.skills.shoot import Shoot
 from robobt.tree import Behaviour, Selector, Sequence
 
 
@@ -18,9 +19,15 @@ def go_to_ball_and_shoot(
     *,
     style: Literal["default", "robobulls"] = "default",
     policy: str = "geometric",
+    shoot: Literal["kick_to_target", "geometric", "ddpg"] = "kick_to_target",
+    shoot_model: str = "ddpg",
     rater: str = "segment_clearance",
 ) -> Behaviour:
     """Go to the ball, pick it up, shoot at the opponent's goal: Table 4 of the paper.
+
+    Approach and shot are hand-written or learned, in any combination. The
+    pick-up between them is hand-written, as in the paper; approach and pick-up
+    both hold on to the ball up to 0.3 m, so that they do not take turns at 0.2 m.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
     Go-To-Ball-And-Shoot.
@@ -28,7 +35,11 @@ def go_to_ball_and_shoot(
     Args:
         style: "default" goes through the three skills; "robobulls" is the paper's
             baseline, whose kick includes the way behind the ball.
-        policy: what decides the approach in the default style.
+        policy: what decides the approach in the default style: "geometric", "ddpg",
+            or the name or file of a model for GoToBall.
+        shoot: what shoots in the default style: KickToTarget at the rater's choice, or
+            Shoot with its hand-written or its learned policy.
+        shoot_model: the learned policy of Shoot: "ddpg", or the name or file of a model.
         rater: name of the shot rater that chooses the point to shoot at.
     """
     if style == "robobulls":
@@ -37,11 +48,17 @@ def go_to_ball_and_shoot(
             memory=False,
             children=[SelectShot(rater=rater), KickToTarget(style="robobulls")],
         )
+    if shoot == "ddpg":
+        shot: list[Behaviour] = [HasBall(), Shoot(policy=shoot_model)]
+    elif shoot == "geometric":
+        shot = [HasBall(), SelectShot(rater=rater), Shoot()]
+    else:
+        shot = [HasBall(), SelectShot(rater=rater), KickToTarget()]
     return Selector(
         "go to ball and shoot",
         memory=False,
         children=[
-            Sequence("shoot", memory=False, children=[HasBall(), SelectShot(rater=rater), KickToTarget()]),
+            Sequence("shoot", memory=False, children=shot),
             Sequence(
                 "get the ball",
                 memory=False,
