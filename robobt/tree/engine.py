@@ -18,8 +18,8 @@ is logged at debug level.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
-from typing import Any, Protocol, TypeAlias, cast
+from collections.abc import Callable, Iterable
+from typing import Any, Literal, Protocol, TypeAlias, cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
@@ -64,6 +64,32 @@ class BringsClosures(Protocol):
             visit: to be called with this node whenever it has been ticked; the
                 closures of its children do the same for them.
         """
+
+
+class Marks:
+    """A :data:`Visit` that need only be told of some nodes, so that all others lose no time over it.
+
+    Args:
+        nodes: the nodes that are asked for.
+
+    Attributes:
+        seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among
+            them; for its owner to clear.
+    """
+
+    def __init__(self, nodes: Iterable[Behaviour]) -> None:
+        self._nodes = list(nodes)
+        self._asked = {id(node) for node in self._nodes}
+        self.seen: list[Behaviour] = []
+        self._note = self.seen.append
+
+    def __call__(self, node: Behaviour) -> None:
+        """``node`` has been ticked."""
+        self._note(node)
+
+    def of(self, node: Behaviour) -> Visit | None:
+        """What to call with this node; None when it is not asked for."""
+        return self._note if id(node) in self._asked else None
 
 
 class FastTree(BehaviourTree):
@@ -142,6 +168,10 @@ def compile_node(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     return _known_as(node)(node, visit)
 
 
+def _shown(node: Behaviour, visit: Visit | None) -> Visit | None:
+    return visit.of(node) if isinstance(visit, Marks) else visit
+
+
 def _known_as(node: Behaviour) -> _Make:
     """What makes the closures of such a node."""
     cls = type(node)
@@ -177,7 +207,7 @@ class Step:
         self.child = child
         self.tick, self.stop = compile_node(child, visit)
         self.update: Tick | None = None
-        if visit is None and _known_as(child) is _leaf:
+        if _shown(child, visit) is None and _known_as(child) is _leaf:
             initialise, update, terminate = _lifecycle(child)
             self.update = update if initialise is terminate is None else None
 
@@ -206,6 +236,7 @@ def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
 
 def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     initialise, update, terminate = _lifecycle(node)
+    visit = _shown(node, visit)
 
     def tick() -> Status:
         if initialise is not None and node.status is not _R:
@@ -251,6 +282,7 @@ def _inherits(leaf: Leaf[Any], method: str) -> bool:
 
 
 def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
@@ -265,8 +297,8 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if status is not _R:
             stop(status)
         node.status = status
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return status
 
     def stop(status: Status) -> None:
@@ -282,6 +314,7 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _eternal_guard(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     tick_guarded, stop = _decorator(node, visit)
 
     def tick() -> Status:
@@ -293,14 +326,15 @@ def _eternal_guard(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if result:
             return tick_guarded()
         stop(_F)
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return _F
 
     return tick, stop
 
 
 def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     tick_child, stop = _decorator(node, visit)
     initialise = own_method(node, "initialise")
 
@@ -315,14 +349,15 @@ def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if status is not _R:
             stop(status)
         node.status = status
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return status
 
     return tick, stop
 
 
 def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     children: list[Behaviour] = []
     plan: Plan = []
@@ -370,14 +405,15 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
             if terminate is not None and status is not _R:
                 terminate(status)
             node.status = status
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return status
 
     return tick, stop
 
 
 def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
     plan: Plan = []
@@ -425,14 +461,15 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 node.current_child = None
             stop(_F)
             node.current_child = children[-1] if children else None
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return status
 
     return tick, stop
 
 
 def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
+    show = _shown(node, visit)
     initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
     plan: Plan = []
@@ -472,8 +509,8 @@ def _parallel(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
             if status is not _R:
                 stop(status)
             node.status = status
-        if visit is not None:
-            visit(node)
+        if show is not None:
+            show(node)
         return status
 
     return tick, stop
@@ -528,6 +565,26 @@ def replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan
     plan[:] = [known.get(child.id) or Step(child, visit) for child in children]
 
 
+def ticked_children(node: Behaviour) -> Literal["all", "first", "some"]:
+    """Which children a tick of this node reaches, as far as they have a status after it.
+
+    "all": all of them. "first": those up to the first that succeeded or runs. "some":
+    their statuses do not tell, for a child may keep that of an earlier tick.
+    """
+    make = _known_as(node)
+    if make is _decorator or (make is _sequence and not node.memory):  # type: ignore[attr-defined]
+        return "all"
+    if make is _selector and not node.memory:  # type: ignore[attr-defined]
+        return "first"
+    return "some"
+
+
+def stops_children(node: Behaviour) -> bool:
+    """Whether a node that has no status has stopped its children as well, so that they have none."""
+    make = _known_as(node)
+    return any(make is entry[2] for entry in _KNOWN) or type(node).__module__.startswith("robobt.tree.nodes.")
+
+
 def own_method(node: Behaviour, method: str) -> Any:
     """The node's bound method, None where it is py_trees' own that does nothing."""
     return None if _has_method_of(Behaviour, node, method) else getattr(node, method)
@@ -563,4 +620,13 @@ _KNOWN: list[tuple[Any, Any, _Make]] = [
     (OneShot.tick, OneShot.stop, _one_shot),
 ]
 
-__all__ = ["BringsClosures", "FastTree", "abandon", "compile_node", "compile_tree"]
+__all__ = [
+    "BringsClosures",
+    "FastTree",
+    "Marks",
+    "abandon",
+    "compile_node",
+    "compile_tree",
+    "stops_children",
+    "ticked_children",
+]

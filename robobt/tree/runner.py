@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
+from pathlib import PurePath
 from typing import Literal
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
-from robobt.tree.engine import abandon, compile_tree
+from robobt.tree.engine import Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -44,13 +46,18 @@ class TreeRunner:
     Attributes:
         nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
         error: what the last tick raised, None when it went well.
+        ticks: how often the tree has been ticked.
     """
 
     def __init__(self, root: Behaviour, store: object, on_error: Literal["stop", "raise"] = "stop") -> None:
         self.root = root
         self.on_error = on_error
         self.error: str | None = None
+        self.ticks = 0
         self.nodes = preorder(root)
+        self._stock = False
+        self._visitor: VisitorBase | None = None
+        self._marks: Marks | None = None
         bind(root, store)
         self._tick = compile_tree(root)
 
@@ -61,10 +68,12 @@ class TreeRunner:
             TreeError: a node raised, and ``on_error`` is "raise".
         """
         self.error = None
+        self.ticks += 1
         try:
             self._tick()
-        except Exception as error:
-            self.error = f"{self._raiser(error)}: {type(error).__name__}: {error}"
+        except (Exception, SystemExit) as error:
+            # A skill that calls sys.exit() has failed like any other; only Ctrl-C ends the program.
+            self.error = self._say(error)
             abandon(self.root)
             if self.on_error == "raise":
                 raise TreeError(self.error) from error
@@ -73,26 +82,59 @@ class TreeRunner:
 
     def tick_by_py_trees(self) -> None:
         """From now on tick by py_trees' own generators instead: the same, slower, for comparison."""
-
-        def tick() -> Status:
-            for _ in self.root.tick():
-                pass
-            return self.root.status
-
-        self._tick = tick
+        self._stock = True
+        self._renew()
 
     def show_to(self, visitor: VisitorBase) -> None:
         """From now on show every node that has been ticked to this py_trees visitor, and to no other."""
-        tick = compile_tree(self.root, visitor.run)
+        self._visitor = visitor
+        self._renew()
 
-        def visited() -> Status:
+    def mark(self, nodes: Iterable[Behaviour]) -> list[Behaviour]:
+        """From now on keep a list of the nodes ticked by the last tick, and return it.
+
+        Of all nodes of the tree at least those in ``nodes`` are entered.
+        """
+        self._marks = Marks(nodes)
+        self._renew()
+        return self._marks.seen
+
+    def _renew(self) -> None:
+        """Compile the tree for whoever wants to see its nodes."""
+        visitor, marks = self._visitor, self._marks
+        visit: Visit | None = marks
+        if visitor is not None:
+            run: Visit = visitor.run
+
+            def visit_both(node: Behaviour) -> None:
+                if marks is not None:
+                    marks(node)
+                run(node)
+
+            visit = visit_both
+        inner = self._by_py_trees(visit) if self._stock else compile_tree(self.root, visit)
+
+        def tick() -> Status:
+            if marks is not None:
+                marks.seen.clear()
+            if visitor is None:
+                return inner()
             visitor.initialise()
             try:
-                return tick()
+                return inner()
             finally:
                 visitor.finalise()
 
-        self._tick = visited
+        self._tick = tick
+
+    def _by_py_trees(self, visit: Visit | None) -> Tick:
+        def tick() -> Status:
+            for node in self.root.tick():
+                if visit is not None:
+                    visit(node)
+            return self.root.status
+
+        return tick
 
     def statuses(self) -> str:
         """One letter a node in the order of ``nodes``: S, F, R or - (not ticked)."""
@@ -102,20 +144,35 @@ class TreeRunner:
         """End the run; running leaves are interrupted, and what they raise then is logged."""
         try:
             self.root.stop(Status.INVALID)
-        except Exception as error:
-            _log.warning("%s: %s: %s", self._raiser(error), type(error).__name__, error)
+        except (Exception, SystemExit) as error:
+            _log.warning("%s", self._say(error))
             abandon(self.root)
 
-    def _raiser(self, error: Exception) -> str:
+    def _say(self, error: BaseException) -> str:
+        """Where the error was raised, node and line of the skill's file, and what it is."""
+        node, place = self.root, ""
         trace = error.__traceback__
-        path = node_path(self.root)
         while trace is not None:
-            local = trace.tb_frame.f_locals
-            candidate = local.get("self", local.get("node"))
+            frame = trace.tb_frame
+            candidate = frame.f_locals.get("self", frame.f_locals.get("node"))
             if isinstance(candidate, Behaviour):
-                path = node_path(candidate)
+                node = candidate
+                if not frame.f_globals.get("__name__", "").startswith(_ENGINES):
+                    place = f" ({PurePath(frame.f_code.co_filename).name}:{trace.tb_lineno})"
             trace = trace.tb_next
-        return path
+        return f"{node_path(node)}: {type(error).__name__}: {text_of(error)}{place}"
+
+
+# Where every exception passes through; whoever has to mend it looks elsewhere.
+_ENGINES = ("robobt.tree.", "py_trees.")
+
+
+def text_of(said: object) -> str:
+    """``str(said)``, or what it raised."""
+    try:
+        return str(said)
+    except (Exception, SystemExit) as error:
+        return f"a {type(said).__name__} whose text is a {type(error).__name__}"
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:

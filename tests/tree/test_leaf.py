@@ -84,7 +84,7 @@ def test_an_exception_stops_the_tree_names_the_node_and_leaves_nothing_running()
     inner = Sequence("inner", memory=False, children=[Scripted("a", S), Broken("bad")])
     runner = TreeRunner(Selector("root", memory=False, children=[inner]), log)
     assert runner.tick() is Status.INVALID
-    assert runner.error == "root/inner/bad: ZeroDivisionError: no"
+    assert str(runner.error).startswith("root/inner/bad: ZeroDivisionError: no (test_leaf.py:")
     assert runner.statuses() == "----"
     assert runner.tick() is Status.INVALID
 

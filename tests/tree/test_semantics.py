@@ -867,7 +867,7 @@ def test_85_an_exception_stops_the_tree_and_says_where() -> None:
     store = Notes()
     runner = TreeRunner(broken_tree("!R"), store)
     assert runner.tick() is INVALID
-    assert runner.error == "root/both/broken: ZeroDivisionError: no"
+    assert str(runner.error).startswith("root/both/broken: ZeroDivisionError: no (scripted.py:")
     store.diary.clear()
     assert runner.tick() is R
     assert runner.error is None
