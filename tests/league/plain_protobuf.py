@@ -19,6 +19,7 @@ class PlainField(NamedTuple):
 
 def _blocks(text: str) -> dict[str, list[list[str]]]:
     blocks: dict[str, list[list[str]]] = {}
+    name = ""
     for line in text.strip().splitlines():
         if line.startswith(" "):
             blocks[name].append(line.split())
