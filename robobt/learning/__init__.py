@@ -1,1 +1,19 @@
-"""Learning: environments, learners, shot data, predictors, export. Torch lives here."""
+"""Learning: environments, learners, shot data, predictors, export. Torch lives here.
+
+Importing it makes the environments known to Gymnasium: ``GoToBall-v0`` and
+``ShootTowardsGoal-v0``, also as ``robobt/GoToBall-v0`` and
+``robobt/ShootTowardsGoal-v0``, for ``gymnasium.make`` and, with
+``vectorization_mode="vector_entry_point"``, for ``gymnasium.make_vec``.
+"""
+
+import gymnasium
+
+_MODULE = "robobt.learning.envs.gymnasium_envs"
+
+for _name in ("GoToBall", "ShootTowardsGoal"):
+    for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
+        # The environments end their episodes themselves, and a second import must not warn.
+        if _id not in gymnasium.registry:
+            gymnasium.register(
+                id=_id, entry_point=f"{_MODULE}:{_name}Env", vector_entry_point=f"{_MODULE}:{_name}VectorEnv"
+            )

@@ -8,6 +8,12 @@ from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes, straight_line_time
 from robobt.learning.envs.evaluation import Decide, run_starts
 from robobt.learning.envs.go_to_ball import GoToBallTask
+from robobt.learning.envs.gymnasium_envs import (
+    GoToBallEnv,
+    GoToBallVectorEnv,
+    ShootTowardsGoalEnv,
+    ShootTowardsGoalVectorEnv,
+)
 from robobt.learning.envs.settings import (
     HARDWARE_CHALLENGE,
     SHOOT_REWARDS,
@@ -34,16 +40,20 @@ __all__ = [
     "ContactRule",
     "Decide",
     "Episodes",
+    "GoToBallEnv",
     "GoToBallReward",
     "GoToBallSettings",
     "GoToBallStarts",
     "GoToBallTask",
+    "GoToBallVectorEnv",
     "NoiseSettings",
     "RandomisationSettings",
     "ShootReward",
     "ShootSettings",
     "ShootStarts",
     "ShootTask",
+    "ShootTowardsGoalEnv",
+    "ShootTowardsGoalVectorEnv",
     "StepResult",
     "TaskSettings",
     "VectorTask",
