@@ -1,0 +1,53 @@
+"""Returns as a distribution over fixed atoms (C51), as D4PG's critic learns it.
+
+Source: Bellemare, Dabney & Munos, "A distributional perspective on reinforcement
+learning", 2017, algorithm 1; Barth-Maron et al., "Distributed distributional
+deterministic policy gradients", 2018.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+
+class Atoms:
+    """Evenly spaced values that a return may take.
+
+    Args:
+        low, high: the smallest and largest return; what lies outside counts as these.
+        count: how many atoms, at least 2.
+    """
+
+    def __init__(self, low: float, high: float, count: int) -> None:
+        if count < 2 or not low < high:
+            raise ValueError(f"{count} atoms from {low} to {high} hold no distribution")
+        self.low, self.high, self.count = low, high, count
+        self.values = torch.linspace(low, high, count)
+
+    def mean(self, logits: Tensor) -> Tensor:
+        """Expected return of (..., atoms) logits: (...)."""
+        return torch.softmax(logits, -1) @ self.values
+
+    def project(self, probabilities: Tensor, reward: Tensor, discount: Tensor) -> Tensor:
+        """The distribution of reward + discount * Z, put back on the atoms.
+
+        Args:
+            probabilities: (batch, atoms) of Z.
+            reward, discount: (batch,).
+
+        Returns:
+            (batch, atoms), each row of mass 1.
+        """
+        width = (self.high - self.low) / (self.count - 1)
+        moved = reward[:, None] + discount[:, None] * self.values
+        place = (moved.clamp(self.low, self.high) - self.low) / width
+        # Rounding can push the last place past the last atom.
+        lower = place.floor().clamp_(0, self.count - 1)
+        # On an atom both neighbours are that atom: all of the mass stays with the lower.
+        upper_share = place - lower
+        upper = (lower + 1).clamp_(max=self.count - 1)
+        projected = torch.zeros_like(probabilities)
+        projected.scatter_add_(1, lower.long(), probabilities * (1 - upper_share))
+        projected.scatter_add_(1, upper.long(), probabilities * upper_share)
+        return projected

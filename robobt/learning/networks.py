@@ -1,0 +1,130 @@
+"""Actor and critic: small ReLU networks that take raw observations in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+
+def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | None) -> nn.Sequential:
+    """Linear layers with ReLU between them, initialised as PyTorch does.
+
+    Args:
+        sizes: of the input, the hidden layers and the output.
+        layer_norm: normalise each hidden layer before its ReLU.
+        generator: where the weights come from; None for the global one.
+    """
+    layers: list[nn.Module] = []
+    for i, (fan_in, fan_out) in enumerate(pairwise(sizes)):
+        layers.append(_linear(fan_in, fan_out, generator))
+        if i < len(sizes) - 2:
+            if layer_norm:
+                layers.append(nn.LayerNorm(fan_out))
+            layers.append(nn.ReLU())
+    return nn.Sequential(*layers)
+
+
+class Actor(nn.Module):
+    """The deterministic policy: observation -> action in [-1, 1].
+
+    The observation's scaling is a constant inside, so that whoever runs the
+    exported module feeds it what :mod:`robobt.world.features` makes, unchanged.
+
+    Args:
+        scale: (observation,) typical size of each entry, in its SI unit.
+        actions: length of the action.
+        hidden: sizes of the hidden layers.
+
+    Attributes:
+        build: the arguments that make an actor of the same shape.
+    """
+
+    inverse_scale: Tensor
+
+    def __init__(
+        self,
+        scale: Sequence[float],
+        actions: int,
+        hidden: Sequence[int],
+        layer_norm: bool = False,
+        generator: torch.Generator | None = None,
+    ) -> None:
+        super().__init__()
+        self.build: dict[str, Any] = {
+            "scale": [float(size) for size in scale],
+            "actions": actions,
+            "hidden": list(hidden),
+            "layer_norm": layer_norm,
+        }
+        self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
+        self.body = mlp([len(scale), *hidden, actions], layer_norm, generator)
+
+    def forward(self, observation: Tensor) -> Tensor:
+        """(..., observation) in SI units -> (..., action) in [-1, 1]."""
+        return torch.tanh(self.body(observation * self.inverse_scale))
+
+
+class Critic(nn.Module):
+    """One or several independent estimates of the return of (observation, action).
+
+    Args:
+        scale: as for :class:`Actor`.
+        actions: length of the action.
+        hidden: sizes of the hidden layers.
+        outputs: 1 for a value, else the logits of a distribution over so many atoms.
+        heads: how many estimates; TD3 takes two.
+    """
+
+    inverse_scale: Tensor
+
+    def __init__(
+        self,
+        scale: Sequence[float],
+        actions: int,
+        hidden: Sequence[int],
+        outputs: int = 1,
+        heads: int = 1,
+        layer_norm: bool = False,
+        generator: torch.Generator | None = None,
+    ) -> None:
+        super().__init__()
+        self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
+        sizes = [len(scale) + actions, *hidden, outputs]
+        self.heads = nn.ModuleList([mlp(sizes, layer_norm, generator) for _ in range(heads)])
+
+    def forward(self, observation: Tensor, action: Tensor) -> Tensor:
+        """(batch, observation), (batch, action) -> (heads, batch, outputs)."""
+        both = torch.cat([observation * self.inverse_scale, action], -1)
+        return torch.stack([head(both) for head in self.heads])
+
+    def first(self, observation: Tensor, action: Tensor) -> Tensor:
+        """The first estimate alone, which the actor climbs: (batch, outputs)."""
+        output: Tensor = self.heads[0](torch.cat([observation * self.inverse_scale, action], -1))
+        return output
+
+
+def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """An actor over numpy arrays, without gradient: (n, observation) -> (n, action)."""
+
+    def decide(observation: NDArray[np.float64]) -> NDArray[np.float64]:
+        with torch.no_grad():
+            action = actor(torch.from_numpy(observation.astype(np.float32)))
+        return action.numpy().astype(np.float64)
+
+    return decide
+
+
+def _linear(fan_in: int, fan_out: int, generator: torch.Generator | None) -> nn.Linear:
+    """PyTorch's default layer, drawn from our generator instead of the process's."""
+    layer = nn.utils.skip_init(nn.Linear, fan_in, fan_out)
+    bound = fan_in**-0.5
+    with torch.no_grad():
+        layer.weight.uniform_(-bound, bound, generator=generator)
+        layer.bias.uniform_(-bound, bound, generator=generator)
+    return layer

@@ -1,0 +1,125 @@
+"""n-step returns of many environments at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class Transitions(NamedTuple):
+    """What a critic learns from: value of (observation, action) = reward + discount * value(next).
+
+    Attributes:
+        observation, action: (m, ...).
+        reward: (m,) discounted sum of up to n rewards.
+        discount: (m,) gamma^k for k rewards summed, 0 when the episode terminated.
+        following: (m, ...) the observation k steps later.
+    """
+
+    observation: FloatArray
+    action: FloatArray
+    reward: FloatArray
+    discount: FloatArray
+    following: FloatArray
+
+
+class NStep:
+    """Collects steps of ``envs`` interleaved episodes into n-step transitions.
+
+    A return is cut at the end of its episode. A terminated episode is worth
+    nothing more; a truncated one is bootstrapped from its last observation.
+
+    Args:
+        horizons: how many rewards a return sums at most. Every transition comes
+            once for each; what is smaller than the first must be 1.
+        gamma: discount a step.
+        envs: number of environments.
+        observation_size, action_size: lengths of the vectors.
+    """
+
+    def __init__(
+        self, horizons: Sequence[int], gamma: float, envs: int, observation_size: int, action_size: int
+    ) -> None:
+        self._n = n = horizons[0]
+        self._one_step_too = len(horizons) > 1
+        self._gamma = gamma
+        # A slot holds the transitions that began at one step, of all environments.
+        self._observations = np.zeros((n, envs, observation_size))
+        self._actions = np.zeros((n, envs, action_size))
+        self._returns = np.zeros((n, envs))
+        self._open = np.zeros((n, envs), dtype=np.bool_)
+        self._ages = np.zeros(n, dtype=np.int64)
+        self._first_rewards = np.zeros((n, envs))
+        self._first_discounts = np.zeros((n, envs))
+        self._first_following = np.zeros((n, envs, observation_size))
+        self._step = 0
+
+    def add(
+        self,
+        observation: FloatArray,
+        action: FloatArray,
+        reward: FloatArray,
+        following: FloatArray,
+        terminated: NDArray[np.bool_],
+        truncated: NDArray[np.bool_],
+    ) -> list[tuple[Transitions, ...]]:
+        """Take in one step; returns the transitions that it completes, once for each horizon.
+
+        Args:
+            observation, action: (envs, ...) before the step.
+            reward: (envs,) of it.
+            following: (envs, ...) after it: an ended episode's own last observation.
+            terminated, truncated: (envs,) how episodes ended with this step.
+        """
+        slot = self._step % self._n
+        self._step += 1
+        self._observations[slot] = observation
+        self._actions[slot] = action
+        self._returns[slot] = 0.0
+        self._open[slot] = True
+        self._ages[slot] = 0
+        if self._one_step_too:
+            self._first_rewards[slot] = reward
+            self._first_discounts[slot] = self._gamma * ~terminated
+            self._first_following[slot] = following
+        ended = terminated | truncated
+        complete = []
+        for i in range(self._n):
+            self._returns[i] += self._gamma ** self._ages[i] * reward
+            self._ages[i] += 1
+            out = self._open[i] & ended if self._ages[i] < self._n else self._open[i].copy()
+            if out.any():
+                complete.append(self._take(i, out, following, terminated))
+        return complete
+
+    def flush(self, observation: FloatArray) -> list[tuple[Transitions, ...]]:
+        """Truncate every episode where it stands, at ``observation`` (envs, ...)."""
+        never = np.zeros(len(observation), dtype=np.bool_)
+        return [
+            self._take(i, self._open[i].copy(), observation, never)
+            for i in range(self._n)
+            if self._open[i].any()
+        ]
+
+    def _take(
+        self, slot: int, which: NDArray[np.bool_], following: FloatArray, terminated: NDArray[np.bool_]
+    ) -> tuple[Transitions, ...]:
+        self._open[slot] &= ~which
+        observation, action = self._observations[slot, which], self._actions[slot, which]
+        discount = self._gamma ** self._ages[slot] * ~terminated[which]
+        far = Transitions(observation, action, self._returns[slot, which], discount, following[which])
+        if not self._one_step_too:
+            return (far,)
+        near = Transitions(
+            observation,
+            action,
+            self._first_rewards[slot, which],
+            self._first_discounts[slot, which],
+            self._first_following[slot, which],
+        )
+        return (far, near)

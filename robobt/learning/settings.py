@@ -1,0 +1,280 @@
+"""Settings of a training run: the agent's switches, how it collects, replays, explores and is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from robobt.learning.envs import GoToBallSettings, ShootSettings, TaskSettings
+from robobt.match.problems import first_problem
+from robobt.match.yaml_reader import YamlError, read_yaml
+
+_PRESETS = Path(__file__).parent / "presets"
+_M = TypeVar("_M", bound=BaseModel)
+
+ENVIRONMENTS: dict[str, type[TaskSettings]] = {"go_to_ball": GoToBallSettings, "shoot": ShootSettings}
+"""The settings of each task's environment."""
+
+
+class SettingsError(ValueError):
+    """Settings are wrong; the message is one line that names the file and the field."""
+
+
+class _Settings(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class AgentSettings(_Settings):
+    """The agent. Every default is Spinning Up's DDPG; each other value switches something on.
+
+    ``n_step`` > 1, ``one_step_weight`` > 0 (DDPGfD's second loss), ``twin``,
+    ``actor_every`` > 1 and ``smoothing`` > 0 (TD3), ``atoms`` > 0 (C51, D4PG) and
+    ``layer_norm`` combine freely.
+    """
+
+    hidden: tuple[int, ...] = Field(
+        (256, 256), min_length=1, max_length=6, description="hidden layers' sizes"
+    )
+    layer_norm: bool = Field(False, description="normalise each hidden layer before its ReLU")
+    gamma: float = Field(0.99, gt=0, lt=1, description="discount a control step")
+    tau: float = Field(0.005, gt=0, le=1, description="share of the way that targets follow an update")
+    target_every: int = Field(1, ge=1, le=100_000, description="updates between the targets' moves")
+    actor_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the actor (Adam)")
+    critic_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the critic (Adam)")
+    final_rate: float = Field(1.0, gt=0, le=1, description="share of both rates left at the last step")
+    weight_decay: float = Field(0.0, ge=0, le=1, description="L2 regularisation of both networks")
+    n_step: int = Field(1, ge=1, le=50, description="rewards summed before bootstrapping")
+    one_step_weight: float = Field(
+        0.0, ge=0, le=100, description="weight of a one-step loss beside the n-step one (DDPGfD)"
+    )
+    twin: bool = Field(False, description="two critics, of which the smaller makes the target (TD3)")
+    actor_every: int = Field(1, ge=1, le=100, description="critic updates for one of the actor (TD3)")
+    smoothing: float = Field(0.0, ge=0, le=1, description="noise on the target's action (TD3)")
+    smoothing_limit: float = Field(0.5, gt=0, le=2, description="largest such noise")
+    atoms: int = Field(0, ge=0, le=1001, description="atoms of a distributional critic; 0 for a value")
+    returns: tuple[float, float] = Field((-170.0, 110.0), description="smallest and largest atom")
+    slope_limit: float | None = Field(None, gt=0, description="largest dQ/da that the actor follows (D4PG)")
+    scale_observations: bool = Field(True, description="divide observations by the task's typical sizes")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.atoms == 1 or not self.returns[0] < self.returns[1]:
+            raise ValueError("atoms must be 0 or at least 2, and returns rise")
+        if max(self.hidden) > 4096 or min(self.hidden) < 1:
+            raise ValueError("hidden layers have 1 to 4096 units")
+        return self
+
+
+class PrioritySettings(_Settings):
+    """Prioritised replay; off unless ``enabled``."""
+
+    enabled: bool = False
+    alpha: float = Field(0.3, ge=0, le=1, description="0 draws evenly, 1 in full proportion")
+    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights make up for it")
+    floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
+    slope_weight: float = Field(1.0, ge=0, le=100, description="weight of the actor's squared slope")
+
+
+class DemonstrationSettings(_Settings):
+    """Demonstrations in the replay before the agent's own steps; none unless ``episodes`` > 0.
+
+    ``keep`` and a ``bonus`` make it DDPGfD; without them, in place of random
+    steps, it is the burn-in of Schwab, Zhu & Veloso (CMU).
+    """
+
+    episodes: int = Field(0, ge=0, le=100_000, description="how many to record or to take from the file")
+    file: str | None = Field(None, description="Parquet file; None records them with the scripted skill")
+    keep: bool = Field(False, description="never overwrite them")
+    bonus: float = Field(0.0, ge=0, le=100, description="added to their priorities")
+    updates: int = Field(0, ge=0, le=1_000_000, description="updates on them alone, before the first step")
+
+
+class ReplaySettings(_Settings):
+    """What is remembered and how it is drawn."""
+
+    capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
+    batch: int = Field(100, ge=1, le=100_000, description="transitions an update")
+    priority: PrioritySettings = PrioritySettings()
+    demonstrations: DemonstrationSettings = DemonstrationSettings()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.demonstrations.bonus and not self.priority.enabled:
+            raise ValueError("demonstrations get a bonus only with priority.enabled")
+        return self
+
+
+class CollectionSettings(_Settings):
+    """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
+
+    environments: int = Field(1, ge=1, le=4096, description="that run side by side")
+    random_steps: int = Field(10_000, ge=0, description="of uniformly random actions, to begin with")
+    update_after: int = Field(1_000, ge=0, description="steps before the first update")
+    update_every: int = Field(50, ge=1, description="steps between rounds of updates")
+    updates: int = Field(50, ge=1, description="updates a round")
+    noise: float = Field(0.1, ge=0, le=2, description="standard deviation of the noise on actions")
+    last_noise: float | None = Field(
+        None,
+        ge=0,
+        le=2,
+        description="that of the last environment; those between are evenly spaced; None for the same",
+    )
+
+
+class EvaluationSettings(_Settings):
+    """How progress is judged: by success and time, never by the return.
+
+    A slow policy near the ball collects more reward than a fast one.
+    """
+
+    every: int = Field(20_000, ge=1, description="steps between evaluations")
+    starts: int = Field(300, ge=1, le=100_000, description="fixed validation starts of each evaluation")
+    held_out: int = Field(
+        1_000, ge=1, le=100_000, description="fixed starts that the best actor is judged on"
+    )
+    target_actor: bool = Field(False, description="judge and ship the slow actor instead of the online one")
+    stop_success: float | None = Field(
+        None, ge=0, le=1, description="stop once this share of the starts succeeds and ..."
+    )
+    stop_time: float | None = Field(
+        None,
+        gt=0,
+        description="... the mean time, over the optimum where there is one, else in s, is no more",
+    )
+    stop_after: int = Field(1, ge=1, le=100, description="so often running")
+
+
+class TrainSettings(_Settings):
+    """A training run: with a seed and a version it gives the same weights, bit for bit, on a machine."""
+
+    task: str = Field(description="what is learned: go_to_ball or shoot")
+    preset: str = Field("", description="where these settings come from")
+    seed: int = Field(0, ge=0, le=2**53 - 1, description="what all randomness follows from")
+    steps: int = Field(description="environment steps at most", ge=1, le=1_000_000_000)
+    environment: dict[str, Any] = Field(default_factory=dict, description="changes to the task's settings")
+    agent: AgentSettings = AgentSettings()
+    replay: ReplaySettings = ReplaySettings()
+    collection: CollectionSettings = CollectionSettings()
+    evaluation: EvaluationSettings = EvaluationSettings()
+    rebuild_every: int = Field(
+        20_000,
+        ge=1,
+        description="steps after which the simulator is built anew and a checkpoint may be written; "
+        "fewer than a slow machine takes in a minute",
+    )
+    checkpoint_seconds: float = Field(20.0, ge=0, le=60, description="time between checkpoints at least [s]")
+    tensorboard: bool = Field(True, description="write TensorBoard events beside the log")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name, every in (
+            ("evaluation.every", self.evaluation.every),
+            ("rebuild_every", self.rebuild_every),
+        ):
+            if every % self.collection.environments:
+                raise ValueError(
+                    f"{name} must be a multiple of collection.environments ({self.collection.environments})"
+                )
+        return self
+
+
+def presets(task: str) -> list[str]:
+    """Names of the presets that ship for a task."""
+    return sorted(path.stem for path in (_PRESETS / task).glob("*.yaml"))
+
+
+def load_settings(task: str, preset: str = "fast", changes: Mapping[str, Any] | None = None) -> TrainSettings:
+    """Settings from a preset or a file.
+
+    Args:
+        task: of the preset.
+        preset: name of a preset, or a YAML file. Either may say ``extends: NAME`` and then
+            holds only what differs.
+        changes: by dotted name, such as ``{"agent.n_step": 5}``.
+
+    Raises:
+        SettingsError: no such preset, or something wrong in the file or the changes.
+    """
+    data, source = _read(task, preset, ())
+    data = {"task": task, **data, "preset": preset}
+    for name, value in (changes or {}).items():
+        _assign(data, name.split("."), value, name)
+    return settings_of(data, source)
+
+
+def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
+    """Validate plain data.
+
+    Raises:
+        SettingsError: the message begins with ``source`` and names the field.
+    """
+    settings = _validated(TrainSettings, dict(data), source, "")
+    if settings.task not in ENVIRONMENTS:
+        raise SettingsError(
+            f"{source}: task: there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
+        )
+    environment = environment_of(settings, source)
+    # Written out in full, so that a default that changes later does not change this run.
+    return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
+
+
+def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
+    """The environment's settings.
+
+    Raises:
+        SettingsError: they are wrong.
+    """
+    return _validated(ENVIRONMENTS[settings.task], settings.environment, source, "environment")
+
+
+def _validated(model: type[_M], data: dict[str, Any], source: str, group: str) -> _M:
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        field, problem = first_problem(error, model, data)
+        place = ".".join([part for part in (group, field) if part])
+        raise SettingsError(f"{source}: {place + ': ' if place else ''}{problem}") from error
+
+
+def _read(task: str, preset: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
+    bundled = _PRESETS / task / f"{preset}.yaml"
+    path = bundled if bundled.is_file() else Path(preset)
+    if path is not bundled and path.suffix not in (".yaml", ".yml"):
+        known = presets(task)
+        if not known:
+            raise SettingsError(f"no task is called {task!r}; there are {', '.join(ENVIRONMENTS)}")
+        raise SettingsError(f"no preset of {task} is called {preset!r}; there are {', '.join(known)}")
+    try:
+        data = read_yaml(path)
+    except YamlError as error:
+        raise SettingsError(f"{path}: {error}") from error
+    if not isinstance(data, dict):
+        raise SettingsError(f"{path}: must hold a mapping of settings")
+    base = data.pop("extends", None)
+    if base is None:
+        return data, str(path)
+    if not isinstance(base, str) or base in seen:
+        raise SettingsError(f"{path}: extends: must name another preset")
+    return _merged(_read(task, base, (*seen, preset, base))[0], data), str(path)
+
+
+def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(base)
+    for key, value in changes.items():
+        old = result.get(key)
+        result[key] = _merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+    return result
+
+
+def _assign(data: dict[str, Any], path: list[str], value: Any, name: str) -> None:
+    *groups, last = path
+    for group in groups:
+        inner = data.get(group, {})
+        if not isinstance(inner, dict):
+            raise SettingsError(f"{name}: {group} holds a value, not settings")
+        data[group] = inner = dict(inner)
+        data = inner
+    data[last] = value
