@@ -138,15 +138,38 @@ class Arenas:
         self._buffer.write()
         self._refresh()
 
-    def place_ball(self, arena: int, x: float, y: float) -> None:
-        """Put one arena's ball down at rest; the robots go on as they were."""
+    def place_ball(
+        self, arena: int, x: float, y: float, vx: float = 0.0, vy: float = 0.0, rolls: bool = True
+    ) -> None:
+        """Put one arena's ball somewhere; the robots go on as they were.
+
+        Args:
+            x, y: where [m]; vx, vy: its velocity, at rest by default [m/s].
+            rolls: whether a moving ball rolls; one that does not slides, as after a kick.
+        """
         count = self.contact.shape[1]
         self._buffer.read()
         row = self._buffer.rows[arena * (count + 1) + count]
         row[:] = 0.0
         row[:2] = self.origins[arena] + (x, y)
-        self._velocity[arena] = 0.0
-        self._spin[arena] = 0.0
+        row[3:5] = vx, vy
+        self._velocity[arena] = vx, vy
+        self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
+        self._buffer.write()
+        self._refresh()
+
+    def place_robot(self, arena: int, robot: int, state: ArrayLike) -> None:
+        """Put one robot of an arena somewhere; the ball and the others go on as they were.
+
+        Args:
+            state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
+        """
+        count = self.contact.shape[1]
+        self._buffer.read()
+        row = self._buffer.rows[arena * (count + 1) + robot]
+        row[:] = state
+        row[:2] += self.origins[arena]
+        self._cooldown[arena, robot] = 0.0
         self._buffer.write()
         self._refresh()
 
