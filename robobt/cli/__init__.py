@@ -24,6 +24,7 @@ _GROUPS = (
     "scenarios",
     "lists",
     "tree",
+    "export",
     "bench",
 )
 """The modules that hold the commands, in the order of ``robobt --help``."""

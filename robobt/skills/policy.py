@@ -50,13 +50,14 @@ class Policy:
         card: what the model says about itself.
         path: the file it was loaded from.
         sha256: of that file.
+        network: what runs it.
     """
 
     def __init__(self, file: ModelFile, network: Network) -> None:
         self.card = file.card
         self.path = file.path
         self.sha256 = file.sha256
-        self._network = network
+        self.network = network
 
     def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
         """What the model answers.
@@ -76,7 +77,7 @@ class Policy:
             raise ValueError(f"{self.card.name} takes ({size},) or (n, {size}), not {given.shape}")
         if not len(given):
             return np.zeros((0, len(self.card.outputs)))
-        answers = self._network.batch(np.ascontiguousarray(given.reshape(-1, size)))
+        answers = self.network.batch(np.ascontiguousarray(given.reshape(-1, size)))
         return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
@@ -84,7 +85,7 @@ class Policy:
 
         It does not check what it is given. Each one has memory of its own.
         """
-        return self._network.single()
+        return self.network.single()
 
 
 def load_policy(
@@ -124,6 +125,18 @@ def load_policy(
             raise ModelError(f"{path}: {error}") from error
         _LOADED[key] = Policy(file, network)
     return _LOADED[key]
+
+
+def bare_module(policy: Policy) -> Callable[[], object]:
+    """A call of a policy's frozen module on a tensor of one observation, and nothing else: to measure by.
+
+    Raises:
+        ModelError: the policy is no TorchScript one.
+    """
+    network = policy.network
+    if not isinstance(network, _TorchScript):
+        raise ModelError(f"{policy.path}: is no TorchScript file")
+    return network.bare()
 
 
 _TORCH = """
@@ -193,6 +206,10 @@ class _TorchScript:
                 return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
 
         return infer
+
+    def bare(self) -> Callable[[], object]:
+        module, tensor = self.module, self._torch.zeros(1, self._size)
+        return lambda: module(tensor)
 
 
 class _Onnx:

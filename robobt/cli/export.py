@@ -1,0 +1,180 @@
+"""``robobt export`` and ``robobt models``: trained policies as files, and what those say of themselves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import Json, console, errors, one_line_errors, print_json, say, table, warn
+
+if TYPE_CHECKING:
+    from robobt.skills.model_file import ModelFile
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    for command in (export, models):
+        app.command()(command)
+
+
+@one_line_errors
+def export(
+    run: Annotated[Path, typer.Argument(help="The folder of a finished run of 'robobt train'.")],
+    name: Annotated[
+        str, typer.Option("--name", help="Name to load the model by; by default the task's with _ddpg.")
+    ] = "",
+    onnx: Annotated[
+        bool, typer.Option("--onnx", help="Write an ONNX file beside the TorchScript one.")
+    ] = False,
+    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("models"),
+    as_json: Json = False,
+) -> None:
+    """Write the best policy of a training run as a model file that skills load.
+
+    The file holds the network, which takes the raw observation in SI units and
+    answers an action in [-1, 1], and its model card. It is loaded again and
+    compared with the network before it takes its place, and its checksum is
+    entered in the folder's manifest.
+
+    Keys of --json: files, a list as 'robobt models --json' prints it.
+    """
+    from robobt.learning.export_run import export_run
+    from robobt.skills.model_file import read_model_file
+
+    with errors.status(f"exporting {escape(str(run))}"):
+        files = export_run(run, name, out, ("torchscript", "onnx") if onnx else ("torchscript",))
+    read = [read_model_file(path) for path in files]
+    if as_json:
+        print_json({"files": [_data(file) for file in read]})
+        return
+    for file in read:
+        say(f"{file.path}: {file.size} bytes, SHA-256 {file.sha256}")
+    _print_held_out(read[0])
+
+
+@one_line_errors
+def models(
+    name: Annotated[
+        str | None, typer.Argument(help="One model by its name or file, with its whole card.")
+    ] = None,
+    path: Annotated[
+        list[Path] | None,
+        typer.Option("--path", help="A further folder of models, or a model file; may be given often."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """List the models: those that ship, and those of other folders.
+
+    Files are checked as far as that goes without running them: checksums, archive, card.
+
+    Keys of --json: models, a list with file, format, size (bytes), sha256, listed (whether
+    the manifest beside it lists it) and card; problems: a line for each file that is no
+    intact model.
+    """
+    from robobt.resources import models_folder
+    from robobt.skills.model_file import ModelError, find_model, list_models, read_model_file
+
+    if name is not None:
+        paths = [find_model(name)]
+    else:
+        paths = list_models(models_folder())
+        for extra in path or ():
+            paths += list_models(extra) if extra.is_dir() else [extra]
+    found: list[ModelFile] = []
+    problems: list[str] = []
+    for each in paths:
+        try:
+            found.append(read_model_file(each))
+        except ModelError as error:
+            problems.append(str(error))
+    if as_json:
+        print_json({"models": [_data(file) for file in found], "problems": problems})
+    elif name is not None and found:
+        _print_whole(found[0])
+    elif found:
+        _print_table(found)
+    elif not problems:
+        say("No model is installed; 'robobt export' writes one.")
+    for problem in problems:
+        warn(problem)
+    if problems:
+        raise typer.Exit(1)
+
+
+def _data(file: ModelFile) -> dict[str, Any]:
+    from robobt.skills.model_file import read_manifest
+
+    return {
+        "file": str(file.path),
+        "format": file.format,
+        "size": file.size,
+        "sha256": file.sha256,
+        "listed": file.path.name in read_manifest(file.path.parent),
+        "card": file.card.model_dump(mode="json"),
+    }
+
+
+def _print_table(files: list[ModelFile]) -> None:
+    listed = table("model", "format", "kind", "skill", "observation", "KiB", "held-out results")
+    listed.columns[0].no_wrap = True
+    for file in files:
+        card = file.card
+        told = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()]
+        listed.add_row(
+            escape(card.name),
+            file.format,
+            card.kind.replace("_", " "),
+            escape(card.skill),
+            escape(f"{card.observation.name} v{card.observation.version}"),
+            f"{file.size / 1024:.0f}",
+            escape(", ".join(told)),
+        )
+    console.print(listed)
+
+
+def _print_whole(file: ModelFile) -> None:
+    card = file.card
+    say(f"{card.name}: {card.description or card.skill}")
+    lines = {
+        "file": f"{file.path} ({file.format}, {file.size} bytes)",
+        "SHA-256": file.sha256,
+        "skill": f"{card.skill} ({card.kind.replace('_', ' ')})",
+        "observation": f"{card.observation.name} version {card.observation.version}: "
+        + ", ".join(card.observation.features),
+        "outputs": ", ".join([f"{one.name} ({_figure(one.scale, one.unit)})" for one in card.outputs]),
+        "period": "" if card.period is None else f"{card.period:g} s",
+        "limits": _assignments({} if card.limits is None else card.limits.model_dump(exclude_none=True)),
+        "seed": "" if card.seed is None else str(card.seed),
+        "code": card.code_version,
+        "written by": card.created_by,
+        "environment": _assignments(card.environment),
+        "training": _assignments(card.training),
+    }
+    for title, text in lines.items():
+        if text:
+            say(f"  {title:12} {text}")
+    _print_held_out(file)
+
+
+def _print_held_out(file: ModelFile) -> None:
+    if not file.card.held_out:
+        return
+    listed = table("held-out result", "value", "interval", "n")
+    for name, one in file.card.held_out.items():
+        within = "" if one.low is None or one.high is None else f"{one.low:.4g} to {one.high:.4g}"
+        about = f" ({one.interval})" if within and one.interval else ""
+        listed.add_row(
+            escape(name.replace("_", " ")), _figure(one.value, one.unit), escape(within + about), str(one.n)
+        )
+    console.print(listed)
+
+
+def _figure(value: float, unit: str) -> str:
+    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+
+
+def _assignments(settings: dict[str, Any]) -> str:
+    return ", ".join([f"{name} {value}" for name, value in settings.items()])

@@ -1,0 +1,116 @@
+"""A finished training run as a model file, with all that is known of it on the card."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robobt.learning.evaluation import Evaluation
+from robobt.learning.export import export_model
+from robobt.learning.networks import policy_of
+from robobt.learning.problems import problem_of
+from robobt.learning.run_folder import TrainResult, load_run
+from robobt.learning.settings import environment_of
+from robobt.skills.actions import ActionScaling
+from robobt.skills.model_card import Measured, ModelCard, ObservationCard, action_outputs
+from robobt.skills.model_file import Format
+from robobt.statistics import mean_interval
+from robobt.world.features import GO_TO_BALL, SHOOT, ObservationSpec
+
+_SKILLS: dict[str, tuple[str, ObservationSpec]] = {
+    "go_to_ball": ("GoToBall", GO_TO_BALL),
+    "shoot": ("Shoot", SHOOT),
+}
+"""Skill and observation of each task."""
+
+
+def export_run(
+    run: str | Path,
+    name: str = "",
+    folder: str | Path = "models",
+    formats: Sequence[Format] = ("torchscript",),
+    starts: int | None = None,
+) -> tuple[Path, ...]:
+    """Write the best actor of a finished run as model files and enter them in the folder's manifest.
+
+    The actor is judged once more on the held-out starts; these figures, with their
+    intervals, are what the card says.
+
+    Args:
+        run: the folder of the run.
+        name: of the model; the task's with ``_ddpg`` when empty.
+        folder: where to.
+        formats: "torchscript", "onnx" or both.
+        starts: held-out starts to judge on; None for as many as the run was set to.
+
+    Returns:
+        The files.
+
+    Raises:
+        RunFolderError: the folder holds no run that has ended.
+        ModelError: the actor cannot be written as it is.
+    """
+    result = load_run(run)
+    settings = result.settings
+    environment = environment_of(settings, str(run))
+    problem = problem_of(settings.task, environment)
+    count = settings.evaluation.held_out if starts is None else starts
+    figures = problem.judge(policy_of(result.actor), "held_out", count)
+    skill, observation = _SKILLS[settings.task]
+    action = getattr(environment, "action", None)
+    assert isinstance(action, ActionScaling)
+    card = ModelCard(
+        kind="policy",
+        name=name or f"{settings.task}_ddpg",
+        skill=skill,
+        description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
+        observation=ObservationCard.of(observation),
+        outputs=action_outputs(action),
+        action=action,
+        period=environment.period,
+        limits=environment.robot_limits,
+        environment=settings.environment,
+        training=_training(result),
+        seed=settings.seed,
+        held_out=held_out(figures),
+        code_version=str(result.figures.get("robobt", "")),
+        created_by="robobt export",
+    )
+    return export_model(result.actor, card, Path(folder), formats)
+
+
+def held_out(figures: Evaluation) -> dict[str, Measured]:
+    """What a card says of an evaluation: share of successes, mean time, its ratio to the optimum."""
+    rate = figures.interval
+    count = len(figures.success)
+    told = {
+        "success": Measured(value=figures.rate, low=rate.low, high=rate.high, n=count, interval="95 % Wilson")
+    }
+    timed = figures.success & np.isfinite(figures.times)
+    if timed.any():
+        told["time"] = _mean(figures.times[timed], "s")
+    known = timed & (figures.optimum > 0.0)
+    if known.any():
+        told["time_over_optimum"] = _mean(figures.times[known] / figures.optimum[known], "1")
+    return told
+
+
+def _mean(values: np.ndarray[Any, np.dtype[np.float64]], unit: str) -> Measured:
+    low, high = mean_interval(values) if len(values) > 1 else (None, None)
+    return Measured(
+        value=float(values.mean()),
+        low=low,
+        high=high,
+        n=len(values),
+        unit=unit,
+        interval="95 % Student, mean",
+    )
+
+
+def _training(result: TrainResult) -> dict[str, Any]:
+    settings = result.settings.model_dump(mode="json", exclude={"environment", "seed"})
+    figures = {key: value for key, value in result.figures.items() if key not in ("held_out", "task", "seed")}
+    return {"settings": settings, "figures": figures}
