@@ -10,6 +10,8 @@ _COMMANDS = (
     "sim",
     "match",
     "tree",
+    "policy",
+    "env",
 )
 
 

@@ -1,0 +1,110 @@
+"""How fast the environments are: control steps a second with observations, rewards and new starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import process_time
+
+import gymnasium
+import numpy as np
+
+import robobt.learning  # noqa: F401 - registers the environments
+from robobt.learning.envs.go_to_ball import GoToBallTask
+from robobt.learning.envs.scripted import straight_drive, turn_and_kick
+from robobt.learning.envs.shoot import ShootTask
+from robobt.learning.envs.task import FloatArray
+
+SIZES = {"single": 1, "vector_64": 64, "vector": 256}
+"""Ends of the result's keys, and how many arenas they stand for."""
+
+_CHUNK = 2000
+"""Environment steps a chunk at least; long enough that reading the clock costs nothing."""
+
+_FEWEST = 20
+
+Task = GoToBallTask | ShootTask
+Decide = Callable[[FloatArray], FloatArray]
+
+
+def bench_env(seconds: float = 2.0) -> dict[str, float]:
+    """Measure both environments on one core, with 30 ms control and the default 4 physics steps.
+
+    The robots drive to the ball, or turn and kick, by hand-written policies, so
+    that episodes start and end as in training; deciding is not in the time.
+
+    Args:
+        seconds: of CPU time for each figure, in chunks of which the fastest counts.
+
+    Returns:
+        environment steps a second of CPU time: ``go_to_ball_...`` and
+        ``shoot_...`` with each of :data:`SIZES`, of the tasks that learners step;
+        ``..._gymnasium`` of one environment from ``gymnasium.make``. And
+        ``..._physics_share``, the part of a vector step's time that the physics
+        alone takes with the same commands.
+    """
+    figures: dict[str, float] = {}
+    cases: tuple[tuple[str, type[Task], Decide, str], ...] = (
+        ("go_to_ball", GoToBallTask, straight_drive, "robobt/GoToBall-v0"),
+        ("shoot", ShootTask, turn_and_kick, "robobt/ShootTowardsGoal-v0"),
+    )
+    for name, kind, decide, env_id in cases:
+        for size, n in SIZES.items():
+            step, physics = _measure(kind(n=n, seed=0), decide, seconds)
+            figures[f"{name}_{size}"] = n / step
+        figures[f"{name}_physics_share"] = physics / step
+        figures[f"{name}_gymnasium"] = 1.0 / _measure_gymnasium(env_id, decide, seconds)
+    return figures
+
+
+def _measure(task: Task, decide: Decide, seconds: float) -> tuple[float, float]:
+    """CPU seconds of a step of all arenas, and of the physics alone."""
+    observation = task.reset()
+    best = bare = float("inf")
+    chunk = max(_FEWEST, _CHUNK // task.n)
+    end = process_time() + seconds
+    warm = False
+    while not warm or process_time() < end:
+        spent = 0.0
+        for _ in range(chunk):
+            actions = decide(observation)
+            begin = process_time()
+            result = task.step(actions)
+            spent += process_time() - begin
+            observation = result.observation
+        if warm:
+            best = min(best, spent / chunk)
+            bare = min(bare, _physics(task, chunk))
+            observation = task.restart()
+        warm = True
+    return best, bare
+
+
+def _physics(task: Task, steps: int) -> float:
+    commands = np.zeros((task.n, 1, 6))
+    commands[..., 2] = 1.0
+    begin = process_time()
+    for _ in range(steps):
+        task.arenas.step(commands)
+    return (process_time() - begin) / steps
+
+
+def _measure_gymnasium(env_id: str, decide: Decide, seconds: float) -> float:
+    env = gymnasium.make(env_id)
+    observation, _ = env.reset(seed=0)
+    best = float("inf")
+    end = process_time() + seconds
+    warm = False
+    while not warm or process_time() < end:
+        spent = 0.0
+        for _ in range(_CHUNK):
+            action = decide(observation[None].astype(np.float64))[0].astype(np.float32)
+            begin = process_time()
+            observation, _, terminated, truncated, _ = env.step(action)
+            if terminated or truncated:
+                observation, _ = env.reset()
+            spent += process_time() - begin
+        if warm:
+            best = min(best, spent / _CHUNK)
+        warm = True
+    env.close()
+    return best
