@@ -82,7 +82,39 @@ SHOOT = ObservationSpec(
 )
 """The ball and the posts of the attacked goal, in the robot's frame."""
 
-OBSERVATIONS = {spec.name: spec for spec in (SHOT, GO_TO_BALL, SHOOT)}
+SCENE_OPPONENTS = 6
+"""How many opponents a shot's scene has room for."""
+
+ABSENT = (-99.0, 99.0, 0.0, 0.0)
+"""An empty place in a shot's scene: a robot far behind the shooter."""
+
+SHOT_SCENE = ObservationSpec(
+    "shot_scene",
+    1,
+    (
+        ("target_distance", "m"),
+        ("target_angle", "rad"),
+        ("target_offset", "m"),
+        ("turn", "rad"),
+        ("shooter_v_along", "m/s"),
+        ("shooter_v_across", "m/s"),
+        ("ball_along", "m"),
+        ("ball_across", "m"),
+        ("ball_v_along", "m/s"),
+        ("ball_v_across", "m/s"),
+        *(
+            (f"opponent_{number}_{entry}", unit)
+            for number in range(SCENE_OPPONENTS)
+            for entry, unit in (("along", "m"), ("across", "m"), ("v_along", "m/s"), ("v_across", "m/s"))
+        ),
+    ),
+)
+"""All that moves, seen along the line shooter -> target, and the shot's place on the field."""
+
+SCENE_HEAD = SHOT_SCENE.size - 4 * SCENE_OPPONENTS
+"""Entries of a shot's scene before its opponents, which have four each."""
+
+OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, SHOOT)}
 
 
 def shot_features(shooter: ArrayLike, target: ArrayLike, opponent: ArrayLike) -> FloatArray:
@@ -108,6 +140,68 @@ def shot_features(shooter: ArrayLike, target: ArrayLike, opponent: ArrayLike) ->
     across = np.abs(cos * to_opponent[..., 1] - sin * to_opponent[..., 0])
     parts = np.broadcast_arrays(np.arctan2(across, along), length, np.hypot(along, across), along, across)
     return np.stack(parts, axis=-1)
+
+
+def shot_scene(shooter: ArrayLike, ball: ArrayLike, target: ArrayLike, opponents: ArrayLike) -> FloatArray:
+    """Everyone's state in the frame of a shot.
+
+    The frame is that of :func:`shot_features`; ``across`` is positive to the left.
+    ``target_angle`` is the direction shooter -> target on the field,
+    ``target_offset`` the target's distance from the field's long axis, ``turn`` what
+    the shooter's heading lacks to that direction.
+
+    Args:
+        shooter: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
+        ball: (..., 4) x, y, vx, vy in field coordinates.
+        target: (..., 2) point aimed at.
+        opponents: (..., K, 6) like the shooter. Of more than :data:`SCENE_OPPONENTS`
+            those nearest to the segment shooter -> target count.
+
+    Returns:
+        (..., 34): :data:`SHOT_SCENE`, the nearest opponent first, then the others by
+        their distance from the segment; places that are left are :data:`ABSENT`.
+    """
+    r, b = np.asarray(shooter, dtype=np.float64), np.asarray(ball, dtype=np.float64)
+    t, o = np.asarray(target, dtype=np.float64), np.asarray(opponents, dtype=np.float64)
+    dx, dy = t[..., 0] - r[..., 0], t[..., 1] - r[..., 1]
+    length, angle = np.hypot(dx, dy), np.arctan2(dy, dx)
+    cos, sin = np.cos(angle), np.sin(angle)
+
+    def along(x: FloatArray, y: FloatArray) -> FloatArray:
+        return np.asarray(cos * x + sin * y)
+
+    def across(x: FloatArray, y: FloatArray) -> FloatArray:
+        return np.asarray(cos * y - sin * x)
+
+    bx, by = b[..., 0] - r[..., 0], b[..., 1] - r[..., 1]
+    head = (
+        length,
+        angle,
+        np.abs(t[..., 1]),
+        wrap_angles(angle - r[..., 2]),
+        along(r[..., 3], r[..., 4]),
+        across(r[..., 3], r[..., 4]),
+        along(bx, by),
+        across(bx, by),
+        along(b[..., 2], b[..., 3]),
+        across(b[..., 2], b[..., 3]),
+    )
+    cos, sin = cos[..., None], sin[..., None]
+    ox, oy = o[..., 0] - r[..., 0, None], o[..., 1] - r[..., 1, None]
+    entries = (along(ox, oy), across(ox, oy), along(o[..., 3], o[..., 4]), across(o[..., 3], o[..., 4]))
+    block = np.stack(np.broadcast_arrays(*entries), axis=-1)
+    beyond = block[..., 0] - np.clip(block[..., 0], 0.0, length[..., None])
+    order = np.argsort(np.hypot(beyond, block[..., 1]), axis=-1, kind="stable")[..., :SCENE_OPPONENTS]
+    block = np.take_along_axis(block, order[..., None], axis=-2)
+    lead = np.broadcast_shapes(block.shape[:-2], *(entry.shape for entry in head))
+    scene = np.empty((*lead, SHOT_SCENE.size))
+    for i, entry in enumerate(head):
+        scene[..., i] = entry
+    room = scene[..., SCENE_HEAD:].reshape(*lead, SCENE_OPPONENTS, 4)
+    room[:] = ABSENT
+    room[..., : block.shape[-2], :] = block
+    scene[..., SCENE_HEAD:] = room.reshape(*lead, -1)
+    return scene
 
 
 def go_to_ball_observation(robot: ArrayLike, ball: ArrayLike) -> FloatArray:
@@ -166,6 +260,22 @@ def shot_features_of(frame: Frame, robot: RobotState, targets: ArrayLike) -> Flo
     points = np.asarray(targets, dtype=np.float64)
     opponents = np.array([other.position for other in frame.opponents], dtype=np.float64)
     return shot_features(robot.position, points[:, None, :], opponents.reshape(1, -1, 2))
+
+
+def shot_scene_of(frame: Frame, robot: RobotState, targets: ArrayLike) -> FloatArray:
+    """The scene of a shot for every target point of a frame.
+
+    Args:
+        targets: (T, 2) points [m].
+
+    Returns:
+        (T, 34): :data:`SHOT_SCENE`.
+    """
+    ball = frame.ball
+    opponents = np.array([_kinematics(other) for other in frame.opponents], dtype=np.float64)
+    return shot_scene(
+        _kinematics(robot), (ball.x, ball.y, ball.vx, ball.vy), targets, opponents.reshape(-1, 6)
+    )
 
 
 def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:

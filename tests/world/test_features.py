@@ -11,10 +11,14 @@ from hypothesis import strategies as st
 
 from robobt.world import DIVISION_B, BallState, Frame, RobotState
 from robobt.world.features import (
+    ABSENT,
     GO_TO_BALL,
     OBSERVATIONS,
+    SCENE_HEAD,
+    SCENE_OPPONENTS,
     SHOOT,
     SHOT,
+    SHOT_SCENE,
     ball_angle,
     go_to_ball_observation,
     go_to_ball_of,
@@ -22,6 +26,8 @@ from robobt.world.features import (
     shoot_of,
     shot_features,
     shot_features_of,
+    shot_scene,
+    shot_scene_of,
 )
 
 coordinate = st.floats(-5, 5)
@@ -130,3 +136,50 @@ def test_every_observation_names_its_entries_once() -> None:
         names = [name for name, _ in spec.entries]
         assert len(set(names)) == spec.size
         assert spec.version >= 1
+
+
+SHOOTER = (1.0, 1.0, 0.0, 0.5, 0.0, 0.0)
+OPPONENTS = [(4.0, 3.0, 0.0, 0.0, 0.0, 0.0), (0.6, 3.0, 0.0, 0.3, 0.1, 0.0)]
+
+
+def _entries(scene: np.ndarray) -> dict[str, float]:
+    return {name: value for (name, _), value in zip(SHOT_SCENE.entries, scene, strict=True)}
+
+
+def test_the_scene_of_a_shot_is_seen_along_the_shot() -> None:
+    # Straight to the left of the field's axis: along is +y, across is -x.
+    scene = _entries(shot_scene(SHOOTER, (1.0, 1.1, 0.0, 2.0), (1.0, 4.0), OPPONENTS))
+    assert scene["target_distance"] == pytest.approx(3.0)
+    assert scene["target_angle"] == scene["turn"] == pytest.approx(np.pi / 2)
+    assert scene["target_offset"] == pytest.approx(4.0)
+    assert (scene["shooter_v_along"], scene["shooter_v_across"]) == pytest.approx((0.0, -0.5))
+    assert (scene["ball_along"], scene["ball_across"]) == pytest.approx((0.1, 0.0))
+    assert (scene["ball_v_along"], scene["ball_v_across"]) == pytest.approx((2.0, 0.0))
+    assert (scene["opponent_0_along"], scene["opponent_0_across"]) == pytest.approx((2.0, 0.4))
+    assert (scene["opponent_0_v_along"], scene["opponent_0_v_across"]) == pytest.approx((0.1, -0.3))
+    assert (scene["opponent_1_along"], scene["opponent_1_across"]) == pytest.approx((2.0, -3.0))
+    assert tuple(scene[f"opponent_2_{name}"] for name in ("along", "across", "v_along", "v_across")) == ABSENT
+
+
+def test_of_many_opponents_the_nearest_to_the_shot_stay_in_the_scene() -> None:
+    far = [(x, -2.0, 0.0, 0.0, 0.0, 0.0) for x in np.linspace(-4.0, 0.0, 7)]
+    scene = _entries(shot_scene(SHOOTER, (1, 1, 0, 0), (1.0, 4.0), far + OPPONENTS))
+    assert (scene["opponent_0_along"], scene["opponent_0_across"]) == pytest.approx((2.0, 0.4))
+    assert (scene["opponent_5_along"], scene["opponent_5_across"]) == pytest.approx((-3.0, 3.0))
+
+
+def test_scenes_of_many_targets_and_frames_are_those_of_one() -> None:
+    rng = np.random.default_rng(1)
+    shooters, balls = rng.normal(size=(4, 1, 6)), rng.normal(size=(4, 1, 4))
+    targets, opponents = rng.normal(size=(5, 2)), rng.normal(size=(4, 1, 8, 6))
+    scenes = shot_scene(shooters, balls, targets, opponents)
+    assert scenes.shape == (4, 5, SHOT_SCENE.size)
+    for i, k in np.ndindex(4, 5):
+        one = shot_scene(shooters[i, 0], balls[i, 0], targets[k], opponents[i, 0])
+        np.testing.assert_allclose(scenes[i, k], one)
+
+
+def test_a_frame_without_opponents_has_a_scene() -> None:
+    frame = Frame(0.0, DIVISION_B, BallState(0.5, -0.5), (RobotState(3, -1.0, 0.5),))
+    scene = shot_scene_of(frame, frame.own[0], [[4.5, 0.2]])
+    np.testing.assert_array_equal(scene[0, SCENE_HEAD:].reshape(-1, 4), np.tile(ABSENT, (SCENE_OPPONENTS, 1)))
