@@ -74,7 +74,7 @@ class Registry(Generic[T]):
             undo()
 
     def undo_point(self) -> Callable[[], None]:
-        """A function that takes back whatever will have been registered since, other packages' things aside."""
+        """A function that takes back what is registered after this call, other packages' things aside."""
         self._load()
         entries, sources = dict(self._entries), dict(self._sources)
 

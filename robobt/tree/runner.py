@@ -33,9 +33,9 @@ class TreeError(RuntimeError):
 class TreeRunner:
     """A tree bound to one store.
 
-    An exception in a node stops this tree: running nodes are interrupted, every
-    node becomes INVALID, ``error`` says what happened and where, and the next tick
-    starts from the root again.
+    An exception in a node fails it and stops this tree: running nodes are interrupted,
+    the node has FAILURE and the exception as its feedback, every other one INVALID,
+    ``error`` says what happened and where, and the next tick starts from the root again.
 
     Args:
         root: the tree.
@@ -55,6 +55,7 @@ class TreeRunner:
         self.error: str | None = None
         self.ticks = 0
         self.nodes = preorder(root)
+        self._failed: Behaviour | None = None
         self._stock = False
         self._visitor: VisitorBase | None = None
         self._marks: Marks | None = None
@@ -62,23 +63,33 @@ class TreeRunner:
         self._tick = compile_tree(root)
 
     def tick(self) -> Status:
-        """Tick the tree once; INVALID when a node raised.
+        """Tick the tree once; its root's status, INVALID when a node raised.
 
         Raises:
             TreeError: a node raised, and ``on_error`` is "raise".
         """
         self.error = None
         self.ticks += 1
+        if self._failed is not None:
+            self._failed.feedback_message, self._failed = "", None
         try:
             self._tick()
         except (Exception, SystemExit) as error:
             # A skill that calls sys.exit() has failed like any other; only Ctrl-C ends the program.
-            self.error = self._say(error)
-            abandon(self.root)
+            self._fail(error)
             if self.on_error == "raise":
                 raise TreeError(self.error) from error
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
+            return Status.INVALID
         return self.root.status
+
+    def _fail(self, error: BaseException) -> None:
+        """Bring the tree to rest, with the node that raised as the one that failed."""
+        node, said = self._raiser(error)
+        self.error = f"{node_path(node)}: {said}"
+        abandon(self.root)
+        node.status, node.feedback_message = Status.FAILURE, said
+        self._failed = node
 
     def tick_by_py_trees(self) -> None:
         """From now on tick by py_trees' own generators instead: the same, slower, for comparison."""
@@ -145,11 +156,12 @@ class TreeRunner:
         try:
             self.root.stop(Status.INVALID)
         except (Exception, SystemExit) as error:
-            _log.warning("%s", self._say(error))
+            node, said = self._raiser(error)
+            _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
 
-    def _say(self, error: BaseException) -> str:
-        """Where the error was raised, node and line of the skill's file, and what it is."""
+    def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
+        """The node that raised, and what it is, with the line of the skill's file."""
         node, place = self.root, ""
         trace = error.__traceback__
         while trace is not None:
@@ -160,7 +172,7 @@ class TreeRunner:
                 if not frame.f_globals.get("__name__", "").startswith(_ENGINES):
                     place = f" ({PurePath(frame.f_code.co_filename).name}:{trace.tb_lineno})"
             trace = trace.tb_next
-        return f"{node_path(node)}: {type(error).__name__}: {text_of(error)}{place}"
+        return node, f"{type(error).__name__}: {text_of(error)}{place}"
 
 
 # Where every exception passes through; whoever has to mend it looks elsewhere.

@@ -85,7 +85,7 @@ def test_an_exception_stops_the_tree_names_the_node_and_leaves_nothing_running()
     runner = TreeRunner(Selector("root", memory=False, children=[inner]), log)
     assert runner.tick() is Status.INVALID
     assert str(runner.error).startswith("root/inner/bad: ZeroDivisionError: no (test_leaf.py:")
-    assert runner.statuses() == "----"
+    assert runner.statuses() == "---F"
     assert runner.tick() is Status.INVALID
 
 

@@ -222,14 +222,26 @@ def test_skills_plays_and_raters_take_in_other_packages(registry: Registry[objec
 def test_what_is_registered_temporarily_is_gone_afterwards() -> None:
     registry = things()
     own = registry["own"]
-    with pytest.raises(RuntimeError), registry.temporarily() as same:
+    with registry.temporarily() as same:
         assert same is registry
         registry.register("guest")("guest")
         assert registry["guest"] == "guest"
-        raise RuntimeError
     assert list(registry) == ["own"]
     assert registry["own"] is own
     registry.register("guest")("another")
+
+
+def _fail_with_a_guest(registry: Registry[object]) -> None:
+    with registry.temporarily():
+        registry.register("guest")("guest")
+        raise RuntimeError
+
+
+def test_an_exception_takes_it_back_too() -> None:
+    registry = things()
+    with pytest.raises(RuntimeError):
+        _fail_with_a_guest(registry)
+    assert list(registry) == ["own"]
 
 
 def test_what_other_packages_bring_while_something_is_temporary_stays(install: Install) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from py_trees.common import OneShotPolicy, ParallelPolicy
+from py_trees.decorators import FailureIsRunning
 
 from robobt.plays import PLAYS
 from robobt.plays.files import VOCABULARY as PLAY_VOCABULARY
@@ -75,6 +76,10 @@ def document(body: str, more: str = "") -> str:
 
 def tree(body: str, more: str = "", vocabulary: Vocabulary = VOCABULARY) -> Behaviour:
     return build_tree(read(document(body, more), vocabulary), vocabulary)
+
+
+def tree_of(text: str) -> Behaviour:
+    return build_tree(read(text), VOCABULARY)
 
 
 def load(name: str) -> TreeFile:
@@ -201,6 +206,7 @@ def test_t11_what_groot_writes_besides_is_read_over_and_a_sub_trees_model_gives_
         ("Repeat", 'num_cycles="3"', lambda c: Repeat("Repeat", c, 3)),
         ("Repeat", 'num_cycles="-1"', lambda c: Repeat("Repeat", c, -1)),
         ("RetryUntilSuccessful", 'num_attempts="2"', lambda c: Retry("RetryUntilSuccessful", c, 2)),
+        ("RetryUntilSuccessful", 'num_attempts="-1"', lambda c: FailureIsRunning("RetryUntilSuccessful", c)),
         ("Timeout", 'msec="1500"', lambda c: Timeout("Timeout", c, seconds=1.5)),
         (
             "Parallel",
@@ -225,6 +231,45 @@ def test_a_tag_is_the_node_that_does_the_same(tag: str, attributes: str, node: A
     for start, end in ((f"<{tag} {attributes}>", tag), (f'<{kind} ID="{tag}" {attributes}>', kind)):
         root = tree(f'{start}<SaySomething message="x"/></{end}>')
         assert tree_differences(root, expected, VOCABULARY) == []
+
+
+@pytest.mark.parametrize("tag", ["Repeat", "RetryUntilSuccessful"])
+def test_without_end_is_minus_one_in_the_file_again(tag: str) -> None:
+    attribute = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts"}[tag]
+    for name in ("", ' name="on and on"'):
+        file = read(document(f'<{tag}{name} {attribute}="-1"><PassThroughDoor/></{tag}>'))
+        text = write_xml(file, VOCABULARY)
+        assert f'{attribute}="-1"' in text
+        assert read(text) == file
+        root = build_tree(file, VOCABULARY)
+        again = describe_tree(root, VOCABULARY, "Main")
+        assert tree_differences(build_tree(again, VOCABULARY), root, VOCABULARY) == []
+        assert tree_differences(tree_of(write_xml(again, VOCABULARY)), root, VOCABULARY) == []
+
+
+def test_retrying_without_end_outlasts_any_number_of_failures() -> None:
+    house = House()
+    runner = TreeRunner(
+        tree('<RetryUntilSuccessful num_attempts="-1"><PassThroughDoor/></RetryUntilSuccessful>'), house
+    )
+    assert {runner.tick() for _ in range(1000)} == {R}
+    house.door_open = True
+    assert runner.tick() is S
+
+
+def test_without_end_cannot_be_a_sub_trees_port() -> None:
+    body = '<SubTree ID="Again" times="-1"/>'
+    again = (
+        '<BehaviorTree ID="Again"><RetryUntilSuccessful num_attempts="{times}"><AlwaysFailure/>'
+        "</RetryUntilSuccessful></BehaviorTree>"
+    )
+    with pytest.raises(TreeFileError, match="num_failures: Should be 1 or more; FailureIsRunning tries with"):
+        tree(body, again)
+
+
+def test_a_stock_retry_that_never_retries_is_not_written_as_one_that_always_does() -> None:
+    with pytest.raises(ValueError, match="num_failures"):
+        describe_tree(Retry("again", SaySomething(message="x"), -1), VOCABULARY, "Main")
 
 
 def test_every_tag_of_the_table_can_be_read_and_written() -> None:

@@ -366,7 +366,15 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("play: 3\ntree: Stop", "play is a text on one line"),
         ("play: p\ndescription: [1]\ntree: Stop", "test.yaml:2: the description is text"),
         ("play: p\ntree: Sotp", "test.yaml:2: no node is called 'Sotp'; is it Stop"),
-        ("play: p\ntree: qqqq", "there are AimUpfield, "),
+        (
+            "play: p\ntree: {Retry: {name: r, num_failures: -1, child: Stop}}",
+            "Retry: num_failures: Should be 1 or more; FailureIsRunning tries without end, not -1",
+        ),
+        (
+            "play: p\ntree: {Repeat: {name: r, num_success: 0, child: Stop}}",
+            "Repeat: num_success: Should be 1 or more, or -1 for without end, not 0",
+        ),
+        ("play: p\ntree: qqqq", "there are Aim"),
         ("play: p\ntree: 3", "a node is a name"),
         ("play: p\ntree: {Stop: {}, Wall: {}}", "a node is a name"),
         ("play: p\ntree: {Wall: 3}", "Wall takes its parameters by name"),

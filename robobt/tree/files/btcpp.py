@@ -19,12 +19,15 @@ class Attribute:
         default: its value where it is left out, None when it has to be given.
         milliseconds: whether it counts those, and the parameter seconds.
         count: whether it is a number of times: 1 or more, or -1 for without end.
+        endless: the type that does without end what the tag does so many times; None where the
+            tag's own type takes the -1.
     """
 
     parameter: str
     default: str | None = None
     milliseconds: bool = False
     count: bool = False
+    endless: str | None = None
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,13 @@ TAGS: Mapping[str, Tag] = {
     "ForceFailure": Tag("SuccessIsFailure"),
     "KeepRunningUntilFailure": Tag("SuccessIsRunning"),
     "Repeat": Tag("Repeat", attributes={"num_cycles": Attribute("num_success", count=True)}),
-    "RetryUntilSuccessful": Tag("Retry", attributes={"num_attempts": Attribute("num_failures", count=True)}),
+    "RetryUntilSuccessful": Tag(
+        "Retry",
+        attributes={
+            # py_trees' Retry fails at the first failure when it is given -1.
+            "num_attempts": Attribute("num_failures", count=True, endless="FailureIsRunning")
+        },
+    ),
     "Timeout": Tag("Timeout", attributes={"msec": Attribute("seconds", milliseconds=True)}),
     "Delay": Tag("Delay", attributes={"delay_msec": Attribute("seconds", milliseconds=True)}),
     "Sleep": Tag("Wait", attributes={"msec": Attribute("seconds", milliseconds=True)}),

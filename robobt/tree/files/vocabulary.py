@@ -7,12 +7,14 @@ import json
 import types
 import typing
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Literal, Protocol
 
 from py_trees import behaviours, composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy
+from pydantic import AfterValidator
+from pydantic_core import PydanticCustomError
 
 from robobt.tree import nodes
 from robobt.tree.files.model import Entry
@@ -172,6 +174,8 @@ class Vocabulary:
                 return value
             except ParameterError as error:
                 first = first or error
+                if self._is_refused(parameter, value):
+                    raise
         raise ParameterError(parameter.name, f"{say_value(text)} is no {parameter.kind}") from first
 
     def to_text(self, parameter: Parameter | None, value: Any) -> str:
@@ -191,6 +195,16 @@ class Vocabulary:
             except ParameterError:
                 return exact
         return simple
+
+    def _is_refused(self, parameter: Parameter, value: Any) -> bool:
+        """Whether a value is of the parameter's type, and only what is said beside the type refuses it."""
+        if typing.get_origin(parameter.hint) is not Annotated:
+            return False
+        try:
+            self.convert(Parameter(parameter.name, typing.get_args(parameter.hint)[0]), value)
+        except ParameterError:
+            return False
+        return True
 
     def _named(self, parameter: Parameter) -> Named | None:
         for member in _members(parameter.hint):
@@ -368,6 +382,34 @@ def _one_shot() -> NodeType:
     )
 
 
+def _repeat() -> NodeType:
+    """py_trees' Repeat, which takes every number that is never reached for without end."""
+    return _with_hint(
+        node_type(decorators.Repeat), "num_success", Annotated[int, AfterValidator(_times_or_for_ever)]
+    )
+
+
+def _retry() -> NodeType:
+    """py_trees' Retry, which has no number for without end: it fails at once when it is given one below 1."""
+    return _with_hint(node_type(decorators.Retry), "num_failures", Annotated[int, AfterValidator(_times)])
+
+
+def _with_hint(known: NodeType, name: str, hint: Any) -> NodeType:
+    return replace(known, parameters={**known.parameters, name: Parameter(name, hint)})
+
+
+def _times_or_for_ever(number: int) -> int:
+    if number < 1 and number != -1:
+        raise PydanticCustomError("times", "Should be 1 or more, or -1 for without end")
+    return number
+
+
+def _times(number: int) -> int:
+    if number < 1:
+        raise PydanticCustomError("times", "Should be 1 or more; FailureIsRunning tries without end")
+    return number
+
+
 _PLAIN_CLASSES: tuple[type[Behaviour], ...] = (
     composites.Selector,
     composites.Sequence,
@@ -376,8 +418,6 @@ _PLAIN_CLASSES: tuple[type[Behaviour], ...] = (
     decorators.FailureIsSuccess,
     decorators.Inverter,
     decorators.PassThrough,
-    decorators.Repeat,
-    decorators.Retry,
     decorators.RunningIsFailure,
     decorators.RunningIsSuccess,
     decorators.SuccessIsFailure,
@@ -398,6 +438,7 @@ _PLAIN_CLASSES: tuple[type[Behaviour], ...] = (
 )
 
 CONTROL: Mapping[str, NodeType] = {
-    known.name: known for known in (_parallel(), _one_shot(), *(node_type(cls) for cls in _PLAIN_CLASSES))
+    known.name: known
+    for known in (_parallel(), _one_shot(), _repeat(), _retry(), *(node_type(cls) for cls in _PLAIN_CLASSES))
 }
 """The control nodes, and leaves without a task of their own, that every file may name."""

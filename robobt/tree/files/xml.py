@@ -175,6 +175,10 @@ class _Reader:
             given.setdefault(name, attribute.default or "")
         for name, text in given.items():
             self._parameter(element, node, shown, tag, kind, name, text)
+        for attribute in tag.attributes.values():
+            if attribute.endless is not None and node.parameters.get(attribute.parameter) == -1:
+                node.type = attribute.endless
+                del node.parameters[attribute.parameter]
         return node
 
     def _parameter(
@@ -386,10 +390,13 @@ class _Writer:
         return [f"{indent}<{tag}{_attributes(attributes)}>", *inner, f"{indent}</{tag}>"]
 
     def _node(self, spec: Node, kind: NodeType) -> tuple[str, dict[str, str], list[Spec]]:
-        name, tag = _tag_for(spec, kind)
+        endless = _ENDLESS.get(kind.name)
+        name, tag = (endless[0], Tag(kind.name)) if endless is not None else _tag_for(spec, kind)
         attributes = {}
         if spec.name is not None and spec.name != name:
             attributes["name"] = spec.name
+        if endless is not None:
+            attributes[endless[1]] = "-1"
         renamed = {entry.parameter: (shown, entry) for shown, entry in tag.attributes.items()}
         for key, value in spec.parameters.items():
             if key in tag.fixed:
@@ -503,6 +510,14 @@ def _holds_references(value: Value) -> bool:
         return any(_holds_references(part) for part in value.values())
     return isinstance(value, Name | Formula | Choice | Text)
 
+
+_ENDLESS = {
+    attribute.endless: (tag, name)
+    for tag, entry in TAGS.items()
+    for name, attribute in entry.attributes.items()
+    if attribute.endless is not None
+}
+"""Types that are written as another tag with -1: the tag and the attribute."""
 
 _WORDS = {"true": True, "false": False, "1": True, "0": False}
 _POINTER = re.compile(r"@?[^\W\d]\w*")
