@@ -8,6 +8,7 @@ from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot
 from robobt.plays.goalkeeper import goalkeeper
+from robobt.plays.take_shot import take_shot
 from robobt.plays.team import defender, field_player, keeper
 
 __all__ = [
@@ -20,4 +21,5 @@ __all__ = [
     "go_to_ball_and_shoot",
     "goalkeeper",
     "keeper",
+    "take_shot",
 ]

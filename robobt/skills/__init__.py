@@ -3,6 +3,7 @@
 Importing this package enters every one of them in :data:`SKILLS`.
 """
 
+from robobt.skills.aim_at_goal_point import AimAtGoalPoint
 from robobt.skills.aim_upfield import AimUpfield
 from robobt.skills.assign_roles import AssignRoles
 from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
@@ -37,6 +38,7 @@ from robobt.skills.is_halted import IsHalted
 from robobt.skills.is_restart import IsRestart
 from robobt.skills.keep_distance import KeepDistance
 from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.learned_skill import LearnedSkill
 from robobt.skills.mark_opponent import MarkOpponent
 from robobt.skills.mate_aims_at_me import MateAimsAtMe
 from robobt.skills.may_touch_ball import MayTouchBall
@@ -52,6 +54,7 @@ from robobt.skills.select_clearance import SelectClearance
 from robobt.skills.select_pass import SelectPass
 from robobt.skills.select_shot import SelectShot
 from robobt.skills.select_support_position import SelectSupportPosition
+from robobt.skills.shoot import Shoot
 from robobt.skills.shot_coming import ShotComing
 from robobt.skills.shot_is_open import ShotIsOpen
 from robobt.skills.shot_is_steady import ShotIsSteady
@@ -63,6 +66,7 @@ from robobt.skills.wall import Wall
 
 __all__ = [
     "SKILLS",
+    "AimAtGoalPoint",
     "AimUpfield",
     "AssignRoles",
     "BallAimedAtGoal",
@@ -96,6 +100,7 @@ __all__ = [
     "IsRestart",
     "KeepDistance",
     "KickToTarget",
+    "LearnedSkill",
     "MarkOpponent",
     "MateAimsAtMe",
     "MayTouchBall",
@@ -112,6 +117,7 @@ __all__ = [
     "SelectPass",
     "SelectShot",
     "SelectSupportPosition",
+    "Shoot",
     "Shot",
     "ShotComing",
     "ShotIsOpen",

@@ -1,0 +1,42 @@
+"""One shot at a given point, for the collection of shots."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS
+from robobt.skills.aim_at_goal_point import AimAtGoalPoint
+from robobt.skills.dribble_to import DribbleTo
+from robobt.skills.kick_to_target import KickToTarget
+from robobt.tree import Behaviour, FailureIsSuccess, Sequence
+
+
+@PLAYS.register("take_shot")
+def take_shot(
+    *,
+    target_y: float = 0.0,
+    place_x: float = 0.0,
+    place_y: float = 0.0,
+    dribble_speed: float = 2.0,
+    tolerance: float = 0.0175,
+    shot_speed: float | None = None,
+) -> Behaviour:
+    """Carry the ball to a place and shoot from there at a point of the goal line, whatever the chance.
+
+    Shot data must not be picked by the one who shall learn from it: this shooter
+    judges nothing.
+
+    Args:
+        target_y: of the point on the opponent's goal line [m].
+        place_x, place_y: from where [m]; a ball that is there is not carried.
+        dribble_speed: top speed with the ball [m/s].
+        tolerance: angle by which the kick may be off [rad]; the default is RoboBulls' degree.
+        shot_speed: kick speed of the shot [m/s]; None is the kick's own.
+    """
+    return Sequence(
+        "take shot",
+        memory=True,
+        children=[
+            AimAtGoalPoint(y=target_y),
+            FailureIsSuccess("carry", DribbleTo(target=(place_x, place_y), max_speed=dribble_speed)),
+            KickToTarget(kick_speed=shot_speed, tolerance=tolerance),
+        ],
+    )
