@@ -20,6 +20,9 @@ from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
 
+_LEAST_ROBOT_NOISE, _LEAST_BALL_NOISE, _LEAST_HEADING_NOISE = 0.0013, 0.0014, 0.01
+"""Noise that is reckoned with even where none is announced [m, m, rad]. Source: ER-Force's Realistic."""
+
 _LEAST_CONFIDENCE = 0.1
 """Detections that the vision itself believes in less are left out."""
 
@@ -102,10 +105,9 @@ class VisionFilter:
         self.settings = settings or SimSettings()
         self._limits = dict(limits or {})
         realism = self.settings.realism
-        # Without any noise of its own a simulator still rounds to what a packet holds.
-        self._robot_noise = max(realism.robot_noise, 0.0005)
-        self._ball_noise = max(realism.ball_noise, 0.0005)
-        self._heading_noise = max(realism.heading_noise, 0.002)
+        self._robot_noise = max(realism.robot_noise, _LEAST_ROBOT_NOISE)
+        self._ball_noise = max(realism.ball_noise, _LEAST_BALL_NOISE)
+        self._heading_noise = max(realism.heading_noise, _LEAST_HEADING_NOISE)
         self.captured: float | None = None
         self.duplicates = 0
         self._cameras: dict[int, float] = {}

@@ -93,9 +93,9 @@ class Receiver:
     Args:
         address: a multicast group to join, or an own address to be reached at.
         port: 0 takes a free one.
-        interface: own address of the interface to listen on; packets that come in
-            elsewhere are dropped. By default whatever interface this machine's own
-            packets take, and other machines' packets are dropped.
+        interface: own address of the interface to listen on; other machines' packets that
+            come in elsewhere are dropped. By default all of other machines' packets are,
+            and this machine's own are let in whatever interface they take.
 
     Attributes:
         port: the port it listens on.
@@ -171,8 +171,10 @@ class Receiver:
         self.close()
 
     def _welcome(self, sender: str, extras: list[tuple[int, int, bytes]]) -> bool:
+        if self._is_own(sender):
+            return True
         if self._interface is None:
-            return self._is_own(sender)
+            return False
         for level, kind, data in extras:
             if level == socket.IPPROTO_IP and kind == _IP_PKTINFO and len(data) >= 4:
                 return bool(struct.unpack_from("@i", data)[0] == self._interface)

@@ -1,0 +1,40 @@
+"""Addresses and ports of the league's programs."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from pydantic import BaseModel, ConfigDict, Field
+
+VISION_GROUP = "224.5.23.2"
+REFEREE_GROUP = "224.5.23.1"
+
+
+class Endpoint(NamedTuple):
+    """An IPv4 address and a UDP port."""
+
+    address: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.address}:{self.port}"
+
+
+class Endpoints(BaseModel):
+    """Who is reached where. The defaults are those of the league's simulators.
+
+    The ports of grSim and the simulation protocol are those of one host; port 0
+    takes a free one where something is served.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    vision: Endpoint = Field(Endpoint(VISION_GROUP, 10020), description="SSL-Vision; 10006 on a real field")
+    tracker: Endpoint = Field(Endpoint(VISION_GROUP, 10010), description="tracked frames")
+    referee: Endpoint = Field(Endpoint(REFEREE_GROUP, 10003), description="game controller")
+    grsim: int = Field(20011, ge=0, le=65535, description="grSim's commands and replacements")
+    blue_status: int = Field(30011, ge=0, le=65535, description="grSim's status of blue robots")
+    yellow_status: int = Field(30012, ge=0, le=65535, description="grSim's status of yellow robots")
+    control: int = Field(10300, ge=0, le=65535, description="teleport and configuration")
+    blue: int = Field(10301, ge=0, le=65535, description="control of blue robots")
+    yellow: int = Field(10302, ge=0, le=65535, description="control of yellow robots")
