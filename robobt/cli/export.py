@@ -122,7 +122,7 @@ def _print_table(files: list[ModelFile]) -> None:
     listed.columns[0].no_wrap = True
     for file in files:
         card = file.card
-        told = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()]
+        told = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()][:2]
         listed.add_row(
             escape(card.name),
             file.format,

@@ -9,7 +9,7 @@ import re
 import tempfile
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
@@ -36,7 +36,7 @@ MAX_EXPORT_SIZE = 2**20
 """A skill's network is small; a file longer than this is a mistake [bytes]."""
 
 TOLERANCE = 1e-6
-"""How far the file may be off the network it was made from, on any output."""
+"""How far a TorchScript file may be off the network it was made from, on any output."""
 
 _SAMPLES = 1000
 _MANGLED = re.compile(rb"\.___torch_mangle_\d+")
@@ -51,8 +51,9 @@ def export_model(
     The module takes float32 (batch, ``card.observation.size``), the raw
     observation in SI units, and answers (batch, ``len(card.outputs)``): actions in
     [-1, 1], or probabilities. Each file is loaded again before it takes its place,
-    and its answers to 1000 random inputs are compared with the module's. The same
-    module and card give the same file.
+    and its answers to 1000 random inputs are compared with the module's: to 1e-6, in
+    ONNX also to twice what the order of summation makes out in single precision. The
+    same module and card give the same file.
 
     Args:
         module: put into evaluation mode for a copy; itself it stays as it was.
@@ -65,24 +66,22 @@ def export_model(
 
     Raises:
         ModelError: the module does not fit its card, answers what it must not, is larger
-            than 1 MB or cannot be written so that its answers stay the same to 1e-6.
+            than 1 MB, or cannot be written so that its answers stay the same.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     listed = read_manifest(folder)
     module = copy.deepcopy(module).cpu().eval()
-    files = []
-    for format_ in formats:
-        path = folder / f"{card.name}{SUFFIXES[format_]}"
-        data = _torchscript(module, card) if format_ == "torchscript" else _onnx(module, card)
-        if len(data) > MAX_EXPORT_SIZE:
-            raise ModelError(f"{path}: would be {len(data)} bytes, more than {MAX_EXPORT_SIZE}")
-        with _written(path, data) as written:
-            _compare(module, card, written, path)
-        listed[path.name] = sha256(data).hexdigest()
-        files.append(path)
-    with _written(folder / MANIFEST, manifest_text(listed).encode()):
-        pass
+    files = [folder / f"{card.name}{SUFFIXES[format_]}" for format_ in formats]
+    # All or nothing: no file takes its place before all have been compared.
+    with ExitStack() as stack:
+        for format_, path in zip(formats, files, strict=True):
+            data = _torchscript(module, card) if format_ == "torchscript" else _onnx(module, card)
+            if len(data) > MAX_EXPORT_SIZE:
+                raise ModelError(f"{path}: would be {len(data)} bytes, more than {MAX_EXPORT_SIZE}")
+            _compare(module, card, format_, stack.enter_context(_written(path, data)), path)
+            listed[path.name] = sha256(data).hexdigest()
+        stack.enter_context(_written(folder / MANIFEST, manifest_text(listed).encode()))
     return tuple(files)
 
 
@@ -136,18 +135,23 @@ def _onnx(module: nn.Module, card: ModelCard) -> bytes:
     return append_to_onnx(content, text)
 
 
-def _compare(module: nn.Module, card: ModelCard, written: Path, path: Path) -> None:
+def _compare(module: nn.Module, card: ModelCard, format_: Format, written: Path, path: Path) -> None:
     from robobt.skills.policy import load_policy
 
     try:
         policy = load_policy(written)
     except ModelError as error:
         raise ModelError(str(error).replace(str(written), str(path))) from error
-    inputs = _inputs(card, _SAMPLES)
+    inputs = torch.from_numpy(_inputs(card, _SAMPLES))
     with torch.no_grad():
-        wanted: Tensor = module(torch.from_numpy(inputs))
-    off = float(np.abs(policy(inputs) - wanted.numpy()).max())
-    if not off <= TOLERANCE:
+        wanted: Tensor = module(inputs)
+        one_by_one = torch.cat([module(row[None]) for row in inputs])
+    allowed = TOLERANCE
+    if format_ != "torchscript":
+        # Another runtime adds up in another order, as torch itself does for one row and for many.
+        allowed = max(allowed, 2.0 * float((wanted - one_by_one).abs().max()))
+    off = float(np.abs(policy(inputs.numpy()) - wanted.numpy()).max())
+    if not off <= allowed:
         raise ModelError(f"{path}: the file's answers are {off:.2g} off those of the network")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robobt.learning.evaluation import Evaluation
 from robobt.learning.export import export_model
@@ -19,6 +20,8 @@ from robobt.skills.model_card import Measured, ModelCard, ObservationCard, actio
 from robobt.skills.model_file import Format
 from robobt.statistics import mean_interval
 from robobt.world.features import GO_TO_BALL, SHOOT, ObservationSpec
+
+_Floats = NDArray[np.float64]
 
 _SKILLS: dict[str, tuple[str, ObservationSpec]] = {
     "go_to_ball": ("GoToBall", GO_TO_BALL),
@@ -83,7 +86,7 @@ def export_run(
 
 
 def held_out(figures: Evaluation) -> dict[str, Measured]:
-    """What a card says of an evaluation: share of successes, mean time, its ratio to the optimum."""
+    """What a card says of an evaluation: share of successes, mean time [s], its ratio to the optimum."""
     rate = figures.interval
     count = len(figures.success)
     told = {
@@ -94,11 +97,11 @@ def held_out(figures: Evaluation) -> dict[str, Measured]:
         told["time"] = _mean(figures.times[timed], "s")
     known = timed & (figures.optimum > 0.0)
     if known.any():
-        told["time_over_optimum"] = _mean(figures.times[known] / figures.optimum[known], "1")
+        told["time_ratio"] = _ratio(figures.times[known], figures.optimum[known])
     return told
 
 
-def _mean(values: np.ndarray[Any, np.dtype[np.float64]], unit: str) -> Measured:
+def _mean(values: _Floats, unit: str) -> Measured:
     low, high = mean_interval(values) if len(values) > 1 else (None, None)
     return Measured(
         value=float(values.mean()),
@@ -108,6 +111,17 @@ def _mean(values: np.ndarray[Any, np.dtype[np.float64]], unit: str) -> Measured:
         unit=unit,
         interval="95 % Student, mean",
     )
+
+
+def _ratio(times: _Floats, optima: _Floats) -> Measured:
+    """Mean time over mean optimum; the interval is that of the mean of times less their share of it."""
+    ratio = float(times.sum() / optima.sum())
+    low: float | None = None
+    high: float | None = None
+    if len(times) > 1:
+        off = mean_interval(times - ratio * optima)
+        low, high = ratio + off.low / float(optima.mean()), ratio + off.high / float(optima.mean())
+    return Measured(value=ratio, low=low, high=high, n=len(times), interval="95 % Student, ratio of means")
 
 
 def _training(result: TrainResult) -> dict[str, Any]:

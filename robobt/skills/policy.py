@@ -29,6 +29,8 @@ from robobt.world.features import ObservationSpec
 Floats = NDArray[np.float32]
 
 _PROBES = 64
+_ORDER = 1e-3
+"""How far the order of summation may move an output in single precision."""
 _SLACK = 1e-4
 """How far an output may lie outside its range for the rounding of single precision."""
 
@@ -276,7 +278,7 @@ def _probe(network: Network, card: ModelCard) -> None:
         raise ModelError(f"answers {first.min():.3g} to {first.max():.3g}, not within [{low:g}, {high:g}]")
     if not np.array_equal(first, again):
         raise ModelError("does not answer the same twice")
-    if singles.shape != first.shape or not np.allclose(singles, first, rtol=0.0, atol=1e-5):
+    if singles.shape != first.shape or not np.allclose(singles, first, rtol=0.0, atol=_ORDER):
         raise ModelError("answers other than one by one when asked in a batch")
 
 
