@@ -5,8 +5,18 @@ from __future__ import annotations
 from typing import ClassVar
 
 import pytest
-from py_trees.behaviours import Failure, Running, StatusQueue, Success
+from py_trees.behaviours import (
+    CheckBlackboardVariableExists,
+    Failure,
+    ProbabilisticBehaviour,
+    Running,
+    StatusQueue,
+    Success,
+)
 from py_trees.common import ParallelPolicy
+from py_trees.decorators import FailureIsRunning, StatusToBlackboard
+from py_trees.decorators import Timeout as StockTimeout
+from py_trees.timers import Timer as StockTimer
 
 from robobt.plays import PLAYS
 from robobt.skills import GoToBall, HasBall, IsHalted, KickToTarget, SelectShot, Stop
@@ -24,7 +34,7 @@ from robobt.tree import (
     SuccessIsFailure,
 )
 from robobt.tree.aids import Finding, lint_tree, outcomes
-from robobt.tree.nodes import CommitFor, CommittingSelector, SequenceWithMemory, TickDivider, Wait
+from robobt.tree.nodes import CommitFor, CommittingSelector, SequenceWithMemory, TickDivider, Timeout, Wait
 from tests.tree.scripted import Scripted
 
 S, F, R = Status.SUCCESS, Status.FAILURE, Status.RUNNING
@@ -113,6 +123,21 @@ def test_repeating_and_retrying_without_a_bound_is_found(times: int) -> None:
     assert found(Repeat("again", HasBall(), times)) == [("unbounded", "again")]
     assert found(Retry("again", HasBall(), times)) == [("unbounded", "again")]
     assert found(Repeat("again", HasBall(), 3)) == found(Retry("again", HasBall(), 3)) == []
+
+
+def test_what_makes_running_of_failure_tries_for_ever_unless_its_child_cannot_fail() -> None:
+    assert found(FailureIsRunning("again", HasBall())) == [("unbounded", "again")]
+    assert found(FailureIsRunning("never", Success("s"))) == []
+
+
+def test_what_a_seeded_match_cannot_repeat_and_two_robots_cannot_share_is_found() -> None:
+    weights = [1.0, 1.0, 1.0]
+    assert found(StockTimer("t")) == [("wall-clock", "t")]
+    assert found(StockTimeout("in time", HasBall())) == [("wall-clock", "in time")]
+    assert found(ProbabilisticBehaviour("maybe", weights)) == [("global-random", "maybe")]
+    assert found(CheckBlackboardVariableExists("key", "key")) == [("shared-blackboard", "key")]
+    assert found(StatusToBlackboard("s", HasBall(), "key")) == [("shared-blackboard", "s")]
+    assert found(Timeout("in time", HasBall(), seconds=1.0)) == []
 
 
 def test_a_robot_stands_still_while_its_skill_is_not_ticked() -> None:

@@ -6,9 +6,12 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
+from py_trees.behaviours import ProbabilisticBehaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
-from py_trees.decorators import Repeat, Retry
+from py_trees.decorators import FailureIsRunning, Repeat, Retry
+from py_trees.decorators import Timeout as WallClockTimeout
+from py_trees.timers import Timer as WallClockTimer
 
 from robobt.tree.aids.possible_outcomes import outcomes, sets_any
 from robobt.tree.nodes import TickDivider
@@ -44,8 +47,11 @@ def lint_tree(root: Behaviour, per_tick: Collection[str] = ("command",)) -> list
     | ``forgotten-condition`` | a condition before an action under memory: it is not asked again |
     | ``two-actions`` | two children that may run under a sequence without memory |
     | ``unreachable`` | children behind one that always ends the selector or the sequence |
-    | ``unbounded`` | ``Repeat`` and ``Retry`` without a bound |
+    | ``unbounded`` | ``Repeat``, ``Retry`` and ``FailureIsRunning``, which try without a bound |
     | ``divided-motion`` | a ``TickDivider`` around what moves the robot |
+    | ``wall-clock`` | nodes of py_trees that ask the wall clock, not the frame's |
+    | ``global-random`` | one that draws from the process's random numbers, not the robot's |
+    | ``shared-blackboard`` | nodes on the blackboard that all trees of the process share |
 
     A condition is a node that may fail and of which no leaf ever runs or declares that it
     writes to the store; which statuses a leaf can come to, :func:`~robobt.tree.aids.outcomes` says.
@@ -107,6 +113,24 @@ def _unbounded(node: Behaviour) -> Iterator[tuple[Behaviour, str]]:
             yield node, "is meant to try for ever, but fails with its child's first failure: Retry has no -1"
         elif node.num_failures >= FOR_EVER:
             yield node, "tries its child again for ever"
+    if isinstance(node, FailureIsRunning) and Status.FAILURE in outcomes(node.decorated):
+        yield node, "tries its child again for ever"
+
+
+def _wall_clock(node: Behaviour) -> Iterator[tuple[Behaviour, str]]:
+    for kind, instead in ((WallClockTimer, "Wait"), (WallClockTimeout, "Timeout")):
+        if isinstance(node, kind):
+            yield node, f"goes by the wall clock, not the match's; take robobt.tree.nodes.{instead}"
+
+
+def _global_random(node: Behaviour) -> Iterator[tuple[Behaviour, str]]:
+    if isinstance(node, ProbabilisticBehaviour):
+        yield node, "draws from the process's random numbers, so no seed repeats it; a skill has store.rng"
+
+
+def _shared_blackboard(node: Behaviour) -> Iterator[tuple[Behaviour, str]]:
+    if node.blackboards:
+        yield node, "is on py_trees' blackboard, which all robots of the process share; take the store"
 
 
 def _may_run(node: Behaviour) -> bool:
@@ -128,4 +152,7 @@ _RULES: dict[str, Callable[[Behaviour], Iterator[tuple[Behaviour, str]]]] = {
     "two-actions": _two_actions,
     "unreachable": _unreachable,
     "unbounded": _unbounded,
+    "wall-clock": _wall_clock,
+    "global-random": _global_random,
+    "shared-blackboard": _shared_blackboard,
 }
