@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import textwrap
@@ -17,6 +18,7 @@ from robobt.plays.python_files import PythonFileError, import_file, imported_fil
 from robobt.skills import SKILLS
 from robobt.skills.go_to_ball import POLICIES
 from robobt.skills.raters import RATERS
+from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
 
 Write = Callable[..., Path]
@@ -167,6 +169,22 @@ def test_worker_processes_run_the_files_too(write: Write, tmp_path: Path) -> Non
     here, there = (run_trials(played, PlainWorld, 2, workers=workers).results for workers in (1, 2))
     assert [result.trace for result in here] == [result.trace for result in there]
     assert not any(robot.errors for result in there for robot in result.robots.values())
+
+
+def test_the_documents_example_scores(write: Write) -> None:
+    text = (Path(__file__).parents[2] / "docs" / "trees.md").read_text(encoding="utf-8")
+    (source,) = re.findall(r"```python\n(# my_plays\.py\n.*?)```", text, re.DOTALL)
+    import_file(write(source, "my_plays.py"))
+    robot = {"number": 0, "play": "chase_and_shoot", "start": {"position": [0.0, 0.0], "heading": 0.0}}
+    played = scenario_from(
+        data(
+            robots={"blue": [robot], "yellow": []}, ball={"position": [1.0, 0.2]}, ends={"time_limit": 20.0}
+        ),
+        "test",
+    )
+    (result,) = run_trials(played, sim_world, 1).results
+    assert result.outcome == "goal_blue"
+    assert result.robots["blue 0"].errors == 0
 
 
 def test_importing_needs_no_test_around_it(write: Write) -> None:
