@@ -189,8 +189,8 @@ class RefereePublisher:
         message = RefereeMessage(
             source_identifier=self._source,
             packet_timestamp=now,
-            stage=int(game.stage),
-            command=int(game.command),
+            stage=game.stage.name,
+            command=game.command.name,
             command_counter=self._counter,
             command_timestamp=self._command_time,
             blue_team_on_positive_half=False,
@@ -209,5 +209,5 @@ class RefereePublisher:
         if game.stopped and game.restart is not None:
             for command, following in _RESTARTS.items():
                 if following == (game.restart, game.restart_team):
-                    message.next_command = int(command)
+                    message.next_command = RefereeMessage.Command.Value(command.name)
         return bytes(message.SerializeToString())
