@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
-from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.base import BaseEstimator, ClassifierMixin, TransformerMixin
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from robobt.learning.shots.network_classifier import binary_labels, probabilities
@@ -117,18 +117,45 @@ class PhysicsMargin(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return tags
 
 
+class MarginFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """The margin of :class:`PhysicsMargin`, x and L [m], for whatever classifier comes next.
+
+    X is the feature vector ``motion``. The constants of the race are fitted to y.
+    """
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> MarginFeatures:  # noqa: N803
+        """Find the constants; errors as for :class:`PhysicsMargin`."""
+        self.race_ = PhysicsMargin().fit(X, y)
+        return self
+
+    def transform(self, X: ArrayLike) -> FloatArray:  # noqa: N803
+        """(n, 4) to (n, 3)."""
+        check_is_fitted(self)
+        inputs = np.asarray(X, dtype=np.float64)
+        return np.asarray(margin_features(np, inputs, self.race_.constants_))
+
+
+def margin_features(xp: Any, inputs: Any, constants: dict[str, float]) -> Any:
+    """Margin, x and L (..., 3) of inputs (..., 4): b, x, L, v."""
+    return xp.stack([_margin(xp, inputs, constants), inputs[..., 1], inputs[..., 2]], -1)
+
+
 def margin_logits(xp: Any, inputs: Any, constants: dict[str, float]) -> Any:
     """The model's logits (...) of inputs (..., 4): b, x, L, v."""
-    b, x, length, v = (inputs[..., i] for i in range(4))
-    c = constants
-    time = xp.clip(x / np.exp(c["log_ball_speed"]) + c["delay"], 0.0, np.inf)
-    covered = reach(xp, time, v, float(np.exp(c["log_top_speed"])), float(np.exp(c["log_acceleration"])))
     return (
-        c["offset"]
-        + float(np.exp(c["log_sharpness"])) * (b - covered)
-        + c["per_target_distance"] * (length - _TYPICAL_LENGTH)
-        + c["per_opponent_distance"] * (x - _TYPICAL_X)
+        constants["offset"]
+        + float(np.exp(constants["log_sharpness"])) * _margin(xp, inputs, constants)
+        + constants["per_target_distance"] * (inputs[..., 2] - _TYPICAL_LENGTH)
+        + constants["per_opponent_distance"] * (inputs[..., 1] - _TYPICAL_X)
     )
+
+
+def _margin(xp: Any, inputs: Any, constants: dict[str, float]) -> Any:
+    ball_speed, top_speed, acceleration = (
+        float(np.exp(constants[f"log_{name}"])) for name in ("ball_speed", "top_speed", "acceleration")
+    )
+    time = xp.clip(inputs[..., 1] / ball_speed + constants["delay"], 0.0, np.inf)
+    return inputs[..., 0] - reach(xp, time, inputs[..., 3], top_speed, acceleration)
 
 
 _TYPICAL_LENGTH = 3.2
