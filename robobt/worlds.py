@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pydantic import ValidationError
 
+from robobt.match.loop import WorldFactory
 from robobt.match.problems import first_problem, message_of
 from robobt.match.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
@@ -27,3 +28,22 @@ def sim_world(scenario: Scenario) -> SimWorld:
         raise scenario.error(message_of(error), "simulator") from error
     limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     return SimWorld(scenario.field, limits, settings, scenario.period)
+
+
+SIM = "sim"
+"""The name of the built-in simulator as a world."""
+
+
+def world_from(address: str) -> WorldFactory:
+    """What makes the worlds of an address: "sim", or one of the league like ``league://grsim``.
+
+    The league's options are told by :func:`robobt.league.factory.parse_address`.
+
+    Raises:
+        robobt.league.factory.AddressError: it is neither.
+    """
+    if address == SIM:
+        return sim_world
+    from robobt.league.factory import LeagueFactory  # protobuf and sockets, for those who play over a network
+
+    return LeagueFactory(address)

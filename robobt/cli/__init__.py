@@ -25,6 +25,7 @@ _GROUPS = (
     "lists",
     "tree",
     "export",
+    "league",
     "bench",
 )
 """The modules that hold the commands, in the order of ``robobt --help``."""

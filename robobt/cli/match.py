@@ -115,6 +115,13 @@ def match(
         ),
     ] = None,
     imports: Imports = None,
+    world: Annotated[
+        str,
+        typer.Option(
+            "--world",
+            help="Where it is played: sim, or a field of the league like league://grsim (one worker).",
+        ),
+    ] = "sim",
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print what came out.
@@ -131,12 +138,17 @@ def match(
     is equal for equal runs; replay: the file written, or null.
     """
     from robobt.match import load_scenario, run_trials, summarise
-    from robobt.worlds import sim_world
+    from robobt.worlds import SIM, sim_world, world_from
 
     import_files(imports)
     loaded = _changed(load_scenario(scenario), on_error, substitute or [])
     # The simulator's settings are checked before any worker is started.
     sim_world(loaded)
+    factory = world_from(world)
+    if world != SIM:
+        if workers not in (None, 1):
+            raise typer.BadParameter("a field outside this process has one worker", param_hint="--workers")
+        workers = 1
     count = loaded.trials if trials is None else trials
     recorded = 0 if record is None else record
     if recorded >= count:
@@ -156,7 +168,7 @@ def match(
         with Progress(loaded.name, count) as progress:
             run = run_trials(
                 loaded,
-                sim_world,
+                factory,
                 count,
                 min(cores(), -(-count // 4)) if workers is None else workers,
                 seed,
