@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ipaddress import IPv4Address
 from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -38,3 +39,20 @@ class Endpoints(BaseModel):
     control: int = Field(10300, ge=0, le=65535, description="teleport and configuration")
     blue: int = Field(10301, ge=0, le=65535, description="control of blue robots")
     yellow: int = Field(10302, ge=0, le=65535, description="control of yellow robots")
+
+
+def parse_endpoint(text: str) -> Endpoint:
+    """An address like ``224.5.23.2:10006``.
+
+    Raises:
+        ValueError: it is none.
+    """
+    host, colon, port = text.rpartition(":")
+    try:
+        address = str(IPv4Address(host))
+        number = int(port)
+    except ValueError:
+        number = -1
+    if not colon or not 0 <= number <= 65535:
+        raise ValueError(f"{text!r} is no address like 224.5.23.2:10006")
+    return Endpoint(address, number)

@@ -171,6 +171,10 @@ class ServedField:
         self._arenas.place_ball(0, x, y, vx, vy, ball.rolls)
         return None
 
+    def place_ball(self, x: float, y: float) -> None:
+        """Put the ball down at rest (the referee's hand); a place outside the walls is refused."""
+        self.teleport_ball(BallTeleport(x, y, 0.0, 0.0))
+
     def poses(self) -> dict[RobotId, tuple[float, float, float]]:
         """x, y, heading of every robot on the field [m, m, rad]."""
         rows = self._arenas.robots[0, :, :3].tolist()

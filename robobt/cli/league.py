@@ -1,0 +1,132 @@
+"""``robobt serve``: our simulator for other teams' software."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated
+
+import typer
+
+from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    app.command()(serve)
+
+
+def _port(name: str, what: str) -> typer.models.OptionInfo:
+    option: typer.models.OptionInfo = typer.Option(
+        f"--{name}-port", min=0, max=65535, help=what, show_default=True
+    )
+    return option
+
+
+@one_line_errors
+def serve(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(help="A scenario file or the name of a bundled one; without, two teams line up."),
+    ] = None,
+    robots: Annotated[
+        int, typer.Option("--robots", min=0, max=16, help="Robots a team, where there is no scenario.")
+    ] = 6,
+    field: Annotated[
+        str, typer.Option("--field", help="division_a or division_b, where there is no scenario.")
+    ] = "division_b",
+    preset: Annotated[
+        str | None,
+        typer.Option("--preset", help="The simulator's preset; by default the scenario's, or grsim."),
+    ] = None,
+    realism: Annotated[
+        str | None,
+        typer.Option("--realism", help="none, friendly, rc2021 or realistic; by default the preset's."),
+    ] = None,
+    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1,
+    speed: Annotated[
+        float, typer.Option("--speed", min=0.05, max=20, help="Simulated time in shares of real time.")
+    ] = 1.0,
+    referee: Annotated[
+        bool, typer.Option("--referee", help="Referee the match, and publish what the referee says.")
+    ] = False,
+    seconds: Annotated[
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after so long; by default on Ctrl-C.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of the cameras' noise.")
+    ] = 0,
+    interface: Annotated[
+        str,
+        typer.Option(
+            "--interface", help="Own address of the interface to use; by default nothing leaves this machine."
+        ),
+    ] = "127.0.0.1",
+    vision: Annotated[str, typer.Option("--vision", help="Where the vision goes.")] = "224.5.23.2:10020",
+    tracker: Annotated[str, typer.Option("--tracker", help="Where tracked frames go.")] = "224.5.23.2:10010",
+    publish: Annotated[
+        str, typer.Option("--publish", help="Where the referee's messages go.")
+    ] = "224.5.23.1:10003",
+    grsim_port: Annotated[int, _port("grsim", "grSim's commands and replacements.")] = 20011,
+    control_port: Annotated[int, _port("control", "Teleports and configuration.")] = 10300,
+    blue_port: Annotated[int, _port("blue", "Control of blue robots.")] = 10301,
+    yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302,
+    blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011,
+    yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012,
+    as_json: Json = False,
+) -> None:
+    """Be one of the league's simulators: other teams' software connects to it as it does to grSim.
+
+    Vision and tracked frames go out; grSim's packets and the simulation
+    protocol come in. Robots stop a tenth of a second after their last command.
+
+    Keys of --json: frames (sent), simulated_s, packets: for each port what became of them.
+    """
+    from robobt.league.endpoints import Endpoints, parse_endpoint
+    from robobt.league.serving import serve as serve_field
+    from robobt.league.serving import served_line_up, served_scenario
+    from robobt.match import load_scenario
+    from robobt.match.referee import RefereeSettings
+    from robobt.world import FIELDS
+
+    rules = RefereeSettings() if referee else None
+    if scenario is None:
+        if field not in FIELDS:
+            raise typer.BadParameter(f"there are {', '.join(FIELDS)}", param_hint="--field")
+        served = served_line_up(FIELDS[field], robots, preset or "grsim", realism, seed)
+    else:
+        loaded = load_scenario(scenario)
+        served = served_scenario(loaded, preset, realism)
+        if referee and loaded.referee is not None:
+            keepers = {f"{team.value}_keeper": number for team, number in loaded.goalkeepers().items()}
+            rules = loaded.referee.model_copy(update=keepers)
+    endpoints = Endpoints(
+        vision=parse_endpoint(vision),
+        tracker=parse_endpoint(tracker),
+        referee=parse_endpoint(publish),
+        grsim=grsim_port,
+        control=control_port,
+        blue=blue_port,
+        yellow=yellow_port,
+        blue_status=blue_status_port,
+        yellow_status=yellow_status_port,
+    )
+    if not as_json:
+        say(
+            f"Serving {len(served.poses())} robots: vision to {vision}, tracked frames to {tracker}, "
+            f"commands at {grsim_port} (grSim), {blue_port} and {yellow_port} (control), "
+            f"{control_port} (teleport). Ctrl-C ends it."
+        )
+    server = serve_field(served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds)
+    figures = {
+        "frames": server.frames,
+        "simulated_s": served.time,
+        "packets": {port: counts.to_json() for port, counts in server.counts.items()},
+    }
+    if as_json:
+        print_json(figures)
+        return
+    say(f"Served {server.frames} frames, {served.time:.1f} s.")
+    for port, counts in server.counts.items():
+        if counts.dropped:
+            dropped = {name: number for name, number in counts.to_json().items() if number}
+            say(f"{port}: " + ", ".join(f"{number} {name}" for name, number in dropped.items()))

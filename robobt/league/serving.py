@@ -1,0 +1,137 @@
+"""What ``robobt serve`` puts together: a field from a scenario or a line-up, its server, its referee."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robobt.league.endpoints import Endpoint, Endpoints
+from robobt.league.gamecontroller import RefereePublisher
+from robobt.league.served_field import ServedField, line_up
+from robobt.league.server import SimServer
+from robobt.league.sockets import LOOPBACK, Sender
+from robobt.match.referee import Referee, RefereeSettings
+from robobt.match.scenario import Scenario
+from robobt.sim.settings import REALISM, SimSettings, preset, settings_from
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+
+_REPEAT = 6
+"""Frames from one referee message to the next while nothing changes."""
+
+
+def served_scenario(
+    scenario: Scenario, simulator: str | None = None, realism: str | None = None
+) -> ServedField:
+    """The field of a scenario, everything where its seed puts it.
+
+    Args:
+        simulator: a preset instead of the scenario's simulator.
+        realism: a level instead of the scenario's.
+
+    Raises:
+        KeyError: no such preset or level.
+        ScenarioError: its objects find no place.
+        ValueError: its simulator's settings are wrong.
+    """
+    settings = settings_from(scenario.simulator) if simulator is None else preset(simulator)
+    limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
+    placement = scenario.place(np.random.default_rng(scenario.seed))
+    return ServedField(scenario.field, placement, _with(settings, realism), limits, seed=scenario.seed)
+
+
+def served_line_up(
+    field: FieldGeometry, robots: int, simulator: str = "grsim", realism: str | None = None, seed: int = 0
+) -> ServedField:
+    """A field with so many robots a team, lined up in their halves.
+
+    Raises:
+        KeyError: no such preset or level.
+        ValueError: more robots than a team can have.
+    """
+    return ServedField(field, line_up(field, robots), _with(preset(simulator), realism), seed=seed)
+
+
+def _with(settings: SimSettings, realism: str | None) -> SimSettings:
+    if realism is None:
+        return settings
+    if realism not in REALISM:
+        raise KeyError(f"no realism level is called {realism!r}; there are {', '.join(REALISM)}")
+    return settings.model_copy(update={"realism": REALISM[realism]})
+
+
+class RefereeDesk:
+    """Referees a served field, puts the ball down for restarts, and tells everybody.
+
+    Call it after every step of the field.
+
+    Args:
+        field: its dimensions.
+        settings: of the referee.
+        to: where the messages go.
+        interface: own address of the interface they leave by.
+        epoch: their times count from here [s].
+    """
+
+    def __init__(
+        self,
+        field: FieldGeometry,
+        settings: RefereeSettings | None = None,
+        to: Endpoint | None = None,
+        interface: str = LOOPBACK,
+        epoch: float = 0.0,
+    ) -> None:
+        rules = settings or RefereeSettings()
+        self.referee = Referee(field, rules)
+        self._sender = Sender(*(to or Endpoints().referee), interface)
+        keepers = {team: rules.keeper(team).number for team in Team}
+        self._publisher = RefereePublisher(keepers=keepers)
+        self._epoch = epoch
+        self._frames = 0
+
+    def __call__(self, field: ServedField) -> None:
+        """Judge the field as it is now."""
+        before = self.referee.game
+        decision = self.referee.update(field.truth())
+        if decision.place_ball is not None:
+            field.place_ball(*decision.place_ball)
+        if decision.game != before or self._frames % _REPEAT == 0:
+            self._sender.send(self._publisher.write(decision.game, self._epoch + field.time))
+        self._frames += 1
+
+    def close(self) -> None:
+        """Stop talking."""
+        self._sender.close()
+
+
+def serve(
+    field: ServedField,
+    endpoints: Endpoints,
+    interface: str = LOOPBACK,
+    cameras: int = 1,
+    speed: float = 1.0,
+    seed: int = 0,
+    epoch: float = 0.0,
+    referee: RefereeSettings | None = None,
+    seconds: float | None = None,
+) -> SimServer:
+    """Serve a field until interrupted, or for so many seconds of this machine's clock.
+
+    Args:
+        referee: settings of the referee who judges and publishes; none: nobody does.
+
+    Returns:
+        The server, closed, for its counts.
+    """
+    desk = None
+    server = SimServer(field, endpoints, interface, cameras, speed, seed, epoch)
+    try:
+        if referee is not None:
+            desk = RefereeDesk(field.field, referee, endpoints.referee, interface, epoch)
+        server.run(seconds, desk)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        server.close()
+        if desk is not None:
+            desk.close()
+    return server
