@@ -318,6 +318,26 @@ class TestLists:
         assert "Stop" in result.stdout
         assert told("skills")["problems"] == [problem]
 
+    def test_a_name_that_another_package_failed_to_bring_is_told_with_the_reason(
+        self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scenario: Path
+    ):
+        problem = "thing 'Bad' (bad:Bad) of the distribution bad cannot be used: RuntimeError: no"
+        for registry in (SKILLS, PLAYS):
+            monkeypatch.setitem(registry._problems, "Bad", problem)
+        tree = tmp_path / "tree.yaml"
+        tree.write_text("play: mine\ntree: Bad\n")
+        played = data()
+        played["robots"]["blue"][0].update(play="Bad", params={})
+        scenario.write_text(yaml.safe_dump(played))
+        for arguments, code in (
+            (("plays", "Bad"), 2),
+            (("tree", "Bad"), 2),
+            (("tree", tree), 1),
+            (("match", scenario), 1),
+        ):
+            said = " ".join(complaint(*arguments, code=code).replace("│", " ").split())
+            assert "of the distribution bad cannot be used: RuntimeError: no" in said, arguments
+
     def test_what_a_file_of_the_users_registers_is_listed(self, mine: Path):
         assert "Nothing at all." in robobt("plays", "idle", "--import", mine).stdout
         (listed,) = told("skills", "Idle", "--import", mine)["skills"]
@@ -370,12 +390,12 @@ class TestTree:
         children = ["HasBall", "KickToTarget"]
         tree = {"Sequence": {"name": "shoot", "memory": True, "children": children}}
         path.write_text(yaml.safe_dump({"play": "mine", "tree": tree}))
-        printed = robobt("tree", path, "--lint").stdout
+        printed = robobt("tree", path, "--lint", code=1).stdout
         assert "shoot/HasBall: is not asked again while 'KickToTarget' runs" in printed
         assert (
             "shoot/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
         )
-        found = told("tree", path, "--lint")
+        found = json.loads(robobt("tree", path, "--lint", "--json", code=1).stdout)
         assert found["findings"][0]["rule"] == "forgotten-condition"
         assert len(found["wiring"]) == 1
         explained = help_of("tree")

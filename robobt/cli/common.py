@@ -13,12 +13,15 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Any, ParamSpec
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
+
+if TYPE_CHECKING:
+    from robobt.tree.registry import Registry
 
 console = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -86,9 +89,11 @@ def import_files(paths: Iterable[Path] | None) -> None:
             import_file(path)
 
 
-def unknown(kind: str, name: str | None, registry: Iterable[str]) -> typer.BadParameter:
-    """The usage error for a name that is none, with the names there are."""
-    return typer.BadParameter(f"no {kind} is called {name!r}; there are {', '.join(registry)}")
+def unknown(name: str, registry: Registry[Any]) -> typer.BadParameter:
+    """The usage error for a name that is none: the names there are, or why another package's is not."""
+    problem = registry.problem_with(name)
+    there = f"no {registry.kind} is called {name!r}; there are {', '.join(registry)}"
+    return typer.BadParameter(there if problem is None else problem)
 
 
 def parse_assignments(texts: Iterable[str], option: str) -> dict[str, Any]:

@@ -137,7 +137,7 @@ def _list(
     kind: str, registry: Registry[Any], name: str | None, as_json: bool, listed: Callable[[Any], _Listed]
 ) -> None:
     if name is not None and name not in registry:
-        raise unknown(registry.kind, name, registry)
+        raise unknown(name, registry)
     entries = {entry: listed(registry[entry]) for entry in registry if name in (None, entry)}
     if as_json:
         things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]

@@ -75,6 +75,8 @@ def tree(
     scenario, seed, and robots: for each robot its nodes with path, ticks,
     transitions (of status), successes, failures, runs (ticks that left it
     running), own_time and time (with all below it), in seconds.
+
+    Exit code 1 when --lint finds wrong wiring, which no match would play.
     """
     if seed is not None and statistics is None:
         raise typer.BadParameter("is for --statistics", param_hint="--seed")
@@ -94,6 +96,8 @@ def tree(
         from robobt.tree.drawing import tree_text
 
         say(tree_text(root))
+    if data.get("wiring"):
+        raise typer.Exit(1)
 
 
 def _build(play: str, params: list[str]) -> Behaviour:
@@ -102,7 +106,7 @@ def _build(play: str, params: list[str]) -> Behaviour:
     from robobt.tree.parameters import ParameterError, check_parameters
 
     if not is_play_file(play) and play not in PLAYS:
-        raise unknown("play", play, PLAYS)
+        raise unknown(play, PLAYS)
     builder = find_play(play)
     try:
         return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))

@@ -81,7 +81,8 @@ class RobotSetup(Part):
     @classmethod
     def _known(cls, play: str) -> str:
         if not is_play_file(play) and play not in PLAYS:
-            raise ValueError(f"no play is called {say_value(play)}; there are {', '.join(PLAYS)}")
+            there = f"no play is called {say_value(play)}; there are {', '.join(PLAYS)}"
+            raise ValueError(PLAYS.problem_with(play) or there)
         return play
 
     @model_validator(mode="after")

@@ -89,6 +89,11 @@ class Registry(Generic[T]):
         self._load()
         return tuple(self._problems.values())
 
+    def problem_with(self, name: str) -> str | None:
+        """Why the entry of another package under this name could not be loaded, None where none failed."""
+        self._load()
+        return self._problems.get(name)
+
     def source(self, name: str) -> str | None:
         """The distribution whose entry point brought an entry, None for the package's own."""
         return self._sources.get(name)

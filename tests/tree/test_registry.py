@@ -139,6 +139,8 @@ def test_a_broken_distribution_is_named_and_harms_nobody_else(
     assert [record.message for record in caplog.records] == [problem]
     with pytest.raises(KeyError, match="bad-one"):
         registry["bad"]
+    assert registry.problem_with("bad") == problem
+    assert registry.problem_with("good") is None
 
 
 @pytest.mark.parametrize("value", ["no_such_module:thing", "here_things:missing", "here_things:thing.deeper"])

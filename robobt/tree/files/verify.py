@@ -22,6 +22,7 @@ from robobt.tree.files.model import (
 )
 from robobt.tree.files.vocabulary import NodeType, Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, check_names, parameters_of
+from robobt.tree.registry import Registry
 
 
 def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
@@ -169,7 +170,9 @@ class _Verifier:
 
 
 def unknown_type(name: str, vocabulary: Vocabulary) -> str:
-    """What to say about a type that does not exist."""
+    """What to say about a type that does not exist, or that another package failed to bring."""
+    if isinstance(vocabulary.leaves, Registry) and (problem := vocabulary.leaves.problem_with(name)):
+        return problem
     by_lower = {known.lower(): known for known in vocabulary}
     close = [by_lower[word] for word in get_close_matches(name[:80].lower(), by_lower)]
     hint = f"is it {' or '.join(close)}?" if close else f"there are {', '.join(vocabulary)}"
