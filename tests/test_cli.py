@@ -396,6 +396,7 @@ class TestTree:
             "shoot/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
         )
         found = json.loads(robobt("tree", path, "--lint", "--json", code=1).stdout)
+        assert "reads 'shot' or 'pass_', but no other node" in robobt("tree", path).stderr
         assert found["findings"][0]["rule"] == "forgotten-condition"
         assert len(found["wiring"]) == 1
         explained = help_of("tree")

@@ -20,6 +20,7 @@ from robobt.cli.common import (
     print_json,
     say,
     unknown,
+    warn,
 )
 
 if TYPE_CHECKING:
@@ -84,8 +85,12 @@ def tree(
     root = _build(play, param or [])
     written = _write(root, Path(play).stem, [svg, dot, yaml, xml], quiet=as_json)
     data: dict[str, Any] = {"play": play}
+    wiring = _wiring(root)
     if lint:
-        data.update(_lint(root))
+        data.update(findings=_findings(root), wiring=wiring)
+    else:
+        for problem in wiring:
+            warn(problem)
     if statistics is not None:
         data.update(_statistics(play, statistics, seed, quiet=as_json))
     if as_json:
@@ -96,7 +101,7 @@ def tree(
         from robobt.tree.drawing import tree_text
 
         say(tree_text(root))
-    if data.get("wiring"):
+    if lint and wiring:
         raise typer.Exit(1)
 
 
@@ -148,20 +153,22 @@ def _nodes(root: Behaviour) -> list[dict[str, Any]]:
     ]
 
 
-def _lint(root: Behaviour) -> dict[str, Any]:
+def _wiring(root: Behaviour) -> list[str]:
+    """What the tree reads and nobody writes, or of another type."""
     from robobt.skills.store import GIVEN, Store
     from robobt.tree import WiringError, check_tree
-    from robobt.tree.aids import lint_tree
 
-    wiring: tuple[str, ...] = ()
     try:
         check_tree(root, Store, GIVEN)
     except WiringError as error:
-        wiring = error.problems
-    findings = [
-        {"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)
-    ]
-    return {"findings": findings, "wiring": list(wiring)}
+        return list(error.problems)
+    return []
+
+
+def _findings(root: Behaviour) -> list[dict[str, str]]:
+    from robobt.tree.aids import lint_tree
+
+    return [{"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)]
 
 
 def _print_findings(data: dict[str, Any]) -> None:
