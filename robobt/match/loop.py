@@ -23,6 +23,7 @@ from robobt.tree import TreeError, TreeRunner, node_path
 from robobt.tree.parameters import say_value
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
 from robobt.world.state import Frame, RobotId, RobotState
 
@@ -134,6 +135,7 @@ class Match:
         self.measures.update(truth, self.game, self._commands)
         self._trace.update(truth, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
+        frame = truth
         if self.outcome is None:
             frame = self.world.observe()
             frame.game = self.game
@@ -142,7 +144,7 @@ class Match:
             self._trace.event(self.outcome)
             self._commands = {}
         if self._recorder is not None:
-            self._record(self._recorder, truth)
+            self._record(self._recorder, truth, frame)
         if self.outcome is not None:
             return False
         self.world.act(self._commands)
@@ -247,20 +249,34 @@ class Match:
             seed=self.seed,
             period=scenario.period,
             field=scenario.field,
+            played=scenario.model_dump(mode="json"),
             robots=tuple(
-                RecordedRobot(team=robot.team, number=robot.number, play=setup.play)
+                RecordedRobot(
+                    team=robot.team, number=robot.number, play=setup.play, limits=self._limits_of(robot)
+                )
                 for robot, setup in scenario.robots
             ),
         )
-        return Recorder(path, header, {player.robot: player.runner for player in self.players})
+        return Recorder(
+            path,
+            header,
+            {player.robot: player.runner for player in self.players},
+            {player.robot: player.store for player in self.players},
+        )
 
-    def _record(self, recorder: Recorder, truth: Frame) -> None:
+    def _limits_of(self, robot: RobotId) -> RobotLimits:
+        state = self.world.truth().seen_by(robot.team).robot(robot.number)
+        return DEFAULT_LIMITS if state is None else state.limits
+
+    def _record(self, recorder: Recorder, truth: Frame, observed: Frame) -> None:
         for robot in self.measures.kicked:
             recorder.event("kick", truth.time, robot=robot)
         if self.outcome is not None and self.outcome in _END_EVENTS and self._referee is None:
             kind, team = _END_EVENTS[self.outcome]
             recorder.event(kind, truth.time, team=team)
-        recorder.tick(truth, self._commands)
+        # A world that shows the truth says so; what any other shows is compared when it is written.
+        shown = None if getattr(self.world, "shows_truth", False) else observed
+        recorder.tick(truth, self._commands, shown)
 
 
 def play_match(

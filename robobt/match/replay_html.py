@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from robobt.match.problems import naming
-from robobt.match.recording import Recording, load_recording
+from robobt.match.recording import Recording, RobotFlag, load_recording
 from robobt.world.game import GameState
 from robobt.world.geometry import FloatArray
 
@@ -28,6 +28,7 @@ MOST_FEEDBACK = 40_000
 """Changes of feedback a page holds as they came; beyond, a node's words change ten times a second at most."""
 
 _ABSENT = -(2**15)
+_SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
 _FEEDBACK_PERIOD = 0.1
 
 
@@ -75,6 +76,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
     texts, letters = _Table(), _Table()
     thin = sum(len(said) for tree in recording.feedback for _, said in tree) > MOST_FEEDBACK
     frames = len(recording.times[::stride])
+    statuses = recording.statuses
     robots = []
     for slot, robot in enumerate(header.robots):
         rows = recording.robots[::stride, slot]
@@ -92,11 +94,10 @@ def page_data(recording: Recording) -> dict[str, Any]:
                     for node in robot.tree
                 ],
                 "rows": _int16(np.column_stack((rows[:, 0], rows[:, 1], rows[:, 2], speed)) * 1000.0),
-                "flags": _steps(_runs(recording.flags[::stride, slot].tolist()), frames, 1),
-                "statuses": _steps(
-                    ((tick, letters[word]) for tick, word in recording.statuses[slot]), frames, stride
-                ),
+                "flags": _steps(_runs((recording.flags[::stride, slot] & _SHOWN).tolist()), frames, 1),
+                "statuses": _steps(((tick, letters[word]) for tick, word in statuses[slot]), frames, stride),
                 "feedback": _feedback_steps(feedback, texts, frames, stride),
+                "outputs": _steps(_output_texts(recording.outputs[slot], texts), frames, stride),
             }
         )
     ball = recording.ball[::stride]
@@ -192,7 +193,7 @@ def _feedback_steps(
 
 def _thinned(recording: Recording, slot: int) -> list[tuple[int, dict[int, str]]]:
     """The feedback of one tree, a node's words ten times a second unless the tree changed as well."""
-    turns = {tick for tick, _ in recording.statuses[slot]}
+    turns = {tick for tick, _ in recording.letters[slot]}
     times = recording.times.tolist()
     shown: dict[int, float] = {}
     kept = []
@@ -207,6 +208,23 @@ def _thinned(recording: Recording, slot: int) -> list[tuple[int, dict[int, str]]
             shown.update(dict.fromkeys(fresh, now))
             kept.append((tick, fresh))
     return kept
+
+
+def _output_texts(changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table) -> Iterable[tuple[int, int]]:
+    """What the skills of a robot have written so far, as one text whenever that changed."""
+    written: dict[str, Any] = {}
+    for tick, change in changes:
+        written.update(change)
+        parts = [f"{entry} {_say(value)}" for entry, value in written.items() if value is not None]
+        yield tick, texts[" · ".join(parts)]
+
+
+def _say(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join([f"{key} {_say(item)}" for key, item in value.items()])
+    if isinstance(value, list):
+        return "(" + ", ".join(map(_say, value)) + ")"
+    return f"{value:.3g}" if isinstance(value, float) else "none" if value is None else str(value)
 
 
 def _game(game: GameState) -> dict[str, Any]:

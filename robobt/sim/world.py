@@ -93,12 +93,17 @@ class SimWorld:
         self._past.append(self._rows())
         self._report = self._perceive()
 
+    @property
+    def shows_truth(self) -> bool:
+        """Whether :meth:`observe` always returns what :meth:`truth` does."""
+        return not (self._delayed or self._noisy or self._lossy)
+
     def observe(self) -> Frame:
         """What the cameras report: late, noisy and with gaps where the settings say so.
 
         Velocities carry no noise of their own; a missing detection repeats the last one.
         """
-        if not (self._delayed or self._noisy or self._lossy):
+        if self.shows_truth:
             return self.truth()
         rows = self._report
         robots = rows.tolist()

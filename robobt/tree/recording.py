@@ -33,6 +33,7 @@ class Look:
     """What a tree looked like after a tick, as :meth:`TreeWatch.tell` understands it."""
 
     seen: _Seen
+    error: str | None
     ticked: bool
     marked: tuple[int, ...]
 
@@ -46,20 +47,25 @@ class Change:
             last tick, s, f, r where it kept the status of an earlier one, - without a status;
             None when they are as they were.
         said: what nodes said anew, by their place.
+        error: what the runner's tree raised, when that is new.
     """
 
     letters: str | None
     said: dict[int, str]
+    error: str | None
 
 
 class TreeWatch:
     """What has changed in a runner's tree since it was looked at last.
 
-    :meth:`look` is quick and called after every tick; what it returns can be told by
+    ``look`` is quick and called after every tick; what it returns can be told by
     :meth:`tell` later, in the same order. What a node says counts while it has a status.
 
     Args:
         runner: whose tree; it marks nodes that it ticks from now on.
+
+    Attributes:
+        look: what the tree looks like; None when it does as it did at the last look.
     """
 
     def __init__(self, runner: TreeRunner) -> None:
@@ -71,29 +77,15 @@ class TreeWatch:
         self._reach = [ticked_children(node) for node in nodes]
         unsure = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
         self._marks = runner.mark(unsure)
-        self._layout, self._ask = _Question(nodes).make()
-        # As it was when looked at, and as it was told last.
-        self._seen: _Seen = None
-        self._ticks, self._ticked = runner.ticks, False
-        self._marked: list[Behaviour] = []
+        self._layout, ask = _Question(nodes, runner).make()
+        self.look = self._looker(ask)
+        # As it was told last.
         self._told: _Seen = None
+        self._error: str | None = None
         self._statuses = ["-"] * len(nodes)
         self._said = [""] * len(nodes)
         self._letters = "-" * len(nodes)
         self._path: tuple[bool, tuple[int, ...]] = (False, ())
-
-    def look(self) -> Look | None:
-        """What the tree looks like; None when it does as it did at the last look."""
-        seen = self._ask()
-        ticks = self._runner.ticks
-        if seen == self._seen and self._marks == self._marked and (ticks != self._ticks) is self._ticked:
-            self._ticks = ticks
-            return None
-        self._ticked, self._ticks = ticks != self._ticks, ticks
-        self._seen = seen
-        self._marked = self._marks.copy()
-        get = self._places.get
-        return Look(seen, self._ticked, tuple([get(id(node), -1) for node in self._marked]))
 
     def tell(self, look: Look) -> Change | None:
         """What is new in this look since the one told before."""
@@ -109,7 +101,28 @@ class TreeWatch:
                 letters = None
             else:
                 self._letters = letters
-        return None if letters is None and not said else Change(letters, said)
+        error = look.error if look.error != self._error else None
+        self._error = look.error
+        return None if letters is error is None and not said else Change(letters, said, error)
+
+    def _looker(self, ask: Callable[[], tuple[Any, ...]]) -> Callable[[], Look | None]:
+        """What :attr:`look` is: a function with its own variables, for it is called at every tick."""
+        runner, marks = self._runner, self._marks
+        seen: tuple[Any, ...] = ()
+        marked: list[Behaviour] = []
+        ticks, usual = runner.ticks, 0
+
+        def look() -> Look | None:
+            nonlocal seen, marked, ticks, usual
+            now, count = ask(), runner.ticks
+            step, ticks = count - ticks, count
+            if now == seen and step == usual and marks == marked:
+                return None
+            seen, usual, marked = now, step, marks.copy()
+            places = [self._places.get(id(node), -1) for node in marked]
+            return Look(now[:-1], now[-1], step > 0, tuple(places))
+
+        return look
 
     def _compare(self, seen: _Seen, before: _Seen, layout: _Layout, said: dict[int, str]) -> bool:
         """Bring statuses and what was said up to date; whether a status changed."""
@@ -192,8 +205,8 @@ class _Layout:
 class _Question:
     """Makes the function that asks a tree's nodes for their statuses and words."""
 
-    def __init__(self, nodes: SequenceOf[Behaviour]) -> None:
-        self.nodes = nodes
+    def __init__(self, nodes: SequenceOf[Behaviour], runner: TreeRunner) -> None:
+        self.nodes, self.runner = nodes, runner
         places = {id(node): place for place, node in enumerate(nodes)}
         self.children = [[places[id(child)] for child in node.children] for node in nodes]
         self.ends = [0] * len(nodes)
@@ -204,13 +217,14 @@ class _Question:
             self.ends[place] = self.ends[below[-1]] if below else place + 1
             self.whole[place] = stops_children(nodes[place]) and all(self.whole[child] for child in below)
 
-    def make(self) -> tuple[_Layout, Callable[[], _Seen]]:
-        """The function, and where its answers belong."""
+    def make(self) -> tuple[_Layout, Callable[[], tuple[Any, ...]]]:
+        """The function, whose last answer is the runner's error, and where the other answers belong."""
         layout = _Layout(0, len(self.nodes))
         text = ",".join(self._ask(0, layout, 0))
         # Trees of the same shape share what is compiled; the names in it give way to the nodes.
-        code = _code(f"lambda:({text},)")
-        named = {f"n{place}": node for place, node in enumerate(self.nodes)}
+        code = _code(f"lambda:({text},'runner'.error)")
+        named: dict[object, object] = {"runner": self.runner}
+        named |= {f"n{place}": node for place, node in enumerate(self.nodes)}
         constants = tuple([named.get(item, item) for item in code.co_consts])
         ask = FunctionType(code.replace(co_consts=constants), {"I": Status.INVALID, "S": Status.SUCCESS})
         return layout, ask

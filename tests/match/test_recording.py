@@ -1,3 +1,4 @@
+import base64
 import json
 import random
 import re
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from py_trees.visitors import VisitorBase
 from pydantic import ValidationError
 
 from robobt.match.recording import (
@@ -21,7 +23,7 @@ from robobt.match.recording import (
     load_recording,
 )
 from robobt.skills.store import Store
-from robobt.tree import Leaf, Parallel, Selector, Sequence, TreeRunner
+from robobt.tree import Behaviour, Leaf, Selector, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
 from tests.match.made_recording import (
     BLUE_1,
@@ -93,40 +95,70 @@ def test_every_status_and_every_word_is_there_at_its_tick(path: Path) -> None:
             assert [said.get(place, "") for place in range(len(words))] == words
 
 
-@pytest.mark.parametrize("seed", range(25))
+class Ticked(VisitorBase):
+    """Notes the places of the nodes a tick reached."""
+
+    def __init__(self, nodes: list[Behaviour]) -> None:
+        super().__init__(full=False)
+        self.places = {id(node): place for place, node in enumerate(nodes)}
+        self.reached: set[int] = set()
+
+    def initialise(self) -> None:
+        self.reached = set()
+
+    def run(self, behaviour: Behaviour) -> None:
+        self.reached.add(self.places[id(behaviour)])
+
+
+@pytest.mark.parametrize("seed", range(40))
 def test_whatever_a_tree_does_is_recorded_as_it_was_seen(path: Path, seed: int) -> None:
     rng = random.Random(seed)
-    runner = TreeRunner(random_tree(rng, f"recorded{seed}")([], "once"), Store(frame(0), frame(0).own[0]))
+    runner, twin = (
+        TreeRunner(
+            random_tree(random.Random(seed), f"{name}{seed}")([], "once"), Store(frame(0), frame(0).own[0])
+        )
+        for name in ("recorded", "watched")
+    )
+    ticked = Ticked(twin.nodes)
+    twin.show_to(ticked)
+    if seed % 4 == 0:
+        runner.tick_by_py_trees()
     seen = []
     with Recorder(path, header(), {BLUE_1: runner}) as recorder:
-        for tick in range(40):
+        for tick in range(60):
             now = frame(tick)
-            for node in runner.nodes:
+            for node in runner.nodes + twin.nodes:
                 if isinstance(node, Leaf):
                     node.store.frame = now
+            ticked.reached = set()
             if rng.random() < 0.8:
                 runner.tick()
+                twin.tick()
             if rng.random() < 0.1:
                 runner.stop()
+                twin.stop()
             recorder.tick(now)
-            silent = (Selector, Sequence, Parallel)
-            words = ["" if type(node) in silent else node.feedback_message for node in runner.nodes]
-            seen.append((runner.statuses(), words))
+            words = [node.feedback_message for node in runner.nodes]
+            seen.append((runner.statuses(), words, ticked.reached, twin.statuses()))
         recorder.close({})
     recording = load_recording(path)
-    for tick, (statuses, words) in enumerate(seen):
+    nodes = recording.header.robots[0].tree
+    for tick, (statuses, words, reached, same) in enumerate(seen):
+        assert statuses == same
         assert recording.statuses_at(BLUE_1, tick) == statuses
         said = recording.feedback_at(BLUE_1, tick)
-        assert [said.get(place, "") for place in range(len(words))] == words
+        for place, letter in enumerate(statuses):
+            if letter != "-" and nodes[place].type not in ("Selector", "Sequence", "Parallel"):
+                assert said.get(place, "") == words[place]
+        told = [nodes[place].path for place in sorted(reached) if statuses[place] != "-"]
+        assert recording.ticked_path(BLUE_1, tick) == told
 
 
-def test_a_number_of_any_size_is_written_out(path: Path) -> None:
+def test_a_robot_too_far_away_for_the_file_is_nowhere(path: Path) -> None:
     far = frame(0)
     far.own = (replace(far.own[0], x=2.0**70), replace(far.own[1], x=1e307))
     record_frames(path, [far, frame(1)])
-    rows = json.loads(path.read_text().splitlines()[1])["r"]
-    assert rows[0][0] == round(2.0**70 * 1e4)
-    assert rows[1] is None
+    assert [len(load_recording(path).frame(tick).own) for tick in range(2)] == [0, 2]
 
 
 def test_trees_are_written_only_when_they_change(path: Path) -> None:
@@ -157,8 +189,13 @@ def test_events_and_outcome_come_back(path: Path) -> None:
 def test_flags_tell_contact_dribbler_and_kick(path: Path) -> None:
     record(path)
     flags = load_recording(path).flags
-    assert flags[10].tolist() == [RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER, 0, RobotFlag.KICK]
-    assert flags[11].tolist() == [RobotFlag.DRIBBLER, 0, RobotFlag.KICK]
+    sent = RobotFlag.COMMANDED
+    assert flags[10].tolist() == [
+        sent | RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER,
+        0,
+        sent | RobotFlag.KICK,
+    ]
+    assert flags[11].tolist() == [sent | RobotFlag.DRIBBLER, 0, sent | RobotFlag.KICK]
 
 
 def test_yellows_view_of_a_match_is_recorded_as_blues(path: Path, tmp_path: Path) -> None:
@@ -210,7 +247,7 @@ def test_a_tree_that_raises_leaves_one_event_a_fault(path: Path) -> None:
         recorder.close({})
     (event,) = load_recording(path).events
     assert (event.kind, event.robot, event.time) == ("error", BLUE_1, 0.0)
-    assert event.text == "play/bad: RuntimeError: broken on purpose"
+    assert event.text.startswith("play/bad: RuntimeError: broken on purpose (made_recording.py:")
 
 
 def test_the_same_match_gives_the_same_bytes(tmp_path: Path) -> None:
@@ -250,15 +287,19 @@ def test_a_second_of_play_is_on_disk_while_the_match_goes_on(tmp_path: Path, end
 
 
 def test_a_file_cut_anywhere_loads_up_to_its_last_whole_line(path: Path, tmp_path: Path) -> None:
-    record(path, ticks=20)
+    record(path, ticks=200)
     data = path.read_bytes()
     first = data.index(b"\n") + 1
     cut = tmp_path / "cut"
-    for size in range(first, len(data), 17):
+    ends = [i + 1 for i, byte in enumerate(data) if byte == ord("\n")]
+    ticks = {json.loads(line).get("n", 0) for line in data.splitlines()[1:]}
+    assert max(ticks) == round(1 / PERIOD)
+    for size in [*range(first, len(data), 997), *ends[:-1], *[end - 1 for end in ends[1:]]]:
         cut.write_bytes(data[:size])
         recording = load_recording(cut)
         assert not recording.complete
-        assert len(recording) == data[:size].count(b"\n") - 1 - len(recording.events)
+        whole = data[: data.rindex(b"\n", 0, size) + 1].splitlines()[1:]
+        assert len(recording) == sum(json.loads(line).get("n", 0) for line in whole)
 
 
 def test_a_compressed_file_cut_anywhere_loads_too(tmp_path: Path) -> None:
@@ -282,8 +323,9 @@ def test_a_compressed_file_cut_anywhere_loads_too(tmp_path: Path) -> None:
         (b"just words", "line 1: is not a robobt recording"),
         (b'{"name": "something else"}\n', "line 1: format: must be 'robobt-recording'"),
         (b'{"format":"robobt-recording","version":7}\n', "line 1: version: 7 cannot be read by"),
-        (b'{"format":"robobt-recording","version":1,"sce', "line 1: is cut off inside its header"),
-        (b'{"format":"robobt-recording","version":1}\n', "line 1: period: Field required"),
+        (b'{"format":"robobt-recording","version":1}\n', "line 1: version: 1 cannot be read by"),
+        (b'{"format":"robobt-recording","version":2,"sce', "line 1: is cut off inside its header"),
+        (b'{"format":"robobt-recording","version":2}\n', "line 1: period: Field required"),
         (b"\x1f\x8b\x08\x00 not really compressed", "compressed data are damaged"),
         (b"[" * 100_000 + b"\n", "line 1: is not a robobt recording"),
     ],
@@ -303,14 +345,15 @@ def test_a_file_that_is_not_there_is_a_recording_error(tmp_path: Path) -> None:
         load_recording(tmp_path)
 
 
-def edited(path: Path, number: int, **keys: object) -> None:
+def edited(path: Path, keys: dict[str, object], changes: bool) -> None:
+    """Change keys of the first ticks, or of what changed at the third of them."""
     lines = path.read_text().splitlines()
-    entry = json.loads(lines[number - 1]) | keys
-    lines[number - 1] = json.dumps(entry)
+    entry = json.loads(lines[1])
+    (entry["c"].setdefault("2", {}) if changes else entry).update(keys)
+    lines[1] = json.dumps(entry)
     path.write_text("\n".join(lines) + "\n")
 
 
-ROW = [0, 0, 0, 0, 0, 0, 0]
 GAME = {"command": "STOP", "stage": "POST_GAME", "blue": 0, "yellow": 0, "restart": None, "team": None}
 FULL_GAME = GAME | {"may_touch": True, "placement": None}
 
@@ -318,21 +361,44 @@ FULL_GAME = GAME | {"may_touch": True, "placement": None}
 @pytest.mark.parametrize(
     ("keys", "field", "problem"),
     [
-        ({"t": "soon"}, "t", "must be a finite number"),
-        ({"t": nan}, "t", "must be a finite number"),
-        ({"t": -1.0}, "t", "runs backwards"),
-        ({"b": [1, 2, 3]}, "b", "must be null or a list of 4 integers"),
-        ({"b": [1.5, 2, 3, 4]}, "b", "must be null or a list of 4 integers"),
-        ({"b": [10**12, 2, 3, 4]}, "b", "must be null or a list of 4 integers"),
-        ({"r": [ROW, ROW]}, "r", "must be a list of 3 robots"),
-        ({"r": [ROW, None, "here"]}, "r.2", "must be null or a list of 7 integers"),
-        ({"r": [ROW, ROW, [*ROW[:6], 99]]}, "r.2", "99 are no flags"),
-        ({"s": {"0": "SS"}}, "s.0", "must be 5 letters out of S, F, R, -"),
-        ({"s": {"0": "SSSSX"}}, "s.0", "must be 5 letters out of S, F, R, -"),
+        ({"t": "soon"}, "t", "must be a list of as many times as n says"),
+        ({"n": 7}, "t", "must be a list of as many times as n says"),
+        ({"t": [nan] * 10}, "t", "must be a finite number"),
+        ({"t": [*range(9), 3]}, "t", "runs backwards"),
+        ({"x": 3}, "x", "must be a text"),
+        ({"x": "?"}, "x", "cannot be decoded"),
+        ({"x": "AAAA"}, "x", "must hold 10 x 37 numbers"),
+        ({"x": base64.b64encode(b"\xff" * (4 + 2 * 9) * 37).decode()}, "x", "are no flags"),
+        ({"o": "AAAA"}, "o", "must hold 10 x 37 numbers"),
+        ({"c": []}, "c", "must be an object"),
+        ({"c": {"10": {}}}, "c", "there is no tick '10'"),
+        ({"c": {"3": {}, "2": {}}}, "c", "runs backwards"),
+        ({"c": {"3": []}}, "c.3", "must be an object"),
+    ],
+)
+def test_spoiled_ticks_are_named_with_their_field(
+    path: Path, keys: dict[str, object], field: str, problem: str
+) -> None:
+    record(path, ticks=10)
+    edited(path, keys, changes=False)
+    with pytest.raises(RecordingError, match=re.escape(problem)) as caught:
+        load_recording(path)
+    assert (caught.value.path, caught.value.line, caught.value.field) == (path, 2, field)
+    assert f"line 2: {field}: " in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("keys", "field", "problem"),
+    [
+        ({"s": {"0": "SS"}}, "s.0", "must be 5 letters out of S, F, R, s, f, r, -"),
+        ({"s": {"0": "SSSSX"}}, "s.0", "must be 5 letters out of S, F, R, s, f, r, -"),
         ({"s": {"7": "SSSSS"}}, "s", "there is no robot '7'"),
         ({"s": []}, "s", "must be an object"),
         ({"f": {"0": {"5": "hi"}}}, "f.0", "there is no node '5'"),
         ({"f": {"0": {"1": 3}}}, "f.0.1", "must be a text"),
+        ({"w": []}, "w", "must be an object"),
+        ({"w": {"0": 1}}, "w.0", "must be an object"),
+        ({"w": {"9": {}}}, "w", "there is no robot '9'"),
         ({"g": FULL_GAME | {"command": "DANCE"}}, "g", "'DANCE' is missing or unknown"),
         ({"g": GAME}, "g", "'placement' is missing or unknown"),
         ({"g": FULL_GAME | {"restart": "walk"}}, "g", "'walk' is not a valid Restart"),
@@ -340,25 +406,24 @@ FULL_GAME = GAME | {"may_touch": True, "placement": None}
         ({"l": "blue"}, "l", "must be a team and a number"),
     ],
 )
-def test_a_spoiled_line_is_named_with_its_field(
+def test_a_spoiled_change_is_named_with_its_field(
     path: Path, keys: dict[str, object], field: str, problem: str
 ) -> None:
     record(path, ticks=10)
-    edited(path, 6, **keys)
+    edited(path, keys, changes=True)
     with pytest.raises(RecordingError, match=re.escape(problem)) as caught:
         load_recording(path)
-    assert (caught.value.path, caught.value.line, caught.value.field) == (path, 6, field)
-    assert f"line 6: {field}: " in str(caught.value)
+    assert (caught.value.path, caught.value.line, caught.value.field) == (path, 2, f"c.2.{field}")
 
 
 def test_lines_that_are_none_of_ours_are_refused(path: Path) -> None:
     record(path, ticks=3)
     whole = path.read_text()
     path.write_text(whole + '{"e":"goal","t":1}\n')
-    with pytest.raises(RecordingError, match="line 6: stands after the last line"):
+    with pytest.raises(RecordingError, match="line 4: stands after the last line"):
         load_recording(path)
     path.write_text(whole.splitlines()[0] + "\n{}\n")
-    with pytest.raises(RecordingError, match="line 2: is neither a tick nor an event nor the end"):
+    with pytest.raises(RecordingError, match="line 2: is neither ticks nor an event nor the end"):
         load_recording(path)
 
 
@@ -369,7 +434,7 @@ def test_spoiled_files_never_raise_anything_else(path: Path) -> None:
     tokens = [match.span() for match in re.finditer(rb'-?\d+(?:\.\d+)?|"[^"]*"|null|true|[\[\]{}]', data)]
     swaps = [b"null", b"1e999", b"NaN", b"-1", b"9" * 30, b'"x"', b"[]", b"{}", b"true", b"1.5", b'"\\ud800"']
     refused = 0
-    for _ in range(400):
+    for _ in range(600):
         start, end = rng.choice(tokens)
         path.write_bytes(data[:start] + rng.choice(swaps) + data[end:])
         try:

@@ -1,0 +1,132 @@
+"""What stays the same during a recording, and what is wrong with a file that is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntFlag
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from robobt import __version__
+from robobt.tree.drawing import NodeKind
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
+from robobt.world.state import ROBOT_RADIUS, RobotId
+
+FORMAT = "robobt-recording"
+VERSION = 2
+
+
+class RecordingError(ValueError):
+    """A file is not a recording that can be read.
+
+    Attributes:
+        path, line, field: where; ``line`` counts from 1, None when the file as a whole is meant.
+    """
+
+    def __init__(self, path: Path, problem: str, line: int | None = None, field: str | None = None) -> None:
+        self.path, self.line, self.field = path, line, field
+        place = str(path) if line is None else f"{path}, line {line}"
+        super().__init__(f"{place}: {problem}" if field is None else f"{place}: {field}: {problem}")
+
+
+class RobotFlag(IntFlag):
+    """What else is known of a robot at one tick."""
+
+    BALL_CONTACT = 1
+    """The ball lies in its mouth."""
+    DRIBBLER = 2
+    """Its command turns the dribbler."""
+    KICK = 4
+    """Its command asks for a kick."""
+    KICK_NOW = 8
+    """That kick fires at once, and only if the ball is in the mouth at that instant."""
+    COMMANDED = 16
+    """It was sent a command."""
+
+
+class _HeaderPart(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class RecordedNode(_HeaderPart):
+    """One node of a recorded tree; a tree is the list of its nodes, parents before children."""
+
+    name: str
+    path: str = Field("", description="the node's id: names from the root, joined by slashes, and unique")
+    type: str = Field(description="name of the node's class")
+    kind: NodeKind
+    depth: int = Field(ge=0, description="0 at the root")
+    glyph: str = Field("", description="the sign of a composite or decorator")
+    detail: str = Field("", description="memory or reactive, a policy, or parameters")
+
+
+class RecordedRobot(_HeaderPart):
+    """One robot of a recording."""
+
+    team: Team
+    number: int = Field(ge=0)
+    play: str = Field("", description="what it plays, as people call it")
+    radius: float = Field(ROBOT_RADIUS, gt=0, le=1, description="[m]")
+    mouth: float = Field(0.075, gt=0, le=1, description="centre to flat front [m]")
+    limits: RobotLimits = Field(DEFAULT_LIMITS, description="what its tree is told it can do")
+    tree: tuple[RecordedNode, ...] = Field((), description="filled in by the recorder")
+
+    @property
+    def id(self) -> RobotId:
+        """Team and number."""
+        return RobotId(self.team, self.number)
+
+    @model_validator(mode="after")
+    def _one_root(self) -> RecordedRobot:
+        for place, node in enumerate(self.tree):
+            deepest = self.tree[place - 1].depth + 1 if place else 0
+            if node.depth > deepest or (node.depth == 0) != (place == 0):
+                raise ValueError(f"node {place} of the tree cannot have depth {node.depth}")
+        return self
+
+
+class RecordingHeader(_HeaderPart):
+    """What stays the same during a recording."""
+
+    scenario: str = Field("", description="name of the scenario")
+    trial: int = Field(0, ge=0, description="which repetition of the scenario, from 0")
+    seed: int = Field(0, description="the trial's seed, from which all its randomness follows")
+    played: dict[str, Any] = Field(
+        default_factory=dict, description="the whole scenario as data; with the seed it repeats the trial"
+    )
+    period: float = Field(gt=0, le=10, description="control period [s]")
+    field: FieldGeometry
+    teams: dict[Team, str] = Field(default_factory=dict, description="what the teams are called")
+    robots: tuple[RecordedRobot, ...] = Field((), max_length=64)
+    robobt: str = Field(__version__, description="version of robobt that recorded it")
+
+    @model_validator(mode="after")
+    def _robots_differ(self) -> RecordingHeader:
+        ids = [robot.id for robot in self.robots]
+        for robot in ids:
+            if ids.count(robot) > 1:
+                raise ValueError(f"robot {robot} is listed twice")
+        return self
+
+
+@dataclass(slots=True, frozen=True)
+class Event:
+    """Something worth a mark on the timeline.
+
+    Attributes:
+        time: when [s].
+        kind: "goal", "kick", "save", "out", "error" or any other word.
+        team: whose event it is, if anybody's.
+        robot: which robot's, if one's.
+        text: what happened, for people.
+    """
+
+    time: float
+    kind: str
+    team: Team | None = None
+    robot: RobotId | None = None
+    text: str = ""

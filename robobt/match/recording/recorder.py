@@ -1,0 +1,356 @@
+"""Writes a match to a file, tick by tick.
+
+The file is a text of JSON objects, one a line, or the same compressed; docs/recording.md
+has the keys. It is only ever appended to, a second at a time, so a match that was
+killed leaves a file that can be read up to its last whole line. What a tick costs is
+kept down by doing the work of many ticks at once, where they are written.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Mapping, Sequence
+from math import nan
+from pathlib import Path
+from struct import Struct
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+
+from robobt.match.problems import naming
+from robobt.match.recording.header import (
+    FORMAT,
+    VERSION,
+    RecordedNode,
+    RecordedRobot,
+    RecordingHeader,
+)
+from robobt.match.recording.numbers import BALL, ROBOT, SENT, Columns
+from robobt.match.recording.outputs import OutputWatch, Values, quote, team_entries, written_entries
+from robobt.skills.store import Store
+from robobt.tree import TreeRunner
+from robobt.tree.drawing import describe
+from robobt.tree.recording import Look, TreeWatch, node_paths
+from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.game import GameState, Team
+from robobt.world.geometry import FloatArray
+from robobt.world.state import Frame, RobotId
+
+_FLUSH_PERIOD = 1.0
+# Three times as fast as zlib's default, for a file 5 % longer.
+_EFFORT = 4
+_encode = json.JSONEncoder(separators=(",", ":")).encode
+
+
+class Recorder:
+    """Writes one match to a file, tick by tick. A context manager.
+
+    The referee's commands, the score and a tree that raised need no event of
+    their own: :meth:`tick` sees them in the frame and in the runners.
+
+    Args:
+        path: file to write, replaced when it exists; a name ending in ``.gz`` is compressed.
+        header: what stays the same. The trees of its robots are taken from ``runners``.
+        runners: the runner of each robot whose tree is recorded.
+        stores: the store of each robot whose skills' outputs are recorded.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        header: RecordingHeader,
+        runners: Mapping[RobotId, TreeRunner] | None = None,
+        stores: Mapping[RobotId, Store] | None = None,
+    ) -> None:
+        self.path = Path(path)
+        runners = {} if runners is None else runners
+        robots = tuple([_with_tree(robot, runners.get(robot.id)) for robot in header.robots])
+        self.header = header.model_copy(update={"robots": robots})
+        self._trees = [
+            (slot, robot.id, TreeWatch(runners[robot.id]))
+            for slot, robot in enumerate(robots)
+            if robot.id in runners
+        ]
+        self._look_at = [watch.look for _, _, watch in self._trees]
+        self._outputs = OutputWatch(_outputs_of(robots, runners, {} if stores is None else stores))
+        # Where each team's robots stand in a tick's numbers, by their own number.
+        self._places = [
+            {robot.number: BALL + ROBOT * slot for slot, robot in enumerate(robots) if robot.team is team}
+            for team in (Team.BLUE, Team.YELLOW)
+        ]
+        self._slot_of = {robot.id: slot for slot, robot in enumerate(robots)}
+        self._nowhere = [nan] * (BALL + ROBOT * len(robots))
+        self._pack = Struct(f"={len(self._nowhere)}d").pack
+        self._columns = Columns(len(robots))
+        self._keys: list[RobotId] = []
+        self._order: list[int] = []
+        self._sent: dict[int, int] = {}
+        self._game: GameState | None = None
+        self._touch: RobotId | None = None
+        # What is still to be written: events, and of each tick time, numbers and what changed.
+        self._events: list[str] = []
+        self._times: list[float] = []
+        self._packed: list[bytes] = []
+        self._seen: dict[int, bytes] = {}
+        self._looks: list[tuple[int, int, Look]] = []
+        self._values: list[tuple[int, Values]] = []
+        self._words: list[tuple[int, str, Any]] = []
+        # Few enough writes, and a kill loses no more than that.
+        self._most_ticks = max(1, round(_FLUSH_PERIOD / header.period))
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._file: BinaryIO | None = self.path.open("wb")
+        self._deflate = zlib.compressobj(_EFFORT, wbits=31) if self.path.suffix == ".gz" else None
+        start = {"format": FORMAT, "version": VERSION, **self.header.model_dump(mode="json")}
+        try:
+            self._write([_encode(start)])
+        except OSError:
+            self._release()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._release()
+
+    def tick(
+        self,
+        frame: Frame,
+        commands: Mapping[RobotId, RobotCommand] | None = None,
+        observed: Frame | None = None,
+    ) -> None:
+        """Record one frame, the commands decided on it and what the trees look like now.
+
+        Robots that the header does not list are left out.
+
+        Args:
+            frame: what really was.
+            commands: what the robots were sent.
+            observed: what the trees were shown where that was something else.
+        """
+        frame = frame if frame.team is Team.BLUE else frame.mirrored()
+        tick = len(self._times)
+        self._times.append(frame.time)
+        self._packed.append(self._numbers(frame, commands))
+        if observed is not None:
+            self._seen[tick] = self._numbers(observed.seen_by(Team.BLUE), None)
+        for index, look_at in enumerate(self._look_at):
+            look = look_at()
+            if look is not None:
+                self._looks.append((tick, index, look))
+        values = self._outputs.look()
+        if values is not None:
+            self._values.append((tick, values))
+        game = frame.game
+        if game is not self._game:
+            if game != self._game:
+                self._words.append((tick, "g", _game_to_json(game)))
+            self._game = game
+        if frame.last_touch != self._touch:
+            self._touch = frame.last_touch
+            self._words.append((tick, "l", self._touch))
+        if tick + 1 >= self._most_ticks:
+            self._flush()
+
+    def event(
+        self,
+        kind: str,
+        time: float,
+        *,
+        team: Team | None = None,
+        robot: RobotId | None = None,
+        text: str = "",
+    ) -> None:
+        """Record that something happened at ``time`` [s]; the words are those of :class:`Event`."""
+        entry: dict[str, Any] = {"e": kind, "t": round(time, 6)}
+        if robot is not None:
+            entry["robot"] = robot
+            team = robot.team if team is None else team
+        if team is not None:
+            entry["team"] = team
+        if text:
+            entry["text"] = text
+        self._events.append(_encode(entry))
+
+    def close(self, outcome: Mapping[str, Any]) -> None:
+        """Write the outcome, any mapping that JSON can hold, and close the file."""
+        end = _encode({"end": dict(outcome)})
+        self._flush()
+        self._write([end])
+        self._release()
+
+    def _numbers(self, frame: Frame, commands: Mapping[RobotId, RobotCommand] | None) -> bytes:
+        numbers = self._nowhere.copy()
+        ball = frame.ball
+        numbers[:BALL] = ball.x, ball.y, ball.vx, ball.vy
+        sent = self._sent
+        if commands:
+            keys = list(commands)
+            if keys != self._keys:
+                # A team's hash is a call of Python, too slow to look up every robot at every tick.
+                self._keys = keys
+                self._order = [BALL + ROBOT * self._slot_of[k] if k in self._slot_of else -1 for k in keys]
+                self._sent = sent = {}
+            for at, command in zip(self._order, commands.values(), strict=True):
+                if at < 0:
+                    continue
+                flags = 18 if command.dribbler else 16
+                if command.kick_speed:
+                    flags += 12 if command.kick_trigger is KickTrigger.NOW else 4
+                sent[at] = flags
+                numbers[at + SENT : at + ROBOT] = command.vx, command.vy, command.omega, command.kick_speed
+        for places, robots in zip(self._places, (frame.own, frame.opponents), strict=True):
+            for robot in robots:
+                if robot.id in places:
+                    at = places[robot.id]
+                    numbers[at : at + SENT] = (
+                        robot.x,
+                        robot.y,
+                        robot.heading,
+                        robot.vx,
+                        robot.vy,
+                        robot.omega,
+                        sent.get(at, 0) | robot.ball_contact if commands else robot.ball_contact,
+                    )
+        return self._pack(*numbers)
+
+    def _flush(self) -> None:
+        """Write the events and ticks that wait for it."""
+        block, ticks = "", len(self._times)
+        if ticks:
+            times = ",".join([repr(round(time, 6)) for time in self._times])
+            truth = self._table(self._packed)
+            block = f'{{"n":{ticks},"t":[{times}],"x":"{self._columns.pack(truth)}"'
+            if self._seen:
+                seen = self._table([self._seen.get(i, row) for i, row in enumerate(self._packed)])
+                # Only what the cameras tell; commands stand beside the truth.
+                for column in range(SENT, ROBOT):
+                    truth[:, BALL + column :: ROBOT] = seen[:, BALL + column :: ROBOT] = nan
+                if not np.array_equal(truth, seen, equal_nan=True):
+                    block += f',"o":"{self._columns.pack(seen)}"'
+            changes = self._changes()
+            block += f',"c":{changes}}}' if changes else "}"
+            for waiting in (self._times, self._packed, self._seen, self._looks, self._values, self._words):
+                waiting.clear()
+        lines, self._events = self._events, []
+        self._write([*lines, block] if block else lines)
+
+    def _table(self, packed: list[bytes]) -> FloatArray:
+        return np.frombuffer(bytearray(b"".join(packed))).reshape(len(packed), -1)
+
+    def _changes(self) -> str:
+        """What changed in this block, a JSON object by tick; "" if nothing did."""
+        letters: dict[int, list[str]] = {}
+        said: dict[int, list[str]] = {}
+        others: dict[int, list[str]] = {}
+        for tick, index, look in self._looks:
+            slot, robot, watch = self._trees[index]
+            change = watch.tell(look)
+            if change is None:
+                continue
+            if change.error is not None:
+                self.event("error", self._times[tick], robot=robot, text=change.error)
+            if change.letters is not None:
+                letters.setdefault(tick, []).append(f'"{slot}":"{change.letters}"')
+            if change.said:
+                words = ",".join([f'"{place}":{quote(text)}' for place, text in change.said.items()])
+                said.setdefault(tick, []).append(f'"{slot}":{{{words}}}')
+        for tick, values in self._values:
+            written = self._outputs.tell(values)
+            if written:
+                others.setdefault(tick, []).append(f'"w":{written}')
+        for tick, key, value in self._words:
+            others.setdefault(tick, []).append(f'"{key}":{_encode(value)}')
+        ticks = []
+        for tick in sorted({*letters, *said, *others}):
+            parts = others.get(tick, [])
+            if tick in said:
+                parts.insert(0, f'"f":{{{",".join(said[tick])}}}')
+            if tick in letters:
+                parts.insert(0, f'"s":{{{",".join(letters[tick])}}}')
+            ticks.append(f'"{tick}":{{{",".join(parts)}}}')
+        return f"{{{','.join(ticks)}}}" if ticks else ""
+
+    def _write(self, lines: list[str]) -> None:
+        if self._file is None or not lines:
+            return
+        data = ("\n".join(lines) + "\n").encode()
+        if self._deflate is not None:
+            data = self._deflate.compress(data) + self._deflate.flush(zlib.Z_SYNC_FLUSH)
+        with naming(self.path):
+            self._file.write(data)
+            self._file.flush()
+
+    def _release(self) -> None:
+        if self._file is None:
+            return
+        file = self._file
+        try:
+            self._flush()
+            if self._deflate is not None:
+                file.write(self._deflate.flush())
+        finally:
+            self._file = None
+            with naming(self.path):
+                file.close()
+
+
+def _outputs_of(
+    robots: tuple[RecordedRobot, ...],
+    runners: Mapping[RobotId, TreeRunner],
+    stores: Mapping[RobotId, Store],
+) -> dict[str, tuple[object, Sequence[str]]]:
+    """Every robot's store by its slot and every team's by its name, with what skills write into them."""
+    outputs: dict[str, tuple[object, Sequence[str]]] = {}
+    for slot, robot in enumerate(robots):
+        if robot.id in runners and robot.id in stores:
+            outputs[str(slot)] = (stores[robot.id], written_entries(runners[robot.id].nodes))
+    for team in Team:
+        of_team = [store.team for robot, store in stores.items() if robot.team is team]
+        if of_team:
+            outputs[team.value] = (of_team[0], team_entries(type(of_team[0])))
+    return outputs
+
+
+def _with_tree(robot: RecordedRobot, runner: TreeRunner | None) -> RecordedRobot:
+    if runner is None:
+        return robot
+    depths = {id(runner.root): 0}
+    for node in runner.nodes:
+        depths.update({id(child): depths[id(node)] + 1 for child in node.children})
+    told = [describe(node) for node in runner.nodes]
+    levels = [depths[id(node)] for node in runner.nodes]
+    paths = node_paths([each.name for each in told], levels)
+    nodes = [
+        RecordedNode(
+            name=each.name,
+            path=path,
+            type=each.type,
+            kind=each.kind,
+            depth=depth,
+            glyph=each.glyph,
+            detail=each.detail,
+        )
+        for each, path, depth in zip(told, paths, levels, strict=True)
+    ]
+    return robot.model_copy(update={"tree": tuple(nodes)})
+
+
+def _game_to_json(game: GameState) -> dict[str, Any]:
+    return {
+        "command": game.command.name,
+        "stage": game.stage.name,
+        "blue": game.blue_score,
+        "yellow": game.yellow_score,
+        "restart": game.restart,
+        "team": game.restart_team,
+        "may_touch": game.may_touch,
+        "placement": game.placement,
+    }
