@@ -88,9 +88,13 @@ class DDPG:
         if self.updates % self.settings.actor_every == 0:
             slopes = self._update_actor(batch.observation)
         if self.updates % self.settings.target_every == 0:
-            # target <- (1 - tau) target + tau online
-            torch._foreach_lerp_(self._targets, self._online, self.settings.tau)
+            self._move_targets()
         return errors, slopes
+
+    @torch.no_grad()
+    def _move_targets(self) -> None:
+        """target <- (1 - tau) target + tau online."""
+        torch._foreach_lerp_(self._targets, self._online, self.settings.tau)
 
     def _update_critic(self, batch: Batch, rng: np.random.Generator) -> Tensor:
         """(2): the loss of the critic, summed over the batch's outlooks; returns squared errors."""

@@ -138,7 +138,7 @@ def script(task: GoToBallTask | ShootTask) -> Teacher:
 def skill(task: GoToBallTask | ShootTask) -> Teacher:
     """The hand-written skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
     if isinstance(task, GoToBallTask):
-        return SkillTeacher(task, GoToBall)
+        return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
     goal, speed = task.settings.field.their_goal, task.action.kick_speed
     return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
 

@@ -1,0 +1,115 @@
+"""Tasks small enough to know the answer of, with the interface of the real ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from robobt.learning.ddpg import DDPG
+from robobt.learning.envs import StepResult
+from robobt.learning.evaluation import Evaluation
+from robobt.learning.nstep import Transitions
+from robobt.learning.problems import Problem, split_seed
+from robobt.learning.replay import Replay
+from robobt.learning.settings import AgentSettings, TrainSettings
+
+torch.set_num_threads(1)
+
+PERIOD = 0.1
+REACH = 0.1
+LIMIT = 25
+
+
+class Slide:
+    """A point on a line that is to be brought to the middle: velocity command, 1 m/s at most.
+
+    The observation is its place [m] and its velocity before [m/s].
+    """
+
+    observation_size, action_size = 2, 1
+
+    def __init__(self, n: int) -> None:
+        self.n = n
+        self._rng = np.random.default_rng(0)
+
+    def reset(self, seed: int | None = None) -> np.ndarray:
+        if seed is not None:
+            self._rng = np.random.default_rng(seed)
+        self._state = np.zeros((self.n, 2))
+        self._ticks = np.zeros(self.n, dtype=np.int64)
+        self._begin(np.ones(self.n, dtype=np.bool_))
+        return self._state.copy()
+
+    def step(self, actions: np.ndarray) -> StepResult:
+        self._state[:, 1] = np.clip(actions[:, 0], -1.0, 1.0)
+        self._state[:, 0] += PERIOD * self._state[:, 1]
+        self._ticks += 1
+        success = np.abs(self._state[:, 0]) < REACH
+        truncated = ~success & (self._ticks >= LIMIT)
+        final = self._state.copy()
+        reward = np.where(success, 1.0, -0.1)
+        self._begin(success | truncated)
+        return StepResult(self._state.copy(), reward, success, truncated, final, success)
+
+    def _begin(self, which: np.ndarray) -> None:
+        count = int(which.sum())
+        self._state[which, 0] = self._rng.uniform(0.3, 1.5, count) * self._rng.choice((-1.0, 1.0), count)
+        self._state[which, 1] = 0.0
+        self._ticks[which] = 0
+
+
+def _judge(policy, split, starts) -> Evaluation:
+    task = Slide(starts)
+    observation = task.reset(split_seed(split))
+    optimum = (np.abs(observation[:, 0]) - REACH) / 1.0
+    times, done = np.full(starts, np.nan), np.zeros(starts, dtype=np.bool_)
+    for tick in range(1, LIMIT + 1):
+        step = task.step(policy(observation))
+        times[step.success & ~done & np.isnan(times)] = tick * PERIOD
+        done |= step.success | step.truncated
+        observation = step.observation
+    return Evaluation(np.isfinite(times), times, optimum, np.zeros(starts))
+
+
+SLIDE = Problem(Slide, _judge, (1.0, 1.0), (True,))
+
+
+def slide_settings(**changes) -> TrainSettings:
+    """A run of a second or less."""
+    data = {
+        "task": "slide",
+        "steps": 1920,
+        "agent": {"hidden": (16,), "gamma": 0.9, "tau": 0.05, "n_step": 3, "critic_rate": 3e-3},
+        "replay": {"batch": 32, "capacity": 1000},
+        "collection": {
+            "environments": 8,
+            "random_steps": 320,
+            "update_after": 160,
+            "update_every": 16,
+            "updates": 1,
+        },
+        "evaluation": {"every": 480, "starts": 20, "held_out": 30},
+        "rebuild_every": 320,
+        "checkpoint_seconds": 0.0,
+        "tensorboard": False,
+    }
+    for name, value in changes.items():
+        group, _, key = name.rpartition("__")
+        (data[group] if group else data)[key] = value
+    return TrainSettings.model_validate(data)
+
+
+def small_agent(observation: int, actions: int, seed: int = 0, **settings) -> DDPG:
+    """An agent with small hidden layers that learns quickly."""
+    fast = {"hidden": (32, 32), "actor_rate": 2e-3, "critic_rate": 5e-3, "tau": 0.1, "gamma": 0.9}
+    return DDPG(AgentSettings(**(fast | settings)), (1.0,) * observation, (True,) * actions, seed)
+
+
+def learn(agent: DDPG, transitions: Transitions, updates: int, batch: int = 64, seed: int = 0) -> None:
+    """Updates on batches of given transitions."""
+    sizes = transitions.observation.shape[1], transitions.action.shape[1]
+    replay = Replay(len(transitions.reward), *sizes)
+    replay.add(transitions)
+    rng = np.random.default_rng(seed)
+    for _ in range(updates):
+        agent.update(replay.draw(batch, rng), rng)
