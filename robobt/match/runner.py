@@ -230,12 +230,17 @@ def _work(files: tuple[Path, ...], packed: bytes, connection: Connection, trial:
         os.environ.setdefault(variable, "1")
     # What trees raise is counted in the results; a line on stderr each tick helps nobody.
     logging.getLogger("robobt").setLevel(logging.ERROR)
-    # First, for the job may name what these files define.
-    for file in files:
-        import_file(file)
-    job: _Job = pickle.loads(packed)
+    answer: MatchResult | Exception
+    try:
+        # First, for the job may name what these files define.
+        for file in files:
+            import_file(file)
+        job: _Job = pickle.loads(packed)
+    except Exception as error:
+        what = "does not know what this one does; plays and worlds for it are defined in modules or files"
+        connection.send(RunError(f"a worker process {what}: {type(error).__name__}: {error}"))
+        return
     while trial is not None:
-        answer: MatchResult | Exception
         try:
             answer = job.play(trial)
         except Exception as error:

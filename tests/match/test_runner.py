@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -15,8 +16,9 @@ from robobt.match.recording import load_recording
 from robobt.match.results_file import ResultsFileError
 from robobt.match.runner import trial_seed
 from robobt.match.scenario import Scenario, scenario_from
+from robobt.plays import PLAYS
 from robobt.worlds import sim_world
-from tests.match.scripted import PlainWorld, data
+from tests.match.scripted import PlainWorld, Scripted, data
 
 
 def scenario(**changes: Any) -> Scenario:
@@ -183,6 +185,21 @@ def _lives(process: str) -> bool:
         return Path("/proc", process, "stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
+
+
+def test_a_play_that_only_this_process_has_is_said_so(monkeypatch: pytest.MonkeyPatch):
+    def notebook(**_: Any) -> Scripted:
+        return Scripted(speed=1.0, kick=0.0, breaks="")
+
+    cell = ModuleType("cell")
+    cell.notebook, notebook.__module__, notebook.__qualname__ = notebook, "cell", "notebook"  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "cell", cell)
+    with PLAYS.temporarily():
+        PLAYS.register("notebook")(notebook)
+        robot = {"number": 0, "play": "notebook", "start": {"position": [-2.0, 0.0], "heading": 0.0}}
+        played = scenario(robots={"blue": [robot], "yellow": []})
+        with pytest.raises(RunError, match=r"^a worker process does not know .*: No module named 'cell'$"):
+            run_trials(played, PlainWorld, 2, workers=2)
 
 
 def test_a_world_that_cannot_be_sent_to_workers_is_said_so():
