@@ -24,9 +24,9 @@ from robobt.skills.model_file import (
     SUFFIXES,
     Format,
     ModelError,
-    append_to_onnx,
     manifest_text,
     pack_archive,
+    pack_onnx,
     payload_of,
     read_manifest,
     unpack_archive,
@@ -40,7 +40,6 @@ TOLERANCE = 1e-6
 
 _SAMPLES = 1000
 _MANGLED = re.compile(rb"\.___torch_mangle_\d+")
-_UNNEEDED = re.compile(r"(.*\.debug_pkl|\.data/serialization_id|traced_inputs.*)")
 
 
 def export_model(
@@ -91,8 +90,7 @@ def _torchscript(module: nn.Module, card: ModelCard) -> bytes:
         scripted = module if isinstance(module, torch.jit.ScriptModule) else _traced(module, card)
         torch.jit.save(torch.jit.freeze(scripted), buffer)
     members = unpack_archive(buffer.getvalue())
-    # Where the network's source lay, and what torch numbers by what else the process has traced.
-    members = {name: content for name, content in members.items() if not _UNNEEDED.fullmatch(name)}
+    # Torch numbers what it traces by what else the process has traced.
     if len([name for name in members if name.startswith("code/")]) == 1:
         members = {
             re.sub(r"/___torch_mangle_\d+", "", name): _MANGLED.sub(b"", content)
@@ -132,7 +130,7 @@ def _onnx(module: nn.Module, card: ModelCard) -> bytes:
         del node.metadata_props[:]
     content = model.SerializeToString(deterministic=True)
     text = card.model_copy(update={"payload": sha256(content).hexdigest()}).to_json()
-    return append_to_onnx(content, text)
+    return pack_onnx(content, text)
 
 
 def _compare(module: nn.Module, card: ModelCard, format_: Format, written: Path, path: Path) -> None:

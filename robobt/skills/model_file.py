@@ -1,9 +1,11 @@
 """Model files, read and checked as bytes before anything that could run them sees them.
 
 A model file is a TorchScript archive or an ONNX file that carries its
-:class:`~robobt.skills.model_card.ModelCard`, and the card carries the SHA-256 of
-all the rest: a file that was cut or altered anywhere is refused here, without
-torch or onnxruntime.
+:class:`~robobt.skills.model_card.ModelCard`. The last 64 bytes of either, an
+archive's comment or a piece of ONNX's metadata, are the SHA-256 of all before them,
+and the card carries that of the network: a file that was cut or altered anywhere
+is refused here, without torch or onnxruntime. An archive that torch itself wrote,
+with a card among its extra files, has no such seal; its members' CRCs have to do.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ MAX_MODEL_SIZE = 16 * 2**20
 CARD = "card.json"
 """Under this name the card is in the file."""
 
+_SEAL = 64
 _MAX_MEMBERS = 1000
 _MAX_FIELDS = 10_000
 _ZIP = b"PK\x03\x04"
@@ -86,20 +89,25 @@ def read_model_file(path: str | Path) -> ModelFile:
     listed = read_manifest(path.parent).get(path.name)
     if listed is not None and listed != checksum:
         raise ModelError(f"{path}: its checksum is not the one that {path.parent / MANIFEST} lists")
+    sealed = data[-_SEAL:] == _seal_of(data[:-_SEAL])
     try:
         if data.startswith(_ZIP):
+            kind: Format = "torchscript"
             members = unpack_archive(data)
             text = members.pop(_CARD_MEMBER, None)
-            kind: Format = "torchscript"
             digest, content = payload_of(members), pack_archive(members)
-        else:
+        elif sealed:
             kind = "onnx"
             content, text = _split_onnx(data)
             digest = sha256(content).hexdigest()
+        else:
+            raise ModelError("is no model file, or cut short or altered")
         if text is None:
             raise ModelError("there is no model card in it; robobt export writes files with one")
         card = read_card(text)
-        if card.payload != digest:
+        if not sealed and (card.payload or kind == "onnx"):
+            raise ModelError("has been altered since it was exported")
+        if sealed and card.payload != digest:
             raise ModelError("its content is not what its card was written for")
     except (ModelError, ModelCardError) as error:
         raise ModelError(f"{path}: {error}") from error
@@ -169,18 +177,26 @@ def payload_of(members: Mapping[str, bytes]) -> str:
 
 
 def pack_archive(members: Mapping[str, bytes], card: str | None = None) -> bytes:
-    """An archive as torch reads it, the same bytes for the same members."""
+    """An archive as torch reads it, the same bytes for the same members.
+
+    Args:
+        card: makes it a model file: the card is put in and the whole is sealed.
+    """
     buffer = BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
         for name in sorted(members):
             archive.writestr(zipfile.ZipInfo(f"model/{name}"), members[name])
         if card is not None:
             archive.writestr(zipfile.ZipInfo(f"model/{_CARD_MEMBER}"), card)
-    return buffer.getvalue()
+            archive.comment = bytes(_SEAL)
+    data = buffer.getvalue()
+    return data if card is None else data[:-_SEAL] + _seal_of(data[:-_SEAL])
 
 
 def unpack_archive(data: bytes) -> dict[str, bytes]:
     """The members of an archive that torch wrote, without the folder that holds them.
+
+    Left out is what only serves debugging: where the network's source lay, for one.
 
     Raises:
         ModelError: it is no such archive, damaged, or unpacks to too much.
@@ -203,13 +219,14 @@ def unpack_archive(data: bytes) -> dict[str, bytes]:
         raise ModelError("is an archive, but not a TorchScript one")
     if not {"data.pkl", "version"} <= set(members) or not any(name.startswith("code/") for name in members):
         raise ModelError("is an archive, but not a TorchScript one")
-    return members
+    return {name: content for name, content in members.items() if not _UNNEEDED.fullmatch(name)}
 
 
-def append_to_onnx(content: bytes, card: str) -> bytes:
-    """An ONNX file with the card as its last piece of metadata."""
-    entry = _field(1, CARD.encode()) + _field(2, card.encode())
-    return content + _field(_METADATA, entry)
+def pack_onnx(content: bytes, card: str) -> bytes:
+    """An ONNX file as a model file: card and seal become its last metadata."""
+    carded = content + _metadata(CARD, card.encode())
+    unsealed = carded + _metadata("sha256", bytes(_SEAL))[:-_SEAL]
+    return unsealed + _seal_of(unsealed)
 
 
 def _read(path: Path) -> bytes:
@@ -234,15 +251,14 @@ def _read(path: Path) -> bytes:
 
 
 def _split_onnx(data: bytes) -> tuple[bytes, bytes | None]:
-    """What precedes the card, and the card."""
-    start, text = 0, None
-    for number, begin, inside in _fields(data):
-        start, text = begin, None
-        if number == _METADATA:
-            entries = [(key, content) for key, _, content in _fields(inside)]
-            if len(entries) == 2 and entries[0] == (1, CARD.encode()) and entries[1][0] == 2:
-                text = entries[1][1]
-    return data[:start] if text is not None else data, text
+    """What precedes the card, and the card, which has only the seal behind it."""
+    last = [(number, begin, inside) for number, begin, inside in _fields(data)][-2:]
+    if len(last) < 2 or last[0][0] != _METADATA:
+        return data, None
+    entries = [(number, content) for number, _, content in _fields(last[0][2])]
+    if len(entries) != 2 or entries[0] != (1, CARD.encode()) or entries[1][0] != 2:
+        return data, None
+    return data[: last[0][1]], entries[1][1]
 
 
 def _fields(data: bytes) -> Iterator[tuple[int, int, bytes]]:
@@ -289,8 +305,16 @@ def _varint(data: bytes, place: int) -> tuple[int, int]:
     raise ModelError(_FOREIGN)
 
 
+def _metadata(key: str, value: bytes) -> bytes:
+    return _field(_METADATA, _field(1, key.encode()) + _field(2, value))
+
+
 def _field(number: int, content: bytes) -> bytes:
     return _encoded(number << 3 | 2) + _encoded(len(content)) + content
+
+
+def _seal_of(data: bytes) -> bytes:
+    return sha256(data).hexdigest().encode()
 
 
 def _encoded(value: int) -> bytes:
@@ -302,6 +326,7 @@ def _encoded(value: int) -> bytes:
     return bytes(out)
 
 
+_UNNEEDED = re.compile(r"(.*\.debug_pkl|\.data/serialization_id|traced_inputs.*)")
 _ENDINGS = tuple(SUFFIXES.values())
 _FOREIGN = "is neither a TorchScript archive nor an ONNX file, or is cut short"
 _LISTED = re.compile(r"([0-9a-f]{64}) [ *]([^/\\\s][^/\\]*)")

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import ast
-import pickletools
-import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -16,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.skills.model_card import ModelCard
+from robobt.skills.model_checks import check_code, check_onnx, check_operations
 from robobt.skills.model_file import (
     Format,
     ModelError,
@@ -28,6 +26,7 @@ from robobt.world.features import ObservationSpec
 
 Floats = NDArray[np.float32]
 
+_MOST_LOADED = 100
 _PROBES = 64
 _ORDER = 1e-3
 """How far the order of summation may move an output in single precision."""
@@ -96,7 +95,7 @@ def load_policy(
     """Load a model: a shipped one by its name, any other by its path.
 
     Before it is run: size, archive, checksums, card, and that it consists of nothing
-    but arithmetic (:data:`OPERATIONS`, no loops). Then it is tried on zeros and on
+    but arithmetic (:mod:`~robobt.skills.model_checks`). Then it is tried on zeros and on
     random inputs: it has to answer finite numbers of its card's shape and range, the
     same each time, and for a batch what it answers one by one. The same file is
     loaded once per process. From then on torch computes on one thread in this process.
@@ -125,6 +124,8 @@ def load_policy(
             _probe(network, card)
         except ModelError as error:
             raise ModelError(f"{path}: {error}") from error
+        if len(_LOADED) >= _MOST_LOADED:
+            del _LOADED[next(iter(_LOADED))]
         _LOADED[key] = Policy(file, network)
     return _LOADED[key]
 
@@ -141,29 +142,6 @@ def bare_module(policy: Policy) -> Callable[[], object]:
     return network.bare()
 
 
-_TORCH = """
-abs add add_ addmm atan2 cat clamp clamp_ concat contiguous cos detach div div_ elu exp flatten gelu
-hardtanh hardtanh_ hypot layer_norm leaky_relu linear log log1p log_softmax matmul max maximum mean min
-minimum mm mul mul_ neg pow reciprocal relu relu_ relu6 reshape rsqrt rsub select sigmoid sigmoid_ sign silu
-sin slice softmax softplus sqrt square squeeze stack sub sub_ sum t tanh tanh_ transpose unsqueeze view
-where
-"""
-_LANGUAGE = "CallMethod Constant GetAttr ListConstruct ListUnpack NumToTensor TupleConstruct TupleUnpack"
-_ONNX = """
-Abs Add Clip Concat Constant Cos Div Elu Erf Exp Flatten Gather Gelu Gemm Identity LayerNormalization
-LeakyRelu Log LogSoftmax MatMul Max Mean Min Mul Neg Pow Reciprocal ReduceMax ReduceMean ReduceMin ReduceSum
-Relu Reshape Sigmoid Sign Sin Slice Softmax Softplus Sqrt Squeeze Sub Sum Tanh Transpose Unsqueeze Where
-"""
-
-OPERATIONS: Mapping[Format, frozenset[str]] = {
-    "torchscript": frozenset(
-        [f"aten::{name}" for name in _TORCH.split()] + [f"prim::{name}" for name in _LANGUAGE.split()]
-    ),
-    "onnx": frozenset(_ONNX.split()),
-}
-"""What a model may do: the operations of feed-forward networks, by the formats' own names."""
-
-
 class _TorchScript:
     """A frozen TorchScript module."""
 
@@ -171,19 +149,21 @@ class _TorchScript:
         import torch
 
         members = unpack_archive(file.content)
-        _check_code(members)
+        check_code(members)
         if torch.get_num_threads() != 1:
             torch.set_num_threads(1)
         with _quiet():
             try:
                 loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
                 loaded.eval()
+                # Freezing runs whatever does not depend on the input.
+                check_operations(loaded.inlined_graph, {"prim::If"})
                 module = torch.jit.freeze(loaded)
+                check_operations(module.inlined_graph)
+            except ModelError:
+                raise
             except Exception as error:
                 raise ModelError(f"torch cannot load it: {_first_line(error)}") from error
-        foreign = {node.kind() for node in module.inlined_graph.nodes()} - OPERATIONS["torchscript"]
-        if foreign:
-            raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign))}")
         self.module = module
         self._torch = torch
         self._size = file.card.observation.size
@@ -218,7 +198,7 @@ class _Onnx:
     """A session of onnxruntime on one thread."""
 
     def __init__(self, file: ModelFile) -> None:
-        _check_onnx(file.content)
+        check_onnx(file.content)
         import onnxruntime  # type: ignore[import-untyped]
 
         options = onnxruntime.SessionOptions()
@@ -280,70 +260,6 @@ def _probe(network: Network, card: ModelCard) -> None:
         raise ModelError("does not answer the same twice")
     if singles.shape != first.shape or not np.allclose(singles, first, rtol=0.0, atol=_ORDER):
         raise ModelError("answers other than one by one when asked in a batch")
-
-
-def _check_code(members: Mapping[str, bytes]) -> None:
-    """Look over what torch would read and run, with Python's own parsers, which do neither.
-
-    Torch's archive holds a restricted dialect of Python and pickles of its own. What
-    they may not hold is what could keep the process busy, or run while being loaded.
-    """
-    for name, content in members.items():
-        try:
-            if name.endswith(".py"):
-                _check_source(content.decode())
-            elif name.endswith(".pkl"):
-                _check_pickle(content)
-        except ModelError:
-            raise
-        except Exception as error:
-            raise ModelError(f"{name} in it is damaged ({type(error).__name__})") from error
-
-
-def _check_source(text: str) -> None:
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.While | ast.For):
-            raise ModelError("has a loop in it; a policy is a plain network")
-        if isinstance(node, ast.FunctionDef) and node.name.startswith("__"):
-            raise ModelError(f"has a function {node.name} in it, which would run while it is loaded")
-
-
-def _check_pickle(content: bytes) -> None:
-    # Follows the stack and the memo, which torch's own reader takes on trust.
-    pickletools.dis(content, out=StringIO())
-    for code, argument, _ in pickletools.genops(content):
-        if code.name in ("GLOBAL", "INST") and not _GLOBAL.match(str(argument)):
-            raise ModelError(f"names {argument} in it, which no network needs")
-        if code.name in ("STACK_GLOBAL", "EXT1", "EXT2", "EXT4"):
-            raise ModelError("is pickled in another way than torch does it")
-
-
-_GLOBAL = re.compile(
-    r"(__torch__[.\w]* \w+|torch\._utils _rebuild_\w+|torch \w+Storage|torch\.jit\._pickle \w+"
-    r"|collections OrderedDict)$"
-)
-
-
-def _check_onnx(content: bytes) -> None:
-    import onnx
-
-    try:
-        model = onnx.load_from_string(content)
-    except Exception as error:
-        raise ModelError(f"is no intact ONNX file ({type(error).__name__})") from error
-    foreign = {
-        node.op_type
-        for node in model.graph.node
-        if node.domain not in ("", "ai.onnx") or node.op_type not in OPERATIONS["onnx"]
-    }
-    if foreign or model.functions:
-        raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign)) or 'functions'}")
-    tensors = [
-        *model.graph.initializer,
-        *[field.t for node in model.graph.node for field in node.attribute if field.HasField("t")],
-    ]
-    if any(tensor.data_location == onnx.TensorProto.EXTERNAL for tensor in tensors):
-        raise ModelError("keeps its weights in another file")
 
 
 def _first_line(error: Exception) -> str:
