@@ -7,7 +7,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import ValidationError
 
-from robobt.league.endpoints import Endpoints
+from robobt.league.endpoints import Endpoints, parse_endpoint
 from robobt.league.world import Connection, LeagueWorld
 from robobt.match.problems import first_problem, message_of
 from robobt.match.scenario import Scenario
@@ -55,8 +55,10 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
     endpoints: dict[str, Any] = {name: given.pop(name) for name in _PORTS if name in given}
     for name in _ADDRESSES:
         if name in given:
-            host, _, port = given.pop(name).rpartition(":")
-            endpoints[name] = (host, port)
+            try:
+                endpoints[name] = parse_endpoint(given.pop(name))
+            except ValueError as error:
+                raise AddressError(f"{address}: {name}: {message_of(error)}") from error
     options: dict[str, Any] = {"simulator": parts.netloc, **given}
     if "teams" in options:
         teams = options["teams"]

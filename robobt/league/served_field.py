@@ -118,6 +118,10 @@ class ServedField:
         self._limits[i] = limits
         return True
 
+    def driven(self) -> bool:
+        """Whether any robot is under a command to move."""
+        return bool(self._commands[0, :, :3].any())
+
     def step(self) -> None:
         """Let one period pass; robots whose last command is too old get the command to stand still."""
         late = self._last_command < self.time - COMMAND_TIMEOUT + 1e-9

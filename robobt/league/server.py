@@ -123,12 +123,18 @@ class SimServer:
         self._outbox: list[tuple[float, int, Sender, bytes]] = []
         self._order = count()
 
-    def run(self, seconds: float | None = None, on_step: Callable[[ServedField], None] | None = None) -> None:
+    def run(
+        self,
+        seconds: float | None = None,
+        on_step: Callable[[ServedField], None] | None = None,
+        stop: Callable[[], bool] | None = None,
+    ) -> None:
         """Serve in real time, or at ``speed`` times it, for so long or until interrupted.
 
         Args:
             seconds: of this machine's clock [s].
             on_step: called after every step, for whoever wants to look or judge.
+            stop: asked after every step whether to end.
         """
         began = clocks.monotonic()
         base, base_time = began, self.field.time
@@ -148,6 +154,8 @@ class SimServer:
                 self.step()
                 if on_step is not None:
                     on_step(self.field)
+                if stop is not None and stop():
+                    return
             self.send_due(simulated)
             due = self.field.time + self.field.period
             if self._outbox:

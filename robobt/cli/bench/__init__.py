@@ -12,6 +12,8 @@ _COMMANDS = (
     "tree",
     "policy",
     "env",
+    "shots",
+    "league",
 )
 
 

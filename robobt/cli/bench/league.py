@@ -1,0 +1,125 @@
+"""``robobt bench filter`` and ``robobt bench league``: measure playing over the league's protocols."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import MAX_SEED, Json, console, errors, one_line_errors, print_json, say, table
+
+
+def add_to(bench: typer.Typer) -> None:
+    """Enter the commands."""
+    bench.command("filter")(bench_filter)
+    bench.command("league")(bench_league)
+
+
+@one_line_errors
+def bench_filter(
+    scenario: Annotated[
+        str, typer.Argument(help="The match: a scenario file or the name of a bundled one.")
+    ] = "six_v_six",
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=2, max=3600, help="Simulated time of each situation.")
+    ] = 60.0,
+    realism: Annotated[
+        str, typer.Option("--realism", help="none, friendly, rc2021 or realistic.")
+    ] = "realistic",
+    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1,
+    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED)] = 0,
+    as_json: Json = False,
+) -> None:
+    """Measure the filter's errors against the simulator's truth: root mean squares in the plane.
+
+    Keys of --json: realism, seed, seconds, cameras, latency, noise (robot,
+    ball, heading); constant_velocity and play, each with at_capture (the estimate
+    against the truth at the capture's time), compensated and uncompensated
+    (against the truth when the frame is used), each with robot_position,
+    robot_heading, robot_velocity, robot_turn, ball_position, ball_velocity (SI)
+    and missing_robots (share).
+    """
+    from robobt.league.filter_bench import bench_filter as measure
+    from robobt.match import load_scenario
+
+    loaded = load_scenario(scenario)
+    with errors.status("filtering"):
+        figures = measure(loaded, seconds, seed, realism, cameras)
+    if as_json:
+        print_json(figures)
+        return
+    noise = figures["noise"]
+    say(
+        f"Noise of the cameras ({realism}), an axis: robot {noise['robot'] * 1e3:.1f} mm, "
+        f"ball {noise['ball'] * 1e3:.1f} mm, heading {noise['heading']:.3f} rad; "
+        f"latency {figures['latency'] * 1e3:.0f} ms."
+    )
+    listed = table(
+        "situation", "", "robot, mm", "heading, rad", "robot, m/s", "turn, rad/s", "ball, mm", "ball, m/s"
+    )
+    for situation in ("constant_velocity", "play"):
+        for when, rms in figures[situation].items():
+            listed.add_row(situation.replace("_", " "), when.replace("_", " "), *_row(rms))
+    console.print(listed)
+
+
+def _row(rms: dict[str, float]) -> list[str]:
+    return [
+        f"{rms['robot_position'] * 1e3:.2f}",
+        f"{rms['robot_heading']:.4f}",
+        f"{rms['robot_velocity']:.3f}",
+        f"{rms['robot_turn']:.3f}",
+        f"{rms['ball_position'] * 1e3:.2f}",
+        f"{rms['ball_velocity']:.3f}",
+    ]
+
+
+@one_line_errors
+def bench_league(
+    scenario: Annotated[
+        str, typer.Argument(help="A scenario file or the name of a bundled one.")
+    ] = "six_v_six",
+    seconds: Annotated[float, typer.Option("--seconds", min=4, max=3600, help="How long to play.")] = 30.0,
+    simulator: Annotated[str, typer.Option("--simulator", help="grsim or protocol.")] = "grsim",
+    realism: Annotated[
+        str | None, typer.Option("--realism", help="Of the server; by default the scenario's.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Play against a served field in a second process over the loopback, at 60 Hz.
+
+    Halfway the vision stalls for a second; at the end the playing process is killed.
+
+    Keys of --json: scenario, simulator, seconds, frame_rate, tick_rate,
+    command_rate, stall_command_rate (Hz), latency_median_ms, latency_p95_ms
+    (frame-in to command-out), ticks, robots, lost (robots missing in frames),
+    errors (ticks a tree failed), dropped, server_dropped (packets),
+    stop_commanded_s and stop_at_rest_s (from the kill until the server has all
+    robots under the command to stand still, and they stand).
+    """
+    from robobt.league.bench import bench_league as measure
+    from robobt.match import load_scenario
+
+    if simulator not in ("grsim", "protocol"):
+        raise typer.BadParameter("takes grsim or protocol", param_hint="--simulator")
+    loaded = load_scenario(scenario)
+    with errors.status(f"playing {escape(loaded.name)} over the loopback"):
+        figures: dict[str, Any] = measure(loaded, seconds, simulator, realism)
+    if as_json:
+        print_json(figures)
+        return
+    say(
+        f"{loaded.name} over {simulator}, {figures['robots']} robots, {figures['ticks']} ticks: vision "
+        f"{figures['frame_rate']:.2f} Hz, ticks {figures['tick_rate']:.2f} Hz, commands "
+        f"{figures['command_rate']:.2f} Hz ({figures['stall_command_rate']:.2f} Hz while the vision stalled)."
+    )
+    say(
+        f"Frame-in to command-out: median {figures['latency_median_ms']:.2f} ms, 95 % within "
+        f"{figures['latency_p95_ms']:.2f} ms. Robots lost {figures['lost']}, errors {figures['errors']}, "
+        f"packets dropped {figures['dropped'] + figures['server_dropped']}."
+    )
+    say(
+        f"Player killed: robots commanded to stop after {figures['stop_commanded_s']:.2f} s, at rest after "
+        f"{figures['stop_at_rest_s']:.2f} s."
+    )
