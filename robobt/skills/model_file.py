@@ -212,7 +212,8 @@ def unpack_archive(data: bytes) -> dict[str, bytes]:
         raise
     except Exception as error:
         # zipfile answers damage with a dozen kinds of exceptions, struct's and zlib's among them.
-        raise ModelError(f"is no intact archive ({type(error).__name__}: {error})") from error
+        # Some quote the file itself.
+        raise ModelError(f"is no intact archive ({type(error).__name__}: {str(error)[:80]})") from error
     roots = {name.partition("/")[0] for name, _ in found}
     members = {name.partition("/")[2]: content for name, content in found}
     if len(roots) != 1 or len(members) != len(found) or "" in members or ".." in "/".join(members):

@@ -11,7 +11,6 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.dribbling import MAX_ACCELERATION, dribbling_limits
 from robobt.skills.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.pilot import command, turn_rate
-from robobt.skills.possession import has_ball
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import KickTrigger, RobotCommand
@@ -28,7 +27,7 @@ _INSIDE = 0.6
 _LEFT = 1.0
 """A ball that is this much faster than the robot after a kick has left [m/s]."""
 _LOST_AFTER = 0.15
-"""A ball out of reach for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
+"""A ball out of the mouth for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
 
 Policy = Callable[[Store], RobotCommand]
 """What decides a shot, tick by tick, while the robot has the ball."""
@@ -44,8 +43,8 @@ SHIPPED = {"ddpg": "shoot_ddpg"}
 class Shoot(Skill):
     """Turn on the spot with the ball and kick it into the attacked goal: the paper's Shoot-Towards-Goal.
 
-    Succeeds when the ball has left after a kick, fails when the robot has not got
-    it or has lost it. Should a trained policy answer something that is no action,
+    Succeeds when the ball has left after a kick, fails when the ball does not lie in
+    the mouth: one that merely lies before it cannot be kicked from the spot. Should a trained policy answer something that is no action,
     the skill fails and the robot stops.
 
     Args:
@@ -77,7 +76,7 @@ class Shoot(Skill):
         me, ball, time = self.me, self.ball, self.frame.time
         if self._kicked and _has_left(me, ball):
             return self.succeed("kicked")
-        if has_ball(me, ball):
+        if me.ball_contact:
             self._had_it = time
         elif not 0.0 <= time - self._had_it <= _LOST_AFTER:
             return self.fail("it does not have the ball")
