@@ -44,8 +44,9 @@ class Shoot(Skill):
     """Turn on the spot with the ball and kick it into the attacked goal: the paper's Shoot-Towards-Goal.
 
     Succeeds when the ball has left after a kick, fails when the ball does not lie in
-    the mouth: one that merely lies before it cannot be kicked from the spot. Should a trained policy answer something that is no action,
-    the skill fails and the robot stops.
+    the mouth: one that merely lies before it cannot be kicked from the spot. Should
+    a trained policy answer something that is no action, the skill fails and the
+    robot stops.
 
     Args:
         policy: what decides turning and kick, by name: "geometric" aims at

@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
 import torch
 from torch import Tensor, nn
 
+from robobt.learning import export
 from robobt.learning.export import export_model
+from robobt.skills import policy
 from robobt.skills.actions import GO_TO_BALL_ACTION, SHOOT_ACTION
 from robobt.skills.model_card import ModelCard, ObservationCard, OutputEntry, action_outputs
 from robobt.skills.model_file import Format
+from robobt.skills.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
 
 
@@ -99,8 +103,20 @@ def write_model(
     module: nn.Module | None = None,
     card: ModelCard | None = None,
     formats: Sequence[Format] = ("torchscript",),
+    probed: bool = True,
 ) -> Path:
-    """A model file; a small random Go-To-Ball policy unless told otherwise."""
+    """A model file; a small random Go-To-Ball policy unless told otherwise.
+
+    Args:
+        probed: whether a policy that answers wrongly near at hand is refused, as it always is.
+    """
+    if not probed:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(policy, "_probe", lambda *_: None)
+            patch.setattr(export, "_compare", lambda *_: None)
+            path = write_model(folder, module, card, formats)
+            load_policy(path)
+            return path
     return export_model(
         network() if module is None else module, go_to_ball_card() if card is None else card, folder, formats
     )[0]
