@@ -8,7 +8,7 @@ from __future__ import annotations
 _SHIFT = 0.03
 """Share of a period by which a frame may move the beat; the rate stays within so much of the wanted."""
 
-_SLACK = 0.25
+_SLACK = 0.45
 """Share of a period around the beat in which a frame is acted on at once."""
 
 

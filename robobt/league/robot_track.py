@@ -36,7 +36,7 @@ class Motion:
     omega: float = 0.0
 
 
-_STEP = 0.01
+_STEP = 0.02
 """Longest step of the motion model [s]."""
 
 _CALM = 0.03
