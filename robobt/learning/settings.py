@@ -13,6 +13,9 @@ from robobt.match.problems import first_problem
 from robobt.match.yaml_reader import YamlError, read_yaml
 
 _PRESETS = Path(__file__).parent / "presets"
+SWITCHES = _PRESETS / "switches.yaml"
+"""The changes to the fast preset that comparisons are made of."""
+
 _M = TypeVar("_M", bound=BaseModel)
 
 ENVIRONMENTS: dict[str, type[TaskSettings]] = {"go_to_ball": GoToBallSettings, "shoot": ShootSettings}

@@ -83,6 +83,7 @@ def train(
         TrainError: the weights became NaN.
         OSError: a file cannot be written.
     """
+    clock = _Clock()
     torch.set_num_threads(1)
     if problem is None:
         problem = problem_of(settings.task, environment_of(settings))
@@ -90,7 +91,7 @@ def train(
     if folder.result is not None:
         return folder.result
     with folder:
-        return _Run(settings, problem, folder, on_progress).to_end()
+        return _Run(settings, problem, folder, clock, on_progress).to_end()
 
 
 class _Run:
@@ -99,13 +100,14 @@ class _Run:
         settings: TrainSettings,
         problem: Problem,
         folder: RunFolder,
+        clock: _Clock,
         on_progress: Callable[[Progress], None] | None,
     ) -> None:
         self._settings = settings
         self._problem = problem
         self._folder = folder
         self._on_progress = on_progress
-        self._clock = _Clock()
+        self._clock = clock
         collection = settings.collection
         self._task = problem.make(collection.environments)
         scale = problem.scale if settings.agent.scale_observations else (1.0,) * len(problem.scale)

@@ -105,11 +105,15 @@ def small_agent(observation: int, actions: int, seed: int = 0, **settings) -> DD
     return DDPG(AgentSettings(**(fast | settings)), (1.0,) * observation, (True,) * actions, seed)
 
 
-def learn(agent: DDPG, transitions: Transitions, updates: int, batch: int = 64, seed: int = 0) -> None:
-    """Updates on batches of given transitions."""
+def learn(
+    agent: DDPG, transitions: Transitions, updates: int, batch: int = 64, seed: int = 0, decay: bool = False
+) -> None:
+    """Updates on batches of given transitions, with rates that fall to nothing if told to."""
     sizes = transitions.observation.shape[1], transitions.action.shape[1]
     replay = Replay(len(transitions.reward), *sizes)
     replay.add(transitions)
     rng = np.random.default_rng(seed)
-    for _ in range(updates):
+    for done in range(updates):
+        if decay:
+            agent.set_rates(1.0 - done / updates)
         agent.update(replay.draw(batch, rng), rng)

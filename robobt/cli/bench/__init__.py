@@ -12,6 +12,7 @@ _COMMANDS = (
     "tree",
     "policy",
     "env",
+    "train",
     "shots",
     "league",
 )

@@ -1,0 +1,206 @@
+"""``robobt train`` and ``robobt demonstrations``: learn skills, and record what hand-written ones do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import (
+    MAX_SEED,
+    Json,
+    Progress,
+    console,
+    cores,
+    errors,
+    one_line_errors,
+    parse_assignments,
+    print_json,
+    say,
+    table,
+)
+
+if TYPE_CHECKING:
+    from rich.live import Live
+    from rich.table import Table
+
+    from robobt.learning.run_folder import TrainResult
+    from robobt.learning.train import Progress as Standing
+
+Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again."),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", "-w", min=1, max=256, help="Processes of one thread each; by default a core."),
+]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the commands."""
+    app.command()(train)
+    app.command()(demonstrations)
+
+
+@one_line_errors
+def train(
+    task: Task,
+    preset: Annotated[
+        str, typer.Option("--preset", "-p", help="Settings to start from: a preset's name or a YAML file.")
+    ] = "fast",
+    seeds: Annotated[
+        int, typer.Option("--seeds", "-n", min=1, max=1000, help="How many seeds, side by side.")
+    ] = 1,
+    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed.")] = 0,
+    changes: Changes = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="The run's folder; by default runs/TASK-PRESET.")
+    ] = None,
+    workers: Workers = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with a run that was cut off.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Train a skill, and judge it on starts that training and choosing never saw.
+
+    In the folder of each seed (out/seed_N): settings.yaml, log.jsonl, curves.png,
+    result.json, actor.pt (the best weights, by success and then time) and
+    TensorBoard events; beside them result.json and curves.png of all seeds.
+
+    Keys of --json: runs (every seed's result.json and its folder) and together
+    (task, preset, seeds, best_seed; to_99 and to_bar, the CPU seconds and
+    environment steps to 99 % and to what counts as learned; success, mean_time,
+    time_ratio, steps, cpu_s, evaluation_cpu_s and wall_s with median, low, high).
+    """
+    from robobt.learning.seeds import figures_of, train_seeds
+    from robobt.learning.settings import load_settings
+
+    settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
+    folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
+    wanted = range(seed, seed + seeds)
+    with _LiveTable(settings.task) as live:
+        try:
+            results = train_seeds(settings, wanted, folder, workers or min(cores(), seeds), resume, live.show)
+        except KeyboardInterrupt:
+            errors.print(f"stopped; --resume goes on with what is in {escape(str(folder))}", soft_wrap=True)
+            raise typer.Exit(130) from None
+    if as_json:
+        print_json(figures_of(results))
+        return
+    console.print(_results(results))
+    say(f"In {folder}.")
+
+
+@one_line_errors
+def demonstrations(
+    task: Task,
+    out: Annotated[Path, typer.Option("--out", "-o", help="The Parquet file to write.")],
+    episodes: Annotated[int, typer.Option("--episodes", "-n", min=1, max=100_000, help="How many.")] = 200,
+    by: Annotated[
+        str, typer.Option("--by", help="Who plays: skill (the hand-written one) or script (the simplest).")
+    ] = "skill",
+    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of starts and noise.")] = 0,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="Change the environment, as simulator=robobulls; may be given again."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Record a hand-written skill playing a task, for replay buffers to begin with.
+
+    Keys of --json: task, file, episodes, steps, success (share), mean_time [s].
+    """
+    from robobt.learning.demonstrations import record
+    from robobt.learning.settings import environment_of, load_settings
+    from robobt.learning.teachers import TEACHERS
+
+    if by not in TEACHERS:
+        raise typer.BadParameter(f"must be {' or '.join(TEACHERS)}, not {by!r}", param_hint="--by")
+    given = {
+        f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
+    }
+    environment = environment_of(load_settings(task, "fast", given))
+    with Progress(f"recording {task}", episodes) as progress:
+        recorded = record(environment, episodes, by, seed, lambda _: progress.advance())
+    recorded.write(out)
+    figures = {
+        "task": task,
+        "file": str(out),
+        "episodes": recorded.episodes,
+        "steps": len(recorded),
+        "success": float(recorded.success.sum()) / recorded.episodes,
+        "mean_time": len(recorded) / recorded.episodes * environment.period,
+    }
+    if as_json:
+        print_json(figures)
+        return
+    say(
+        f"{recorded.episodes} episodes, {len(recorded)} steps, {figures['success']:.1%} successes, "
+        f"{figures['mean_time']:.2f} s each, in {out}."
+    )
+
+
+class _LiveTable:
+    """A line a seed on stderr, kept up to date; nothing where stderr is no terminal."""
+
+    def __init__(self, title: str) -> None:
+        from rich.live import Live
+
+        self._title = title
+        self._standing: dict[int, Standing] = {}
+        self._live: Live = Live(self._table(), console=errors, auto_refresh=False, transient=True)
+
+    def __enter__(self) -> _LiveTable:
+        if errors.is_terminal:
+            self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
+
+    def show(self, standing: Standing) -> None:
+        """What a seed has come to."""
+        self._standing[standing.seed] = standing
+        if errors.is_terminal:
+            self._live.update(self._table(), refresh=True)
+
+    def _table(self) -> Table:
+        shown = table(self._title, "steps", "success", "time", "best", "CPU s", "time left")
+        for seed, now in sorted(self._standing.items()):
+            latest, best = now.latest, now.best
+            shown.add_row(
+                f"seed {seed}",
+                f"{now.steps:,} of {now.of:,}",
+                "-" if latest is None else f"{latest.success:.1%}",
+                "-" if latest is None else _time(latest.mean_time, latest.time_ratio),
+                "-" if best is None else f"{best.success:.1%} {_time(best.mean_time, best.time_ratio)}",
+                f"{now.cpu_s:.0f}",
+                f"{int(now.left_s) // 60}:{int(now.left_s) % 60:02}",
+            )
+        return shown
+
+
+def _results(results: list[TrainResult]) -> Table:
+    shown = table("seed", "held-out success", "95 % interval", "time (x optimum)", "steps", "CPU s", "wall s")
+    for result in results:
+        figures = result.figures
+        held = figures["held_out"]
+        shown.add_row(
+            str(figures["seed"]),
+            f"{held['successes']} of {held['starts']} ({held['success']:.1%})",
+            f"{held['low']:.1%} to {held['high']:.1%}",
+            _time(held["mean_time"], held["time_ratio"]),
+            f"{figures['steps']:,}",
+            f"{figures['cpu_s']:.1f}",
+            f"{figures['wall_s']:.1f}",
+        )
+    return shown
+
+
+def _time(mean: float | None, ratio: float | None) -> str:
+    if mean is None:
+        return "-"
+    return f"{mean:.2f} s" + ("" if ratio is None else f" (x{ratio:.3f})")
