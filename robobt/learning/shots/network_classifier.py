@@ -66,15 +66,18 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.network_ = train_networks([task], self._recipe())[0]
         return self
 
-    def fit_many(self, sets: Sequence[tuple[ArrayLike, ArrayLike]]) -> list[NetworkClassifier]:
+    def fit_many(
+        self, sets: Sequence[tuple[ArrayLike, ArrayLike]], held_out: ArrayLike | None = None
+    ) -> list[NetworkClassifier]:
         """Clones of it, each trained on a set of its own, all at once.
 
-        The i-th draws from ``random_state + i``.
+        The i-th draws from ``random_state + i``. ``held_out`` is as for :meth:`fit`,
+        one for all sets.
         """
         clones: list[NetworkClassifier] = []
         for i, _ in enumerate(sets):
             clones.append(clone(self).set_params(random_state=self.random_state + i))
-        tasks = [one._task(X, y, None) for one, (X, y) in zip(clones, sets, strict=True)]
+        tasks = [one._task(X, y, held_out) for one, (X, y) in zip(clones, sets, strict=True)]
         for one, network in zip(clones, train_networks(tasks, self._recipe()), strict=True):
             one.network_ = network
         return clones

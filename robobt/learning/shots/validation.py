@@ -24,13 +24,14 @@ class Judgement:
         accuracy: share of shots on the right side of a half.
         log_loss: mean negative log-likelihood.
         calibration_error: mean gap between predicted and observed, ten bins.
-        confusion: failures predicted as failure and as success, then successes so.
+        confusion: a row for failures and one for successes; columns: predicted as
+            failure, predicted as success.
     """
 
     accuracy: float
     log_loss: float
     calibration_error: float
-    confusion: tuple[int, int, int, int]
+    confusion: tuple[tuple[int, int], tuple[int, int]]
 
 
 def judge(probabilities: ArrayLike, scored: ArrayLike) -> Judgement:
@@ -42,7 +43,7 @@ def judge(probabilities: ArrayLike, scored: ArrayLike) -> Judgement:
         float((said == goal).mean()),
         log_loss(p, goal),
         calibration_error(p, goal),
-        (counts[0], counts[1], counts[2], counts[3]),
+        ((counts[0], counts[1]), (counts[2], counts[3])),
     )
 
 

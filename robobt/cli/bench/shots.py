@@ -1,0 +1,59 @@
+"""``robobt bench shots``: measures how shots are learned from and judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robobt.cli.common import Json, Progress, one_line_errors, print_json, say
+
+
+def add_to(bench: typer.Typer) -> None:
+    """Enter the command."""
+    bench.command("shots")(bench_shots)
+
+
+@one_line_errors
+def bench_shots(
+    data: Annotated[
+        Path | None,
+        typer.Option("--data", help="Shots to learn from, as for 'robobt paper'; by default made-up ones."),
+    ] = None,
+    networks: Annotated[
+        int, typer.Option("--networks", min=1, max=1000, help="How many networks, 100 being 10 x 10 folds.")
+    ] = 100,
+    as_json: Json = False,
+) -> None:
+    """Measure a 10 x 10 cross-validation of the network, all at once and one after the other.
+
+    One thread, the same data, first weights, order and early stopping; the plain
+    loop takes minutes.
+
+    Keys of --json: cross_validation_speedup, cross_validation_s and
+    cross_validation_plain_s (processor time), accuracy and accuracy_plain (mean, in
+    percent), networks.
+    """
+    from robobt.learning.shots.bench import bench_cross_validation, made_up_shots
+
+    if data is None:
+        inputs, labels = made_up_shots()
+    else:
+        from robobt.experiments.shot_sets import load_shot_sets
+        from robobt.learning.shots.author_data import author_inputs
+        from robobt.learning.shots.inputs import goals
+
+        train = load_shot_sets(data).train
+        inputs, labels = author_inputs(train), goals(train)
+    with Progress("plain loop", networks) as progress:
+        figures = bench_cross_validation(inputs, labels, networks, progress=progress.advance)
+    if as_json:
+        print_json(figures._asdict())
+        return
+    say(
+        f"{figures.networks} networks in {figures.cross_validation_s:.2f} s at once, "
+        f"{figures.cross_validation_plain_s:.1f} s one after the other: "
+        f"{figures.cross_validation_speedup:.0f} times faster; mean accuracy "
+        f"{figures.accuracy:.2f} and {figures.accuracy_plain:.2f} %"
+    )

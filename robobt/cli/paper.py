@@ -1,0 +1,199 @@
+"""``robobt paper``: the tables of the paper, its figures beside ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robobt.cli.common import Json, Progress, console, one_line_errors, print_json, say, table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_Data = Annotated[
+    Path | None,
+    typer.Option(
+        "--data",
+        help="Shots: a folder with train.csv and test.csv, as the paper's author published them, or a "
+        "Parquet or CSV file of 'robobt collect shots'. By default our own.",
+    ),
+]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group and its commands."""
+    paper = typer.Typer(no_args_is_help=True, help="The tables of the paper, its figures beside ours.")
+    for command in (table2, table3):
+        paper.command()(command)
+    app.add_typer(paper, name="paper")
+
+
+@one_line_errors
+def table2(
+    data: _Data = None,
+    replications: Annotated[
+        int, typer.Option("--replications", "-n", min=1, max=1000, help="How often to replicate the table.")
+    ] = 10,
+    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=10**6, help="Of the first one.")] = 0,
+    as_json: Json = False,
+) -> None:
+    """Table 2: the network against logistic regression in a 10 x 10 cross-validation.
+
+    Folds, hold-outs and seeds are drawn anew for every replication. The third row
+    is logistic regression on standardised inputs.
+
+    Keys of --json: source, shots, goals, replications, seed; hold_outs, by share
+    (33%, 25%): paper (the published row); network, logistic and standardised, the
+    mean accuracy in percent (mean over the replications, low and high of its 95 %
+    interval, least, most); test_logistic and test_standardised, the corrected
+    resampled paired t-test of the network against either (means of difference,
+    variance, t and p, least_p, most_p, significant: replications with p < 0.05).
+    """
+    import torch
+
+    from robobt.experiments.shot_sets import load_shot_sets
+    from robobt.experiments.table2 import HOLD_OUTS
+    from robobt.experiments.table2 import table2 as run
+
+    torch.set_num_threads(1)
+    sets = load_shot_sets(data)
+    with Progress("table 2", replications * len(HOLD_OUTS)) as progress:
+        result = run(sets, replications, seed, progress.advance)
+    if as_json:
+        print_json(result)
+        return
+    say(f"{result['source']}: {result['shots']} shots, {result['goals']} goals, {replications} replications")
+    for share, found in result["hold_outs"].items():
+        paper = found["paper"]
+        listed = table(f"{share} held out", "paper", "mean", "95 % interval", "range")
+        for name, title in (
+            ("network", "network"),
+            ("logistic", "logistic regression"),
+            ("standardised", "standardised logistic regression"),
+        ):
+            published = f"{paper[name]:.2f} %" if name in paper else "-"
+            ours = found[name]
+            listed.add_row(
+                title,
+                published,
+                f"{ours['mean']:.2f} %",
+                _interval(ours["low"], ours["high"]),
+                f"{ours['least']:.2f} to {ours['most']:.2f}",
+            )
+        for name, title in (("test_logistic", "logistic"), ("test_standardised", "standardised")):
+            test = found[name]
+            for key, digits in (("difference", 2), ("variance", 1), ("t", 2), ("p", 3)):
+                published = f"{paper[key]:.{digits + 1}f}" if name == "test_logistic" else "-"
+                spread = f"{test['least_p']:.3f} to {test['most_p']:.3f}" if key == "p" else ""
+                listed.add_row(f"  {key}, against {title}", published, f"{test[key]:.{digits}f}", "", spread)
+            listed.add_row(f"  p < 0.05, against {title}", "", f"{test['significant']} of {replications}")
+        console.print(listed)
+
+
+@one_line_errors
+def table3(
+    data: _Data = None,
+    seeds: Annotated[
+        int, typer.Option("--seeds", "-n", min=1, max=10_000, help="How often the network is trained.")
+    ] = 100,
+    repeats: Annotated[
+        int, typer.Option("--repeats", min=0, max=100, help="Of the tenfold cross-validation; 0 for none.")
+    ] = 10,
+    model: Annotated[
+        list[str] | None,
+        typer.Option("--model", help="A predictor by name; may be given often. All by default."),
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option("--picture", help="Draw a reliability diagram into this file (.png).")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Table 3: confusion matrices on the test shots, for the paper's network and all other predictors.
+
+    The network of Table 1 is trained again with the paper's recipe and many seeds;
+    what is listed of it is the run with the median accuracy. The author's own
+    weights are judged where they lie in the data folder.
+
+    Keys of --json: source, train and test (shots, goals), paper (confusion,
+    accuracy), retrained (accuracy over the seeds: mean, low, high, sd, median,
+    least, most) and models, by name: confusion (a row for failures, a row for
+    successes), accuracy in percent with its Wilson interval (low, high), log_loss,
+    calibration_error, reliability (bins), mcnemar against the author's network,
+    cross_validation on the training shots (accuracy, log_loss, calibration_error).
+    """
+    import torch
+
+    from robobt.experiments.reliability_diagram import draw_reliability
+    from robobt.experiments.shot_sets import load_shot_sets
+    from robobt.experiments.table3 import table3 as run
+    from robobt.learning.shots.predictors import PREDICTORS
+
+    torch.set_num_threads(1)
+    for name in model or ():
+        if name not in PREDICTORS:
+            raise typer.BadParameter(f"no predictor is called {name!r}; there are {', '.join(PREDICTORS)}")
+    sets = load_shot_sets(data)
+    with Progress("table 3", len(model or PREDICTORS) + 1) as progress:
+        result = run(sets, seeds, repeats, model, progress.advance)
+    if picture is not None:
+        bins = {name: one["reliability"] for name, one in result["models"].items()}
+        draw_reliability(bins, f"{result['test']['shots']} test shots", picture)
+    if as_json:
+        print_json(result)
+        return
+    _print_table3(result)
+    if picture is not None:
+        say(f"Reliability diagram: {picture}")
+
+
+def _print_table3(result: Mapping[str, Any]) -> None:
+    train, test, paper = result["train"], result["test"], result["paper"]
+    say(
+        f"{result['source']}: trained on {train['shots']} shots ({train['goals']} goals), "
+        f"tested on {test['shots']} ({test['goals']} goals)"
+    )
+    listed = table("on the test shots", "confusion", "accuracy", "95 % interval", "log-loss", "calibration")
+    listed.add_row("paper", _matrix(paper["confusion"]), f"{paper['accuracy']:.2f} %")
+    for name, one in result["models"].items():
+        listed.add_row(
+            name,
+            _matrix(one["confusion"]),
+            f"{one['accuracy']:.2f} %",
+            _interval(one["low"], one["high"]),
+            f"{one['log_loss']:.3f}",
+            f"{one['calibration_error']:.3f}",
+        )
+    console.print(listed)
+    compared = {name: one["mcnemar"] for name, one in result["models"].items() if one["mcnemar"] is not None}
+    if compared:
+        against = next(iter(compared.values()))["against"]
+        listed = table(f"against {against}", "only this right", "only that right", "McNemar p", "mid-p")
+        for name, test in compared.items():
+            counts = str(test["only_this"]), str(test["only_other"])
+            listed.add_row(name, *counts, f"{test['p']:.3f}", f"{test['mid_p']:.3f}")
+        console.print(listed)
+    validated = {name: one["cross_validation"] for name, one in result["models"].items()}
+    if any(validated.values()):
+        listed = table("cross-validated on the training shots", "accuracy", "log-loss", "calibration")
+        for name, one in validated.items():
+            if one is not None:
+                figures = f"{one['log_loss']:.3f}", f"{one['calibration_error']:.3f}"
+                listed.add_row(name, f"{one['accuracy']:.2f} %", *figures)
+        console.print(listed)
+    again = result["retrained"]
+    if again is not None:
+        say(
+            f"The paper's recipe, {again['seeds']} seeds: mean accuracy {again['mean']:.2f} % "
+            f"({_interval(again['low'], again['high'])}), median {again['median']:.2f} %, "
+            f"range {again['least']:.1f} to {again['most']:.1f} %; the paper's {paper['accuracy']:.2f} %."
+        )
+
+
+def _matrix(confusion: list[list[int]]) -> str:
+    return " / ".join(", ".join(str(count) for count in row) for row in confusion)
+
+
+def _interval(low: float | None, high: float | None) -> str:
+    return "" if low is None or high is None else f"{low:.2f} to {high:.2f}"

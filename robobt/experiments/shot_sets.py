@@ -1,0 +1,97 @@
+"""Which shots an experiment is made on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from robobt.learning.shots.author_data import author_weights
+from robobt.learning.shots.files import read_shots
+from robobt.learning.shots.inputs import goals
+from robobt.learning.shots.problems import ShotDataError
+from robobt.resources import models_folder
+from robobt.statistics import stratified_hold_out
+
+AUTHOR_WEIGHTS = "author_predictor.json"
+TEST_SHARE = 201 / 743
+"""The paper's share of shots to test on, for data that does not say."""
+
+_NAMES = ("paper_shots.parquet", "paper_shots.csv", "shots.parquet", "shots.csv")
+
+
+@dataclass(frozen=True)
+class ShotSets:
+    """Shots to learn from and shots to test on.
+
+    Attributes:
+        train, test: in the table of :mod:`robobt.learning.shots.schema`.
+        author: the published predictor where it lies beside the shots.
+        source: where they come from, for whoever reads the result.
+    """
+
+    train: pa.Table
+    test: pa.Table
+    author: dict[str, Any] | None
+    source: str
+
+
+def load_shot_sets(data: str | Path | None = None, seed: int = 0) -> ShotSets:
+    """The shots of a folder or a file.
+
+    Args:
+        data: a folder with ``train.csv`` and ``test.csv`` (or ``.parquet``), and the
+            author's weights if they are there; or a single file, whose column
+            ``early_stop_split`` says which shots are to test on, and else 201 of
+            743 are drawn. None for shots collected here: ``out/paper_shots.parquet``,
+            then those that ship with robobt.
+        seed: of that draw.
+
+    Raises:
+        ShotDataError: there are none, or a file is wrong.
+    """
+    place = Path(data) if data is not None else _own_shots()
+    if not place.is_dir():
+        return _split(read_shots(place), place, seed)
+    weights = place / AUTHOR_WEIGHTS
+    return ShotSets(
+        _one_of(place, "train"),
+        _one_of(place, "test"),
+        author_weights(weights) if weights.is_file() else None,
+        str(place),
+    )
+
+
+def _one_of(folder: Path, name: str) -> pa.Table:
+    for ending in (".csv", ".parquet"):
+        if (folder / f"{name}{ending}").is_file():
+            return read_shots(folder / f"{name}{ending}")
+    raise ShotDataError(f"{folder}: has neither {name}.csv nor {name}.parquet")
+
+
+def _own_shots() -> Path:
+    for folder in (Path("out"), models_folder()):
+        for name in _NAMES:
+            if (folder / name).is_file():
+                return folder / name
+    raise ShotDataError(
+        "there are no shots: collect some with 'robobt collect shots --protocol paper "
+        "--out out/paper_shots.parquet', or name them with --data"
+    )
+
+
+def _split(table: pa.Table, place: Path, seed: int) -> ShotSets:
+    named = np.array(table.column("early_stop_split").to_pylist()) == "test"
+    if not named.any():
+        try:
+            fold = stratified_hold_out(goals(table), TEST_SHARE, np.random.default_rng(seed))
+        except ValueError as error:
+            raise ShotDataError(f"{place}: {error}") from error
+        named[fold.test] = True
+    if named.all():
+        raise ShotDataError(f"{place}: has shots to test on only")
+    rows = np.arange(len(named))
+    return ShotSets(table.take(pa.array(rows[~named])), table.take(pa.array(rows[named])), None, str(place))
