@@ -26,6 +26,7 @@ _GROUPS = (
     "tree",
     "export",
     "league",
+    "paper",
     "bench",
 )
 """The modules that hold the commands, in the order of ``robobt --help``."""

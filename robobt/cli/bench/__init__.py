@@ -12,8 +12,8 @@ _COMMANDS = (
     "tree",
     "policy",
     "env",
-    "train",
     "shots",
+    "train",
     "league",
 )
 
