@@ -21,9 +21,11 @@ from robobt.cli.common import console, log
 _GROUPS = (
     "match",
     "replay",
+    "record",
     "scenarios",
     "lists",
     "tree",
+    "train",
     "export",
     "league",
     "paper",

@@ -131,6 +131,9 @@ class Match:
         self._time = truth.time
         if self._referee is not None:
             self._follow_referee(truth)
+        else:
+            # A world may have a referee of its own: the league's game controller.
+            self.game = truth.game
         truth.game = self.game
         self.measures.update(truth, self.game, self._commands)
         self._trace.update(truth, self.game)
@@ -139,7 +142,7 @@ class Match:
         if self.outcome is None:
             frame = self.world.observe()
             frame.game = self.game
-            self._commands = self._decide(frame)
+            self._commands = self.decide(frame)
         else:
             self._trace.event(self.outcome)
             self._commands = {}
@@ -192,8 +195,11 @@ class Match:
             )
         return players
 
-    def _decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
-        """Tick every tree once; a robot that is not seen is not ticked and stands still."""
+    def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
+        """Tick every tree once on this frame and return what each robot is told, the world left alone.
+
+        A robot that is not seen is not ticked and stands still.
+        """
         commands: dict[RobotId, RobotCommand] = {}
         # Both views before any tree is ticked: a tree that spoils its frame spoils no opponent's.
         views = [(players, frame.seen_by(team)) for team, players in self._by_team.items() if players]

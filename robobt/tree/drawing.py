@@ -6,6 +6,7 @@ import inspect
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from html import escape
 from typing import Literal
 
@@ -83,12 +84,17 @@ def describe(node: Behaviour) -> NodeDescription:
 
 def _parameters(node: Behaviour) -> Iterator[str]:
     """The constructor's parameters that the node keeps under their own names and that were changed."""
-    for parameter in list(inspect.signature(type(node).__init__).parameters.values())[1:]:
+    for parameter in _signature(type(node)):
         if parameter.name in ("name", "child", "children") or not hasattr(node, parameter.name):
             continue
         value = getattr(node, parameter.name)
         if parameter.default is inspect.Parameter.empty or not _same(value, parameter.default):
             yield f"{parameter.name}={_short(value)}"
+
+
+@lru_cache(maxsize=1024)
+def _signature(kind: type) -> tuple[inspect.Parameter, ...]:
+    return tuple(inspect.signature(kind.__init__).parameters.values())[1:]  # type: ignore[misc]
 
 
 def _same(value: object, default: object) -> bool:
@@ -105,7 +111,10 @@ def _short(value: object) -> str:
     elif isinstance(value, float):
         text = f"{value:g}"
     else:
-        text = repr(value)
+        try:
+            text = repr(value)
+        except Exception:
+            text = "<"
         if text.startswith("<"):
             # A default repr holds an address, which would differ from run to run.
             text = getattr(value, "__name__", type(value).__name__)

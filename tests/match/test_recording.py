@@ -1,18 +1,24 @@
 import base64
+import gzip
 import json
 import random
 import re
+import signal
+import subprocess
+import sys
 import zlib
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from py_trees.visitors import VisitorBase
 from pydantic import ValidationError
 
+from robobt.match import Match
 from robobt.match.recording import (
     Event,
     RecordedNode,
@@ -21,16 +27,21 @@ from robobt.match.recording import (
     RecordingError,
     RobotFlag,
     load_recording,
+    reader,
 )
+from robobt.match.scenario import load_scenario, scenario_from
 from robobt.skills.store import Store
-from robobt.tree import Behaviour, Leaf, Selector, TreeRunner
+from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
+from robobt.worlds import sim_world
 from tests.match.made_recording import (
     BLUE_1,
     BLUE_4,
     PERIOD,
     YELLOW_0,
+    Every,
     Raises,
+    Wait,
     frame,
     header,
     record,
@@ -477,3 +488,217 @@ def test_a_compressed_file_is_plain_gzip(tmp_path: Path, path: Path) -> None:
     record(path)
     record(packed)
     assert zlib.decompress(packed.read_bytes(), wbits=31) == path.read_bytes()
+
+
+KILLED = """
+import sys
+from robobt.match.recording import Recorder
+from tests.match.made_recording import frame, header, runners
+trees = runners()
+recorder = Recorder(sys.argv[1], header(), trees)
+tick = 0
+while True:
+    for runner in trees.values():
+        runner.tick()
+    recorder.tick(frame(tick))
+    tick += 1
+    if tick % 200 == 0:
+        print(tick, flush=True)
+"""
+
+
+@pytest.mark.parametrize("ending", ["", ".gz"])
+def test_a_process_that_is_killed_leaves_all_but_its_last_second(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"match.robobt.jsonl{ending}"
+    with subprocess.Popen([sys.executable, "-c", KILLED, path], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        done = int(process.stdout.readline())
+        process.kill()
+    assert process.returncode == -signal.SIGKILL
+    recording = load_recording(path)
+    assert not recording.complete
+    assert len(recording) > done - 1 / PERIOD
+    assert recording.statuses_at(BLUE_1, done - 62) == "RFF-R"
+
+
+def test_a_packed_bomb_is_refused_before_it_fills_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reader, "MOST_BYTES", 2**22)
+    path = tmp_path / "bomb.robobt.jsonl.gz"
+    path.write_bytes(gzip.compress(b" " * 2**25))
+    with pytest.raises(RecordingError, match="is longer than 4 MiB, as no match is"):
+        load_recording(path)
+    record(path)
+    monkeypatch.setattr(reader, "MOST_NUMBERS", 1000)
+    with pytest.raises(RecordingError, match=r"line \d+: holds more ticks than any match has"):
+        load_recording(path)
+
+
+def test_what_skills_write_is_recorded_whenever_it_changes(path: Path) -> None:
+    scenario = load_scenario("striker_vs_goalie").lasting(1.5)
+    match = Match(scenario, 3, sim_world, path)
+    striker = match.players[0]
+    seen = []
+    with match:
+        while match.tick():
+            seen.append((striker.store.shot, striker.store.command))
+    recording = load_recording(path)
+    assert len({shot for shot, _ in seen}) > 2
+    for tick, (shot, command) in enumerate(seen):
+        told = recording.outputs_at(striker.robot, tick)
+        if shot is not None:
+            target = pytest.approx(list(shot.target), abs=1e-5)
+            assert told["shot"]["target"] == target
+            assert told["shot"]["score"] == pytest.approx(shot.score, abs=1e-5)
+        sent = recording.command(striker.robot, tick)
+        assert sent is not None
+        assert (sent.vx, sent.vy, sent.omega) == pytest.approx(
+            (command.vx, command.vy, command.omega), abs=5.1e-4
+        )
+        assert (sent.dribbler, sent.kick_speed > 0) == (command.dribbler, command.kick_speed > 0)
+    changes = recording.outputs[0]
+    assert all(one != other for (_, one), (_, other) in pairwise(changes))
+    assert recording.header.seed == 3
+    assert scenario_from(recording.header.played, "again").model_dump() == scenario.model_dump()
+
+
+def test_why_nodes_failed_is_there_by_their_ids(path: Path) -> None:
+    record(path)
+    recording = load_recording(path)
+    assert recording.failures_at(BLUE_1, 0) == {"play/now and then": "", "play/now and then/Every": "1 of 7"}
+    assert recording.ticked_path(BLUE_1, 6) == [
+        "play",
+        "play/now and then",
+        "play/now and then/Every",
+        "play/now and then/Wait",
+    ]
+
+
+class Writes(Leaf[Store]):
+    """Writes whatever it is given."""
+
+    writes: ClassVar = ("target",)
+
+    def __init__(self, values: list[object]) -> None:
+        super().__init__()
+        self.values = values
+
+    def on_running(self) -> Status:
+        self.store.target = self.values.pop(0)  # type: ignore[assignment]
+        return self.succeed()
+
+
+class Rude:
+    def __eq__(self, other: object) -> bool:
+        raise RuntimeError("not comparable")
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+    __repr__ = __str__
+
+
+def test_whatever_a_skill_writes_can_be_recorded(path: Path) -> None:
+    shared = [1, 2]
+    values = [
+        (1.0, nan),
+        shared,
+        shared,
+        {"a": {2, 1}},
+        Rude(),
+        Rude(),
+        np.array([1.5, 2.0]),
+        "x" * 999,
+        object(),
+    ]
+    told = [
+        [1.0, None],
+        [1, 2],
+        [1, 2, 3],
+        {"a": [1, 2]},
+        *["a Rude whose text is a RuntimeError"] * 2,
+        [1.5, 2.0],
+    ]
+    store = Store(frame(0), frame(0).own[0])
+    runner = TreeRunner(Writes(list(values)), store)
+    with Recorder(path, header(), {BLUE_1: runner}, {BLUE_1: store}) as recorder:
+        for tick in range(len(values)):
+            runner.tick()
+            if tick == 2:
+                shared.append(3)
+            recorder.tick(frame(tick))
+    recording = load_recording(path)
+    assert [recording.outputs_at(BLUE_1, tick)["target"] for tick in range(7)] == told
+    assert len(recording.outputs_at(BLUE_1, 7)["target"]) == 200
+    assert recording.outputs_at(BLUE_1, 8)["target"] == "a object"
+
+
+class MuteError(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+
+class Ends(Leaf[None]):
+    def __init__(self, error: BaseException) -> None:
+        super().__init__()
+        self.error = error
+
+    def on_running(self) -> Status:
+        self.feedback_message = MuteError()  # type: ignore[assignment]
+        raise self.error
+
+
+@pytest.mark.parametrize("error", [SystemExit(3), MuteError("x"), RuntimeError(MuteError())])
+def test_leaving_the_program_or_an_error_without_a_text_fails_one_robot(
+    path: Path, error: BaseException
+) -> None:
+    runner: TreeRunner = TreeRunner(Ends(error), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(3):
+            assert runner.tick() is Status.INVALID
+            recorder.tick(frame(tick))
+    (event,) = load_recording(path).events
+    assert event.text.startswith(f"Ends: {type(error).__name__}: ")
+    assert re.search(r"\(test_recording\.py:\d+\)$", event.text)
+
+
+def test_ctrl_c_in_a_skill_ends_the_program() -> None:
+    runner: TreeRunner = TreeRunner(Ends(KeyboardInterrupt()), None)
+    with pytest.raises(KeyboardInterrupt):
+        runner.tick()
+
+
+def test_words_without_a_text_are_recorded_as_such(path: Path) -> None:
+    class Odd(Wait):
+        def on_running(self) -> Status:
+            return self.run(MuteError())  # type: ignore[arg-type]
+
+    runner: TreeRunner = TreeRunner(Odd(), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        runner.tick()
+        recorder.tick(frame(0))
+    assert load_recording(path).feedback_at(BLUE_1, 0) == {0: "a MuteError whose text is a RuntimeError"}
+
+
+def test_a_very_deep_or_very_wide_tree_is_recorded_too(path: Path) -> None:
+    deep: Behaviour = Wait("leaf")
+    for _ in range(150):
+        deep = Sequence("deep", False, [deep])
+    wide = Sequence("wide", False, [Every(1, f"{place}") for place in range(400)])
+    runner: TreeRunner = TreeRunner(Selector("both", False, [Inverter("not", wide), deep]), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(3):
+            runner.tick()
+            recorder.tick(frame(tick))
+    recording = load_recording(path)
+    assert recording.statuses_at(BLUE_1, 2) == runner.statuses()
+    assert len(set(recording.ticked_path(BLUE_1, 2))) == 554
+
+
+def test_recording_changes_nothing_of_what_is_played(path: Path) -> None:
+    scenario = load_scenario("three_v_three").lasting(4.0)
+    bare = Match(scenario, 5, sim_world).play()
+    assert Match(scenario, 5, sim_world, path).play().trace == bare.trace

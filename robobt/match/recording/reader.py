@@ -36,7 +36,19 @@ def load_recording(path: str | Path) -> Recording:
             it should be; the message names the file, the line and the field.
     """
     path = Path(path)
-    lines = _lines_of(path)
+    return _read(path, recording_lines(path))
+
+
+def parse_recording(text: bytes, path: Path) -> Recording:
+    """The recording that is in a text; ``path`` is what messages call it.
+
+    Raises:
+        RecordingError: as by :func:`load_recording`.
+    """
+    return _read(path, _split(path, text))
+
+
+def _read(path: Path, lines: list[bytes]) -> Recording:
     header = _read_header(path, lines[0])
     reader = _Reader(path, header)
     for number, line in enumerate(lines[1:], start=2):
@@ -44,8 +56,12 @@ def load_recording(path: str | Path) -> Recording:
     return reader.recording()
 
 
-def _lines_of(path: Path) -> list[bytes]:
-    """The whole lines of the file, at least one."""
+def recording_lines(path: Path) -> list[bytes]:
+    """The whole lines of a recording's file, unpacked, at least one.
+
+    Raises:
+        RecordingError: it cannot be read, or has no line.
+    """
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
@@ -56,6 +72,10 @@ def _lines_of(path: Path) -> list[bytes]:
         raise RecordingError(path, error.strerror or str(error)) from None
     except zlib.error as error:
         raise RecordingError(path, f"its compressed data are damaged ({error})") from None
+    return _split(path, data)
+
+
+def _split(path: Path, data: bytes) -> list[bytes]:
     if not data:
         raise RecordingError(path, "is empty")
     if len(data) > MOST_BYTES:

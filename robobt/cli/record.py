@@ -1,0 +1,90 @@
+"""``robobt record``: makes recordings logs for other tools, and ticks of them test cases."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robobt.cli.common import RECORDING, one_line_errors, say
+
+if TYPE_CHECKING:
+    from robobt.match.recording import Recording
+    from robobt.world import RobotId
+
+_File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}, *.robobt.jsonl).")]
+_Robot = Annotated[
+    str | None,
+    typer.Option("--robot", help="Whose tree, as 'blue 0'; may be left out where only one was recorded."),
+]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group's commands."""
+    record = typer.Typer(no_args_is_help=True, help="Use recordings elsewhere: in other tools and in tests.")
+    record.command()(export)
+    record.command()(case)
+    app.add_typer(record, name="record")
+
+
+@one_line_errors
+def export(
+    recording: _File,
+    btlog: Annotated[
+        bool, typer.Option("--btlog", help="As the .btlog file of BehaviorTree.CPP's FileLogger2.")
+    ] = False,
+    robot: _Robot = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="The file to write; by default beside the recording, robot in its name."),
+    ] = None,
+) -> None:
+    """Write what a robot's tree did in a form that other tools read."""
+    from robobt.match.btlog import write_btlog
+    from robobt.match.recording import load_recording
+
+    if not btlog:
+        raise typer.BadParameter("say which form to write; there is --btlog")
+    loaded = load_recording(recording)
+    who = _robot(loaded, robot)
+    stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
+    target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out
+    _spare(recording, target)
+    say(f"Log: {write_btlog(loaded, who, target)}")
+
+
+@one_line_errors
+def case(
+    recording: _File,
+    tick: Annotated[int, typer.Option("--tick", min=0, help="Which tick, from 0.")],
+    out: Annotated[Path, typer.Option("--out", help="The test case to write, a YAML file.")],
+    robot: _Robot = None,
+) -> None:
+    """Save a tick as a test case: what a robot's tree did then, for check_case of robobt.match.cases."""
+    from robobt.match.cases import save_case
+    from robobt.match.recording import load_recording
+
+    loaded = load_recording(recording)
+    who = _robot(loaded, robot)
+    _spare(recording, out)
+    say(f"Case: {save_case(loaded, who, tick, out)}")
+
+
+def _robot(recording: Recording, text: str | None) -> RobotId:
+    """The robot that is meant."""
+    recorded = {str(robot.id): robot.id for robot in recording.header.robots if robot.tree}
+    if text is None and len(recorded) == 1:
+        return next(iter(recorded.values()))
+    there = ", ".join(recorded) or "none"
+    if text is None:
+        raise typer.BadParameter(f"say which robot; trees were recorded of {there}", param_hint="--robot")
+    name = " ".join(text.split())
+    if name not in recorded:
+        raise typer.BadParameter(f"no tree was recorded of {text!r}; there are {there}", param_hint="--robot")
+    return recorded[name]
+
+
+def _spare(recording: Path, target: Path) -> None:
+    if target.exists() and target.samefile(recording):
+        raise typer.BadParameter("is the recording itself; give another name", param_hint="--out")
