@@ -253,7 +253,8 @@ def test_a_moving_ball_and_robot_start_in_motion() -> None:
     seen = made.observe(made.arenas.robots, made.arenas.balls)
     assert hypot(seen[0, 3], seen[0, 4]) == pytest.approx(0.5)
     assert seen[0, 5] == pytest.approx(1.0)
-    made.step(standing(1))
+    result = made.step(standing(1))
+    assert not result.terminated[0]
     assert atan2(*made.arenas.balls[0, 3:1:-1]) == pytest.approx(atan2(0.2, -0.5))
 
 
@@ -270,3 +271,11 @@ def test_the_robots_own_limits_set_the_optimum() -> None:
     episodes = run_starts(made, straight_drive, [start(ball=(2.2, 0))])
     assert episodes.optimum[0] == pytest.approx(2.25)
     assert episodes.time[0] == pytest.approx(2.25, abs=0.06)
+
+
+def test_there_is_no_straight_line_to_a_ball_that_moves() -> None:
+    made = GoToBallTask(n=2)
+    episodes = run_starts(made, straight_drive, [[0, 0, 0, 0, 0, 0, 1, 0, 0.3, 0], start()])
+    assert np.isfinite(episodes.optimum).tolist() == [False, True]
+    assert np.isfinite(episodes.straight_way).tolist() == [False, True]
+    assert episodes.time_ratio == pytest.approx(episodes.time[1] / episodes.optimum[1])

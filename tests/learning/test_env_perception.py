@@ -190,4 +190,4 @@ def test_a_new_episode_does_not_obey_the_old_ones_commands() -> None:
     made.restart()
     for _ in range(6):
         made.step(np.zeros((1, 3)))
-    assert (made.arenas.robots[0, 0, 3:] == 0.0).all()
+        assert (made.arenas.robots[0, 0, 3:] == 0.0).all()
