@@ -30,7 +30,7 @@ class BallMotion:
     rolls_at: float = 0.0
 
 
-_CALM = 0.06
+_CALM = 0.05
 """Acceleration noise of a ball left to itself [m/s^2]."""
 
 _NEAR_ROBOT = 6.0
