@@ -83,16 +83,18 @@ class Aimed(nn.Module):
 
 
 class Faulty(nn.Module):
-    """A policy that goes wrong where the ball is more than ``far`` metres away, which no probe is."""
+    """A policy that goes wrong where an entry is above ``far``: by itself the ball's distance, 20 m."""
 
-    def __init__(self, wrong: str, far: float = 20.0) -> None:
+    def __init__(self, wrong: str, far: float = 20.0, entry: int = 2, outputs: int = 3) -> None:
         super().__init__()
+        self.entry = entry
+        self.outputs = outputs
         self.wrong = wrong
         self.far = far
 
     def forward(self, observation: Tensor) -> Tensor:
-        action = torch.tanh(observation[:, :3])
-        beyond = self.far - observation[:, 2:3]
+        action = torch.tanh(observation[:, : self.outputs])
+        beyond = self.far - observation[:, self.entry : self.entry + 1]
         if self.wrong == "nan":
             return action + 0.0 * torch.log(beyond)
         return action - 5.0 * torch.clamp(beyond, max=0.0)
