@@ -85,7 +85,7 @@ class BallTrack:
         self.time = time
         self._pp, self._pv, self._vv = self._r, 0.0, _KICK**2
         self._mean_x = self._mean_y = self._doubt = 0.0
-        self._settling = _SETTLING
+        self._settling, self._kicked, self._last_step = _SETTLING, time, 0.0
 
     def advance(self, time: float, near_robot: bool) -> None:
         """Let the ball roll on to ``time``."""
@@ -96,7 +96,7 @@ class BallTrack:
         self._rolling = rolled(self._rolling, dt, self.settings)
         noise = _NEAR_ROBOT if near_robot else _CALM + self._doubt * _NEAR_ROBOT
         self._pp, self._pv, self._vv = grown(self._pp, self._pv, self._vv, noise, dt)
-        self.time = time
+        self.time, self._last_step = time, dt
 
     def carried_to(self, motion: BallMotion, time: float) -> None:
         """A robot has the ball and takes it along."""
@@ -121,7 +121,7 @@ class BallTrack:
             self._mean_x = self._mean_y = self._doubt = 0.0
             self._misfit_sliding = self._misfit_rolling = 0.0
             self._sliding, self._rolling = replace(m), replace(m, rolls_at=inf)
-            self._settling = _SETTLING
+            self._settling, self._kicked = _SETTLING, self.time - self._last_step / 2
             s = self._pp + self._r
         else:
             scale = 1.0 / sqrt(s)
@@ -137,7 +137,9 @@ class BallTrack:
         if self._settling:
             self._settling -= 1
             m = self._sliding
-            m.rolls_at = self.settings.switch_share * hypot(m.vx, m.vy)
+            # What it has lost since the kick, it had then.
+            lost = self.settings.slide_deceleration * (self.time - self._kicked)
+            m.rolls_at = self.settings.switch_share * (hypot(m.vx, m.vy) + lost)
 
 
 def _nudge(motion: BallMotion, x: float, y: float, k: float, g: float) -> float:
