@@ -21,6 +21,7 @@ from robobt.skills.carried_far import CarriedFar
 from robobt.skills.challenge_ball import ChallengeBall
 from robobt.skills.cover_angle import CoverAngle
 from robobt.skills.cover_near_post import CoverNearPost
+from robobt.skills.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.dribble_to import DribbleTo
 from robobt.skills.face_ball import FaceBall
 from robobt.skills.faces_target import FacesTarget
@@ -83,6 +84,7 @@ __all__ = [
     "ChallengeBall",
     "CoverAngle",
     "CoverNearPost",
+    "DrawGoalkeeper",
     "DribbleTo",
     "FaceBall",
     "FacesTarget",

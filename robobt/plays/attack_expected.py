@@ -1,0 +1,81 @@
+"""The robot that goes for the goal and shoots when that will very likely score."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS
+from robobt.skills.best_field_position import BestFieldPosition
+from robobt.skills.draw_goalkeeper import DrawGoalkeeper
+from robobt.skills.dribble_to import DribbleTo
+from robobt.skills.go_to_ball import GoToBall
+from robobt.skills.has_ball import HasBall
+from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.pick_up_ball import PickUpBall
+from robobt.skills.raters.expected_goal import ExpectedGoal
+from robobt.skills.select_shot import SelectShot
+from robobt.tree import Behaviour, Selector, Sequence
+
+
+@PLAYS.register("attack_expected")
+def attack_expected(
+    *,
+    model: str = "shot_expected",
+    threshold: float = 0.9,
+    last_resort: float = 0.3,
+    patience: float = 10.0,
+    max_distance: float | None = None,
+    shot_speed: float | None = None,
+    speed: float = 1.0,
+    dribble_speed: float = 2.0,
+) -> Behaviour:
+    """Shoot where the probability of a goal is high enough; else make it so.
+
+    It kicks in the very period in which the robot points into an opening whose
+    probability reaches the threshold. Until then it carries the ball to the best
+    place and there draws the goalkeeper from one side to the other; once its
+    patience is at an end it takes what there is.
+
+    Args:
+        model: predictor of the ``expected_goal`` rater: a shipped model or a file.
+        threshold: least probability of a goal, 0 to 1.
+        last_resort: the same once its patience is at an end.
+        patience: longest time to draw the goalkeeper for [s].
+        max_distance: no shots from farther than this from the goal [m]; None is any.
+        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
+        speed: factor on the top speed without the ball.
+        dribble_speed: top speed with the ball [m/s].
+    """
+    rater = ExpectedGoal(model=model, threshold=threshold)
+    return Selector(
+        "attack expected",
+        memory=False,
+        children=[
+            Sequence(
+                "score",
+                memory=False,
+                children=[
+                    SelectShot(rater=rater, min_score=threshold, max_distance=max_distance),
+                    KickToTarget(kick_speed=shot_speed, speed=speed),
+                ],
+            ),
+            Sequence(
+                "make an opening",
+                memory=False,
+                children=[
+                    HasBall(),
+                    BestFieldPosition(),
+                    DribbleTo(max_speed=dribble_speed),
+                    DrawGoalkeeper(patience=patience),
+                ],
+            ),
+            Sequence(
+                "last resort",
+                memory=False,
+                children=[
+                    HasBall(),
+                    SelectShot(rater=rater, min_score=last_resort, max_distance=max_distance),
+                    KickToTarget(kick_speed=shot_speed, speed=speed),
+                ],
+            ),
+            Sequence("get the ball", memory=False, children=[GoToBall(speed=speed), PickUpBall()]),
+        ],
+    )

@@ -1,0 +1,75 @@
+"""The robot that goes for the goal and lets a network veto its shots."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS
+from robobt.skills.best_field_position import BestFieldPosition
+from robobt.skills.draw_goalkeeper import DrawGoalkeeper
+from robobt.skills.dribble_to import DribbleTo
+from robobt.skills.go_to_ball import GoToBall
+from robobt.skills.has_ball import HasBall
+from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.pick_up_ball import PickUpBall
+from robobt.skills.raters.nn_filtered import NNFiltered
+from robobt.skills.select_shot import SelectShot
+from robobt.skills.shot_is_steady import ShotIsSteady
+from robobt.tree import Behaviour, FailureIsSuccess, Selector, Sequence
+
+
+@PLAYS.register("attack_nn")
+def attack_nn(
+    *,
+    model: str = "shot_nn",
+    threshold: float = 0.5,
+    tolerance: float = 0.3645,
+    max_distance: float | None = None,
+    shot_speed: float | None = None,
+    speed: float = 1.0,
+    dribble_speed: float = 2.0,
+    steady: float = 0.1,
+) -> Behaviour:
+    """Attack Main without passes, its shots filtered by a network; without a shot it goes on dribbling.
+
+    Where dribbling has led it to the best place, it draws the goalkeeper from one
+    side to the other until the network lets a shot pass.
+
+    Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
+    AttackNN.
+
+    Args:
+        model: predictor of the ``nn_filtered`` rater: a shipped model or a file.
+        threshold: least chance of a goal that a robot has to leave, 0 to 1.
+        tolerance: a robot nearer to the line of the shot blocks it [m].
+        max_distance: no shots from farther than this from the goal [m]; None is any.
+        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
+        speed: factor on the top speed without the ball.
+        dribble_speed: top speed with the ball [m/s].
+        steady: how long a shot must have been open before it is begun [s].
+    """
+    rater = NNFiltered(model=model, threshold=threshold, tolerance=tolerance)
+    return Selector(
+        "attack nn",
+        memory=False,
+        children=[
+            Sequence(
+                "score",
+                memory=False,
+                children=[
+                    FailureIsSuccess("look for a shot", SelectShot(rater=rater, max_distance=max_distance)),
+                    ShotIsSteady(rise=steady, fall=steady),
+                    KickToTarget(kick_speed=shot_speed, speed=speed),
+                ],
+            ),
+            Sequence(
+                "dribble",
+                memory=False,
+                children=[
+                    HasBall(),
+                    BestFieldPosition(),
+                    DribbleTo(max_speed=dribble_speed),
+                    DrawGoalkeeper(),
+                ],
+            ),
+            Sequence("get the ball", memory=False, children=[GoToBall(speed=speed), PickUpBall()]),
+        ],
+    )
