@@ -70,18 +70,34 @@ def export_model(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     listed = read_manifest(folder)
-    module = copy.deepcopy(module).cpu().eval()
+    module = _copy(module)
     files = [folder / f"{card.name}{SUFFIXES[format_]}" for format_ in formats]
     # All or nothing: no file takes its place before all have been compared.
     with ExitStack() as stack:
         for format_, path in zip(formats, files, strict=True):
-            data = _torchscript(module, card) if format_ == "torchscript" else _onnx(module, card)
+            try:
+                data = _torchscript(module, card) if format_ == "torchscript" else _onnx(module, card)
+            except (RuntimeError, TypeError) as error:
+                reason = next(iter(str(error).strip().splitlines()), type(error).__name__)
+                raise ModelError(f"{path}: torch cannot export the network: {reason}") from error
             if len(data) > MAX_EXPORT_SIZE:
                 raise ModelError(f"{path}: would be {len(data)} bytes, more than {MAX_EXPORT_SIZE}")
             _compare(module, card, format_, stack.enter_context(_written(path, data)), path)
             listed[path.name] = sha256(data).hexdigest()
         stack.enter_context(_written(folder / MANIFEST, manifest_text(listed).encode()))
     return tuple(files)
+
+
+def _copy(module: nn.Module) -> nn.Module:
+    if not isinstance(module, torch.jit.ScriptModule):
+        return copy.deepcopy(module).cpu().eval()
+    # A deep copy of these has tensors that torch warns of.
+    buffer = BytesIO()
+    with _quiet():
+        torch.jit.save(module, buffer)
+        buffer.seek(0)
+        loaded: nn.Module = torch.jit.load(buffer, map_location="cpu")  # type: ignore[no-untyped-call]
+    return loaded.eval()
 
 
 def _torchscript(module: nn.Module, card: ModelCard) -> bytes:
