@@ -33,6 +33,7 @@ def bench_cross_validation(
     labels: NDArray[np.int64],
     networks: int = 100,
     seed: int = 0,
+    recipe: Recipe = Recipe(),  # noqa: B008
     progress: Callable[[], object] = lambda: None,
 ) -> CrossValidationFigures:
     """A tenfold cross-validation of the paper's network, all at once and one after the other.
@@ -43,6 +44,7 @@ def bench_cross_validation(
     Args:
         inputs, labels: (n, F) and (n,).
         networks: how many of the folds to train, 100 being ten times ten.
+        recipe: what both follow.
         progress: called after every network of the plain loop.
     """
     torch.set_num_threads(1)
@@ -58,12 +60,12 @@ def bench_cross_validation(
     train_networks(tasks[:1], Recipe(warm_up=1, epochs=1))
     train_plainly(tasks[0], Recipe(warm_up=1, epochs=1))
     begin = process_time()
-    together = train_networks(tasks)
+    together = train_networks(tasks, recipe)
     batched = process_time() - begin
     apart, plain = [], 0.0
     for task in tasks:
         begin = process_time()
-        apart.append(train_plainly(task))
+        apart.append(train_plainly(task, recipe))
         plain += process_time() - begin
         progress()
     return CrossValidationFigures(

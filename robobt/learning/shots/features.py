@@ -99,6 +99,11 @@ class ShotFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         head, block = scenes[:, :SCENE_HEAD], scenes[:, SCENE_HEAD : SCENE_HEAD + 4]
         return np.asarray(FEATURES[self.name](np, head, block), dtype=np.float64)
 
+    def __sklearn_tags__(self) -> Any:
+        tags = super().__sklearn_tags__()
+        tags.input_tags.allow_nan = True
+        return tags
+
 
 def _joined(xp: Any, rows: Rows, more: list[Rows]) -> Rows:
     return xp.concatenate([rows, xp.stack(more, -1)], -1)

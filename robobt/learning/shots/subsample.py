@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, ClassifierMixin, clone
+from sklearn.utils import get_tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from robobt.learning.shots.network_classifier import binary_labels
@@ -36,7 +37,7 @@ class Subsampled(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Subsampled:  # noqa: N803
         """Draw and fit."""
-        inputs, given = validate_data(self, X, y, dtype=np.float64, ensure_all_finite="allow-nan")
+        inputs, given = validate_data(self, X, y, dtype=np.float64, ensure_all_finite=self._finite())
         labels = binary_labels(self, given)
         if len(labels) > self.most:
             rng = np.random.default_rng(self.random_state)
@@ -58,5 +59,8 @@ class Subsampled(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     def __sklearn_tags__(self) -> Any:
         tags = super().__sklearn_tags__()
         tags.classifier_tags.multi_class = False
-        tags.input_tags.allow_nan = True
+        tags.input_tags.allow_nan = get_tags(self.estimator).input_tags.allow_nan
         return tags
+
+    def _finite(self) -> bool | str:
+        return "allow-nan" if get_tags(self.estimator).input_tags.allow_nan else True

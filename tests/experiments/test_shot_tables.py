@@ -1,0 +1,154 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from robobt.experiments.reliability_diagram import draw_reliability
+from robobt.experiments.shot_sets import load_shot_sets
+from robobt.experiments.table2 import table2
+from robobt.experiments.table3 import author_outputs, table3
+from robobt.learning.shots.files import write_shots
+from robobt.learning.shots.problems import ShotDataError
+from tests.learning.shots.made_up import made_up_table
+from tests.learning.shots.real_data import REAL_SHOTS, needs_real_shots
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_shots(made_up_table(120), tmp_path / "train.parquet")
+    write_shots(made_up_table(60, seed=1), tmp_path / "test.csv")
+    return tmp_path
+
+
+def test_a_folder_holds_shots_to_train_and_to_test_on(folder: Path):
+    sets = load_shot_sets(folder)
+    assert (sets.train.num_rows, sets.test.num_rows) == (120, 60)
+    assert sets.author is None
+    (folder / "test.csv").unlink()
+    with pytest.raises(ShotDataError, match="test"):
+        load_shot_sets(folder)
+
+
+def test_a_single_file_is_split_as_it_says_or_as_in_the_paper(tmp_path: Path):
+    file = tmp_path / "shots.parquet"
+    write_shots(made_up_table(80, split=True), file)
+    sets = load_shot_sets(file)
+    assert set(sets.test.column("early_stop_split").to_pylist()) == {"test"}
+    assert (sets.train.num_rows, sets.test.num_rows) == (60, 20)
+    write_shots(made_up_table(743), file)
+    one, same, other = load_shot_sets(file), load_shot_sets(file), load_shot_sets(file, seed=1)
+    assert (one.train.num_rows, one.test.num_rows) == (542, 201)
+    drawn = [sets.test.column("robot_x").to_pylist() for sets in (one, same, other)]
+    assert drawn[0] == drawn[1]
+    assert drawn[0] != drawn[2]
+
+
+def test_without_data_the_error_says_how_to_collect_some(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("robobt.experiments.shot_sets.models_folder", lambda: tmp_path)
+    with pytest.raises(ShotDataError, match="robobt collect shots"):
+        load_shot_sets()
+    (tmp_path / "out").mkdir()
+    write_shots(made_up_table(80, split=True), tmp_path / "out" / "paper_shots.parquet")
+    assert load_shot_sets().train.num_rows == 60
+
+
+def test_shots_to_test_on_only_are_refused(tmp_path: Path):
+    table = made_up_table(20)
+    at = table.schema.names.index("early_stop_split")
+    write_shots(table.set_column(at, table.schema.field(at), pa.array(["test"] * 20)), tmp_path / "a.csv")
+    with pytest.raises(ShotDataError, match="only"):
+        load_shot_sets(tmp_path / "a.csv")
+
+
+def test_table_3_judges_every_model_on_the_test_shots(folder: Path):
+    told: list[int] = []
+    models = ["table_one", "logistic", "quadratic"]
+    result = table3(
+        load_shot_sets(folder), seeds=3, repeats=1, models=models, progress=lambda: told.append(1)
+    )
+    assert list(result["models"]) == models
+    assert len(told) == 4
+    for one in result["models"].values():
+        assert np.sum(one["confusion"]) == 60
+        assert one["low"] <= one["accuracy"] <= one["high"]
+        assert one["accuracy"] == pytest.approx(100 * np.trace(one["confusion"]) / 60)
+        assert sum(row["trials"] for row in one["reliability"]) == 60
+        assert one["cross_validation"]["accuracy"] > 50.0
+    assert result["models"]["logistic"]["mcnemar"]["against"] == "table_one"
+    retrained = result["retrained"]
+    assert retrained["least"] <= retrained["median"] <= retrained["most"]
+    assert retrained["median"] == result["models"]["table_one"]["accuracy"]
+    json.dumps(result, allow_nan=False)
+
+
+def test_table_3_without_cross_validation_and_without_the_network(folder: Path):
+    result = table3(load_shot_sets(folder), repeats=0, models=["physics_margin"])
+    assert result["retrained"] is None
+    assert result["models"]["physics_margin"]["cross_validation"] is None
+    assert result["models"]["physics_margin"]["mcnemar"] is None
+
+
+def test_table_3_refuses_data_with_too_few_goals(tmp_path: Path):
+    few = made_up_table(60)
+    rows = few.to_pylist()
+    for row in rows[:-3]:
+        row["success"] = 0
+    write_shots(pa.Table.from_pylist(rows, schema=few.schema), tmp_path / "shots.parquet")
+    with pytest.raises(ShotDataError, match="goals"):
+        table3(load_shot_sets(tmp_path / "shots.parquet"), seeds=1, repeats=0, models=["logistic"])
+
+
+def test_table_2_compares_the_network_with_both_regressions(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)
+    result = table2(load_shot_sets(folder), replications=1)
+    assert list(result["hold_outs"]) == ["33%", "25%"]
+    for found in result["hold_outs"].values():
+        for name in ("network", "logistic", "standardised"):
+            assert 50.0 < found[name]["mean"] <= 100.0
+            difference = found["network"]["mean"] - found["logistic"]["mean"]
+        assert found["test_logistic"]["difference"] == pytest.approx(difference)
+        assert 0.0 <= found["test_standardised"]["p"] <= 1.0
+    assert result["hold_outs"]["33%"]["paper"]["network"] == 87.4024
+    json.dumps(result, allow_nan=False)
+
+
+def test_a_reliability_diagram_is_a_picture(tmp_path: Path):
+    bins = [
+        {"predicted": 0.2, "observed": 0.1, "trials": 5},
+        {"predicted": 0.8, "observed": 0.9, "trials": 9},
+    ]
+    file = tmp_path / "new" / "diagram.png"
+    draw_reliability({"model": bins}, "title", file)
+    assert file.read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in file.parent.iterdir()] == ["diagram.png"]
+    with pytest.raises(ValueError, match="format"):
+        draw_reliability({"model": bins}, "title", tmp_path / "diagram.nonsense")
+
+
+@needs_real_shots
+def test_the_authors_weights_give_the_published_confusion_matrix():
+    sets = load_shot_sets(REAL_SHOTS)
+    assert sets.author is not None
+    p = author_outputs(sets.author, sets.test)
+    np.testing.assert_allclose(p, sets.author["golden"]["test_probabilities"], atol=1e-6)
+    result = table3(sets, repeats=0, models=[])
+    assert result["models"]["author"]["confusion"] == [[102, 20], [10, 69]]
+
+
+@needs_real_shots
+@pytest.mark.slow
+def test_retraining_with_the_papers_recipe_gives_the_papers_accuracy():
+    result = table3(load_shot_sets(REAL_SHOTS), seeds=100, repeats=0, models=["table_one"])
+    assert 84.7 <= result["retrained"]["mean"] <= 85.8
+
+
+@needs_real_shots
+@pytest.mark.slow
+def test_table_2_of_the_real_shots_is_that_of_the_paper():
+    result = table2(load_shot_sets(REAL_SHOTS), replications=10)
+    for found in result["hold_outs"].values():
+        assert 86.8 <= found["network"]["mean"] <= 87.6
+        assert 84.4 <= found["logistic"]["mean"] <= 84.7
