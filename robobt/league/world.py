@@ -144,8 +144,8 @@ class LeagueWorld:
         now = self._now()
         self._pace = Pace(period, now)
         self._sent_at = now
-        self._began: float | None = None
-        self._last_time = 0.0
+        self._began = self._looked = now
+        self._looked_at = now
         self._closed = False
         endpoints, interface = self.connection.endpoints, self.connection.interface
         self._open: list[Receiver] = []
@@ -179,19 +179,19 @@ class LeagueWorld:
         if self._link.places:
             self._put(placement)
         self._filter_settles()
-        self._began = self._now()
-        self._last_time = 0.0
+        self._began = self._looked = self._now()
+        self._looked_at = self._target()
         self._pace.restart(self._began)
         self._fresh = False
 
     def observe(self) -> Frame:
         """The field as it should be by now, seen from blue's side."""
-        return self._frame(self._target())
+        return self._frame(self._looked_at)
 
     def truth(self) -> Frame:
         """The field at the last capture, seen from blue's side: nothing in it is extrapolated."""
         captured = self._filter.captured
-        return self._frame(self._target() if captured is None else captured)
+        return self._frame(self._looked_at if captured is None else min(captured, self._looked_at))
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands, within the robots' limits, and let one control period pass.
@@ -219,6 +219,9 @@ class LeagueWorld:
                     command.vx, command.vy, command.omega, dribbler=command.dribbler
                 )
         self._wait()
+        # All looks until the next act are at this instant.
+        self._looked = max(self._now(), self._looked + 1e-6)
+        self._looked_at = self._target()
 
     def place_ball(self, x: float, y: float) -> None:
         """See :meth:`robobt.world.World.place_ball`; on a real field somebody has to."""
@@ -382,6 +385,8 @@ class LeagueWorld:
 
     def _commanded(self) -> list[RobotId]:
         """The robots that this world may command."""
+        if isinstance(self._link, NoLink):
+            return []
         playing = self._filter.robots() if self._robots is None else sorted(self._robots)
         return [robot for robot in playing if robot.team in self.connection.teams]
 
@@ -417,10 +422,7 @@ class LeagueWorld:
 
     def _frame(self, at: float) -> Frame:
         frame = self._filter.frame_at(at)
-        now = self._now()
-        elapsed = 0.0 if self._began is None else now - self._began
-        # Two looks in one tick are the same instant; time grows with every act.
-        self._last_time = frame.time = max(self._last_time, elapsed)
+        frame.time = self._looked - self._began
         frame.period = self.period
         frame.game = self._game(frame)
         return frame

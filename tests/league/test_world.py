@@ -1,0 +1,265 @@
+"""A league world over the loopback: one contract with the simulated one, whatever the protocol."""
+
+from __future__ import annotations
+
+from math import nan, pi
+
+import pytest
+
+from robobt.league.commands import Teleport
+from robobt.league.endpoints import Endpoints
+from robobt.league.factory import AddressError, LeagueFactory, parse_address
+from robobt.league.served_field import ServedField, line_up
+from robobt.league.world import LeagueError, LeagueWorld
+from robobt.match import load_scenario, run_trials
+from robobt.sim.settings import REALISM, SimSettings, preset
+from robobt.world import World
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_A, DIVISION_B
+from robobt.world.game import Team
+from robobt.world.protocol import Placement
+from robobt.world.state import RobotId
+from robobt.worlds import sim_world, world_from
+from tests.league.served import free_endpoints, served
+
+ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 1)
+START = Placement({ME: (-1.0, 0.5, 0.3), HER: (2.0, -1.0, pi - 0.2)}, (0.5, 0.25, 0.0, 0.0))
+SPEED = 3.0
+
+
+def field(robots: int = 2) -> ServedField:
+    return ServedField(DIVISION_B, line_up(DIVISION_B, robots))
+
+
+def connect(endpoints: Endpoints, simulator: str = "grsim", **more: object) -> LeagueWorld:
+    robots = dict.fromkeys((ME, HER))
+    return LeagueWorld(robots=robots, simulator=simulator, endpoints=endpoints, speed=SPEED, **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("group", ["224.5.23.2", "127.0.0.1"], ids=["multicast", "unicast"])
+@pytest.mark.parametrize("simulator", ["grsim", "protocol"])
+def test_it_puts_sees_drives_and_stops_robots(simulator: str, group: str) -> None:
+    endpoints = free_endpoints(group)
+    with served(field(), endpoints, SPEED) as server, connect(endpoints, simulator) as world:
+        assert isinstance(world, World)
+        world.reset(START, 0)
+        # Who does not play was taken off the field.
+        assert set(server.field.poses()) == {ME, HER}
+        frame = world.observe()
+        assert frame.own[0].position == pytest.approx((-1.0, 0.5), abs=0.01)
+        assert frame.opponents[0].heading == pytest.approx(pi - 0.2, abs=0.03)
+        assert frame.ball.position == pytest.approx((0.5, 0.25), abs=0.01)
+        times = [frame.time]
+        for _ in range(60):
+            world.act({ME: RobotCommand(0.5, 0.0, 1.0), HER: RobotCommand(0.0, 0.4)})
+            times.append(world.observe().time)
+        frame = world.observe()
+        assert times == sorted(set(times))
+        assert frame.own[0].speed == pytest.approx(0.5, abs=0.05)
+        assert frame.own[0].omega == pytest.approx(1.0, abs=0.1)
+        assert frame.opponents[0].speed == pytest.approx(0.4, abs=0.05)
+        truth = server.field.poses()[ME]
+        assert frame.own[0].position == pytest.approx(truth[:2], abs=0.05)
+        assert world.truth().time == frame.time
+        world.act({})
+        for _ in range(20):
+            world.act({})
+        assert world.observe().own[0].speed < 0.03
+
+
+def test_closing_it_stops_the_robots() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED) as server:
+        with connect(endpoints) as world:
+            world.reset(START, 0)
+            for _ in range(20):
+                world.act({ME: RobotCommand(0.5)})
+            assert server.field.driven()
+        end = server.field.time + 0.5
+        while server.field.driven() and server.field.time < end:
+            pass
+        assert server.field.time < end
+
+
+def test_the_field_is_the_one_the_vision_tells() -> None:
+    endpoints = free_endpoints()
+    big = ServedField(DIVISION_A, line_up(DIVISION_A, 2))
+    with served(big, endpoints, SPEED), connect(endpoints) as world:
+        world.reset(START, 0)
+        for _ in range(70):
+            world.act({})
+        assert world.observe().field == DIVISION_A
+
+
+def test_a_team_that_defends_the_other_side_sees_itself_on_its_own() -> None:
+    endpoints = free_endpoints()
+    turned = connect(endpoints, blue_on_positive_half=True)
+    with served(field(), endpoints, SPEED) as server, turned as world:
+        world.reset(START, 0)
+        assert server.field.poses()[ME][:2] == pytest.approx((1.0, -0.5), abs=1e-3)
+        assert world.observe().own[0].position == pytest.approx((-1.0, 0.5), abs=0.01)
+        for _ in range(30):
+            world.act({ME: RobotCommand(0.5)})
+        assert world.observe().own[0].vx == pytest.approx(0.5 * 0.955, abs=0.05)
+
+
+def test_the_ball_is_put_down_and_its_motion_starts_with_the_reset() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED), connect(endpoints, "protocol") as world:
+        world.reset(Placement(START.robots, (-2.0, -2.0, 1.0, 0.0)), 0)
+        assert world.observe().ball.vx == pytest.approx(0.95, abs=0.1)
+        world.place_ball(1.0, 2.0)
+        for _ in range(20):
+            world.act({})
+        assert world.observe().ball.position == pytest.approx((1.0, 2.0), abs=0.01)
+        assert world.observe().ball.speed < 0.03
+
+
+def test_without_a_simulator_it_says_so_in_one_line() -> None:
+    endpoints = free_endpoints()
+    with (
+        connect(endpoints) as world,
+        pytest.raises(LeagueError, match=r"no vision at 224\.5\.23\.2:\d+ for 0\.1 s"),
+    ):
+        world.wait_for_vision(0.1)
+
+
+def test_an_observer_plays_with_what_is_there_and_commands_nobody() -> None:
+    endpoints = free_endpoints()
+    with connect(endpoints, "observer") as world, served(field(1), endpoints, SPEED) as server:
+        world.reset(START, 0)
+        assert world.robots() == [ME, RobotId(Team.YELLOW, 0)]
+        for _ in range(5):
+            world.act({ME: RobotCommand(1.0)})
+        assert world.observe().own[0].speed < 0.03
+        assert server.counts["grsim"].accepted == server.counts["blue"].accepted == 0
+
+
+def test_a_robot_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robobt.league.world._PATIENCE", 0.2)
+    endpoints = free_endpoints()
+    ghost = RobotId(Team.BLUE, 20)
+    world = LeagueWorld(robots={ghost: None}, endpoints=endpoints)
+    with (
+        served(field(), endpoints),
+        world,
+        pytest.raises(LeagueError, match="not seen where put .*: blue 20;"),
+    ):
+        world.reset(Placement({ghost: (0.0, 1.0, 0.0)}), 0)
+
+
+def test_commands_that_cannot_be_are_refused_as_by_the_simulated_world() -> None:
+    with connect(free_endpoints()) as world:
+        with pytest.raises(ValueError, match="is not finite"):
+            world.act({ME: RobotCommand(nan)})
+        with pytest.raises(KeyError):
+            world.act({RobotId(Team.BLUE, 9): RobotCommand()})
+        with pytest.raises(ValueError, match="has no pose for yellow 1"):
+            world.reset(Placement({ME: (0.0, 0.0, 0.0)}), 0)
+        with pytest.raises(ValueError, match="outside the walls"):
+            world.reset(Placement({**START.robots, ME: (99.0, 0.0, 0.0)}), 0)
+        with pytest.raises(ValueError, match="blue 9 is not part of this world"):
+            world.reset(Placement({**START.robots, RobotId(Team.BLUE, 9): (0.0, 0.0, 0.0)}), 0)
+
+
+def test_when_the_vision_stops_commands_go_on_but_robots_stop() -> None:
+    endpoints = free_endpoints()
+    with connect(endpoints) as world:
+        with served(field(), endpoints, SPEED):
+            world.reset(START, 0)
+        sent = world.sent
+        ticks = 30
+        for _ in range(ticks):
+            world.act({ME: RobotCommand(1.0)})
+        assert world.sent - sent >= ticks
+        # The filter was told what was really sent.
+        assert world._filter._sent[ME][-1].vx == 0.0
+
+
+def test_a_scenario_is_played_over_the_network_as_in_the_process() -> None:
+    endpoints = free_endpoints()
+    scenario = load_scenario("striker_vs_goalie").lasting(2.0)
+    served_field = ServedField(scenario.field, Placement(), preset("default", realism=REALISM["none"]))
+    # Nobody is on the field yet: the match puts its robots there.
+    served_field.teleport(Teleport(RobotId(Team.BLUE, 11), 0.0, 2.0, 0.0))
+    ports = {name: getattr(endpoints, name) for name in ("grsim", "control", "blue", "yellow")}
+    ports |= {"blue_status": endpoints.blue_status, "yellow_status": endpoints.yellow_status}
+    options = "&".join(f"{name}={port}" for name, port in ports.items())
+    factory = world_from(f"league://protocol?vision={endpoints.vision}&speed=2&{options}")
+    assert isinstance(factory, LeagueFactory)
+    with served(served_field, endpoints, 2.0):
+        (result,) = run_trials(scenario, factory, trials=1).results
+        factory.close()
+    assert result.ticks > 20
+    assert not any(robot.errors for robot in result.robots.values())
+
+
+def test_the_simulator_is_a_world_by_its_name() -> None:
+    assert world_from("sim") is sim_world
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [
+        ("grsim", "is league://SIMULATOR"),
+        ("league://webots", "simulator: Input should be 'grsim', 'protocol' or 'observer'"),
+        ("league://grsim?port=1", "there is no option 'port'"),
+        ("league://grsim?vision=here", "'here' is no address like 224.5.23.2:10006"),
+        ("league://grsim?vision=224.5.23.2:99999", "is no address"),
+        ("league://grsim?grsim=99999", "grsim: Input should be less than or equal to 65535"),
+        ("league://grsim?physics=moon", "no preset is called 'moon'"),
+        ("league://grsim?speed=nan", "speed: Input should be a finite number"),
+        ("league://grsim?teams=red", "teams.0"),
+    ],
+)
+def test_a_wrong_address_is_one_plain_error(address: str, problem: str) -> None:
+    with pytest.raises(AddressError) as raised:
+        parse_address(address)
+    assert problem in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_an_address_says_all_of_a_connection() -> None:
+    connection, physics = parse_address(
+        "league://protocol?host=192.0.2.9&interface=192.0.2.2&teams=yellow&speed=2"
+        "&vision=224.5.23.2:10006&control=1&blue_on_positive_half=true&physics=erforce"
+    )
+    assert (connection.simulator, connection.host, connection.interface) == (
+        "protocol",
+        "192.0.2.9",
+        "192.0.2.2",
+    )
+    assert (connection.teams, connection.speed, connection.blue_on_positive_half) == (
+        (Team.YELLOW,),
+        2.0,
+        True,
+    )
+    assert (str(connection.endpoints.vision), connection.endpoints.control) == ("224.5.23.2:10006", 1)
+    assert physics == "erforce"
+
+
+def test_only_the_own_teams_robots_are_commanded() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED), connect(endpoints, teams=("blue",)) as world:
+        world.reset(START, 0)
+        for _ in range(20):
+            world.act({ME: RobotCommand(0.5), HER: RobotCommand(0.5)})
+        frame = world.observe()
+        assert frame.own[0].speed > 0.4
+        assert frame.opponents[0].speed < 0.03
+
+
+def test_noise_and_delay_of_the_server_are_bridged() -> None:
+    endpoints = free_endpoints()
+    noisy = ServedField(DIVISION_B, line_up(DIVISION_B, 2), SimSettings(realism=REALISM["realistic"]))
+    with served(noisy, endpoints, 1.0, cameras=4) as server:
+        robots = dict.fromkeys((ME, HER))
+        with LeagueWorld(robots=robots, endpoints=endpoints, settings=noisy.settings) as world:
+            world.reset(START, 0)
+            for _ in range(40):
+                world.act({ME: RobotCommand(1.0)})
+            (me,) = world.observe().own
+            x, y, _ = server.field.poses()[ME]
+            # A period of the server and one of ours lie between the two looks.
+            assert abs(me.x - x) + abs(me.y - y) < 0.06
+            assert me.speed == pytest.approx(1.0, abs=0.1)
