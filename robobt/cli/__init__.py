@@ -28,6 +28,8 @@ _GROUPS = (
     "train",
     "export",
     "league",
+    "collect",
+    "shots",
     "paper",
     "bench",
 )

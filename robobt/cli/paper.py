@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robobt.cli.common import Json, Progress, console, one_line_errors, print_json, say, table
+from robobt.cli.deployed import deployed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +26,7 @@ _Data = Annotated[
 def add_to(app: typer.Typer) -> None:
     """Enter the group and its commands."""
     paper = typer.Typer(no_args_is_help=True, help="The tables of the paper, its figures beside ours.")
-    for command in (table2, table3):
+    for command in (table2, table3, deployed):
         paper.command()(command)
     app.add_typer(paper, name="paper")
 

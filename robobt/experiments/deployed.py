@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from robobt.experiments.goal_map import draw_goal_line
+from robobt.match.loop import Match
 from robobt.match.results import MatchResult
-from robobt.match.runner import run_trials
+from robobt.match.runner import run_trials, trial_seed
 from robobt.match.scenario import Scenario, load_scenario
+from robobt.skills.raters.expected_goal import ExpectedGoal
+from robobt.skills.raters.goal_line import goal_candidates
+from robobt.skills.raters.nn_filtered import NNFiltered
 from robobt.statistics import clopper_pearson_interval, mcnemar, wilson_interval
 from robobt.worlds import sim_world
 
@@ -63,6 +69,7 @@ def deployed(
     Raises:
         ScenarioError: a play does not take those parameters.
     """
+
     def played(_: MatchResult) -> None:
         progress()
 
@@ -122,6 +129,28 @@ def _figures(
     }
 
 
-def _mean(values: Any) -> float | None:
+def _mean(values: Iterable[float]) -> float | None:
     listed = list(values)
     return fmean(listed) if listed else None
+
+
+def judged_goal_line(speed: str, seed: int, path: Path, goalkeeper: str = "default") -> None:
+    """Play ``attack_expected`` until its first shot and draw the goal line as judged at that moment.
+
+    Raises:
+        RuntimeError: it takes no shot in the first of its trials.
+    """
+    scenario = deployed_scenario(speed, "attack_expected", goalkeeper)
+    with Match(scenario, trial_seed(seed, 0), sim_world) as match:
+        store = match.players[0].store
+        while match.tick():
+            if store.command.kick_speed > 0.0:
+                break
+        else:
+            raise RuntimeError("attack_expected takes no shot in this trial")
+        frame, me = store.frame, store.me
+    points = goal_candidates(frame.field)
+    expected = ExpectedGoal().chances(frame, frame.ball.position, me, points)
+    assert expected is not None
+    network = NNFiltered().chances(frame, me, points)
+    draw_goal_line(frame, me, {"expected_goal": expected, "nn_filtered": network}, path)

@@ -1,0 +1,113 @@
+"""``robobt collect``: shots for the predictors to learn from."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robobt.cli.common import MAX_SEED, Json, Progress, cores, errors, one_line_errors, print_json, say
+
+
+class Scenario(StrEnum):
+    """How the attacker comes to shoot."""
+
+    MOTION = "motion"
+    STILL = "still"
+    BOTH = "both"
+
+
+class Protocol(StrEnum):
+    """Which shots are taken."""
+
+    BALANCED = "balanced"
+    PAPER = "paper"
+
+
+def add_to(app: typer.Typer) -> None:
+    """Enter the group and its command."""
+    collect = typer.Typer(no_args_is_help=True, help="Collect data from simulated play.")
+    collect.command()(shots)
+    # A group of its own even with a single command.
+    collect.callback()(lambda: None)
+    app.add_typer(collect, name="collect")
+
+
+@one_line_errors
+def shots(
+    count: Annotated[
+        int | None,
+        typer.Option(
+            "--count", "-n", min=1, max=10_000_000, help="How many shots; 1000, the paper's protocol 743."
+        ),
+    ] = None,
+    scenario: Annotated[
+        Scenario, typer.Option("--scenario", help="On the move, standing, or both in turn.")
+    ] = Scenario.BOTH,
+    protocol: Annotated[
+        Protocol,
+        typer.Option(
+            "--protocol",
+            help="balanced: evenly over range, angle and goalkeeper offset, at any point of the goal; "
+            "paper: those that Attack Main takes, 542 to train and 201 to test.",
+        ),
+    ] = Protocol.BALANCED,
+    opponents: Annotated[
+        int,
+        typer.Option(
+            "--opponents", min=1, max=6, help="Most opponents; half the shots have the keeper alone."
+        ),
+    ] = 1,
+    workers: Annotated[
+        int | None, typer.Option("--workers", "-w", min=1, max=256, help="Processes; by default one a core.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="What all randomness follows from.")
+    ] = 1,
+    out: Annotated[Path, typer.Option("--out", "-o", help="The file, .parquet or .csv.")] = Path(
+        "shots.parquet"
+    ),
+    as_json: Json = False,
+) -> None:
+    """Play the paper's collection scenarios and write one row a shot, as the kick goes out.
+
+    A collection that is stopped, in whatever way, keeps every finished shot; the
+    same command goes on with it. The same settings give the same shots with any
+    number of workers. Beside the file lies a description of its columns (.json).
+
+    Keys of --json: out, shots, goals, success_rate, new, simulated_s, wall_s,
+    real_time_factor, interrupted.
+    """
+    from robobt.learning.shots.collect import PAPER_COUNT, collect_shots
+    from robobt.learning.shots.collect_plan import CollectionSettings
+
+    settings = CollectionSettings(
+        scenario=scenario.value, protocol=protocol.value, opponents=opponents, seed=seed
+    )
+    wanted = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)
+    with Progress("shots", wanted) as progress:
+        done = collect_shots(settings, out, wanted, workers or cores(), progress.advance)
+    figures = {
+        "out": str(out),
+        "shots": done.shots,
+        "goals": done.goals,
+        "success_rate": done.goals / done.shots if done.shots else 0.0,
+        "new": done.new,
+        "simulated_s": done.simulated,
+        "wall_s": done.wall,
+        "real_time_factor": done.real_time_factor,
+        "interrupted": done.interrupted,
+    }
+    if as_json:
+        print_json(figures)
+    else:
+        speed = f", {done.real_time_factor:.0f} times real time" if done.new else ""
+        say(
+            f"{done.shots} shots, {done.goals} goals ({figures['success_rate']:.1%}), {done.new} of them "
+            f"new{speed}, in {out}."
+        )
+    if done.interrupted:
+        errors.print("stopped; the same command goes on with it", soft_wrap=True)
+        raise typer.Exit(130)

@@ -1,0 +1,105 @@
+"""``robobt paper deployed``: what a learned veto does for the goals."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robobt.cli.common import (
+    MAX_SEED,
+    Json,
+    Progress,
+    console,
+    cores,
+    one_line_errors,
+    print_json,
+    say,
+    table,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Style(StrEnum):
+    """How the goalkeeper moves."""
+
+    DEFAULT = "default"
+    ROBOBULLS = "robobulls"
+
+
+@one_line_errors
+def deployed(
+    shots: Annotated[
+        int, typer.Option("--shots", "-n", min=1, max=100_000, help="Trials of every play and speed.")
+    ] = 100,
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="By default the one nothing was tuned on."),
+    ] = None,
+    goalkeeper: Annotated[
+        Style, typer.Option("--goalkeeper", help="default, or robobulls for the paper's own pilot.")
+    ] = Style.DEFAULT,
+    workers: Annotated[
+        int | None, typer.Option("--workers", "-w", min=1, max=256, help="Processes; by default one a core.")
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            "--picture", help="Draw the goal line as judged at attack_expected's first shot (.png)."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Attack Main, AttackNN and Attack Expected against the goalkeeper at half and full speed.
+
+    Every play is given the same starts and seeds.
+
+    Keys of --json: shots, seed, goalkeeper; speeds, by half and full and then by
+    play: goals, rate with its 95 % Wilson interval (low, high) and the exact one
+    (exact_low, exact_high), attempts (trials with a shot), outcomes, time_to_shot
+    [s], waiting (how much longer than attack_main from the same start [s]), errors,
+    mcnemar (against attack_main: only_this, only_first_play, p), paper (goals, shots).
+    """
+    from robobt.experiments.deployed import PLAYED, SEED, judged_goal_line
+    from robobt.experiments.deployed import deployed as run
+
+    used = SEED if seed is None else seed
+    with Progress("deployed", 2 * len(PLAYED) * shots) as progress:
+        result = run(shots, used, workers or cores(), goalkeeper=goalkeeper.value, progress=progress.advance)
+    if picture is not None:
+        judged_goal_line("half", used, picture, goalkeeper.value)
+    if as_json:
+        print_json(result)
+        return
+    _print(result)
+    if picture is not None:
+        say(f"The judged goal line: {picture}")
+
+
+def _print(result: Mapping[str, Any]) -> None:
+    for speed, plays in result["speeds"].items():
+        listed = table(
+            f"goalkeeper at {speed} speed",
+            "paper",
+            "goals",
+            "95 % interval",
+            "shots",
+            "to the shot",
+            "waiting",
+        )
+        for play, one in plays.items():
+            paper, time, waiting = one["paper"], one["time_to_shot"], one["waiting"]
+            listed.add_row(
+                play,
+                "-" if paper is None else f"{paper['goals']} / {paper['shots']}",
+                f"{one['goals']} / {result['shots']}",
+                f"{one['low']:.1%} to {one['high']:.1%}",
+                str(one["attempts"]),
+                "-" if time is None else f"{time:.2f} s",
+                "-" if waiting is None else f"{waiting:+.2f} s",
+            )
+        console.print(listed)

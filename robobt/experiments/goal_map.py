@@ -1,0 +1,166 @@
+"""A map of the probability to score, and a picture of the goal line as a rater judges it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, hypot, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robobt.match.placing import HELD_DISTANCE
+from robobt.skills.raters.expected_goal import ExpectedGoal
+from robobt.skills.raters.goal_line import goal_candidates
+from robobt.world.field import DIVISION_B, FieldGeometry
+from robobt.world.geometry import FloatArray, Point, direction
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+
+
+@dataclass(frozen=True, slots=True)
+class GoalMap:
+    """Best probability of a goal by place of the ball.
+
+    Attributes:
+        field: whose opponents' half.
+        x, y: (X,) and (Y,) coordinates of the ball [m].
+        probability: (Y, X); not-a-number in the defence area.
+    """
+
+    field: FieldGeometry
+    x: FloatArray
+    y: FloatArray
+    probability: FloatArray
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data; null where there is no probability."""
+        rows = [[None if np.isnan(p) else float(p) for p in row] for row in self.probability]
+        return {"x": self.x.tolist(), "y": self.y.tolist(), "probability": rows}
+
+
+def goal_map(
+    model: str = "shot_expected", spacing: float = 0.1, field: FieldGeometry = DIVISION_B
+) -> GoalMap:
+    """The best shot's probability from every place, past a goalkeeper at rest that covers the angle.
+
+    Args:
+        model: predictor of the ``expected_goal`` rater.
+        spacing: between places [m].
+        field: dimensions.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+    rater = ExpectedGoal(model=model)
+    points = goal_candidates(field)
+    x = np.arange(0.0, field.half_length, spacing)
+    y = np.arange(-field.half_width, field.half_width + spacing / 2.0, spacing)
+    probability = np.full((len(y), len(x)), np.nan)
+    for i, ball_y in enumerate(y.tolist()):
+        for j, ball_x in enumerate(x.tolist()):
+            in_area = (
+                ball_x > field.half_length - field.defense_depth and abs(ball_y) < field.defense_width / 2
+            )
+            if in_area:
+                continue
+            frame = _scene(field, (ball_x, ball_y))
+            chances = rater.chances(frame, (ball_x, ball_y), frame.own[0], points)
+            if chances is not None:
+                probability[i, j] = chances.max()
+    return GoalMap(field, x, y, probability)
+
+
+def draw_goal_map(found: GoalMap, path: Path) -> None:
+    """Write the map as a picture, whole or not at all; the ending says the form (.png, .svg, .pdf)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 6.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    shown = axes.pcolormesh(found.x, found.y, found.probability, vmin=0.0, vmax=1.0, cmap="viridis")
+    figure.colorbar(shown, ax=axes, label="probability of a goal")
+    field = found.field
+    left, half = field.half_length - field.defense_depth, field.defense_width / 2.0
+    edge = field.half_length
+    axes.plot([edge, left, left, edge], [-half, -half, half, half], color="white", linewidth=1.2)
+    goal = field.goal_width / 2.0
+    axes.plot([edge, edge], [-goal, goal], color="C3", linewidth=4)
+    axes.set(xlabel="x of the ball [m]", ylabel="y of the ball [m]", aspect="equal")
+    axes.set_title("best shot past a goalkeeper that covers the angle")
+    _save(figure, path)
+
+
+def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArray], path: Path) -> None:
+    """Draw a scene with its goal line as raters judge it: the probability at every target point.
+
+    Args:
+        frame: the scene, seen from the shooter's side.
+        me: the shooter.
+        chances: (T,) for the points of :func:`goal_candidates`, by the rater's name.
+        path: the ending says the form (.png, .svg, .pdf).
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Circle
+
+    field, ball = frame.field, frame.ball
+    points = goal_candidates(field)
+    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    scene, line = figure.subplots(1, 2, width_ratios=(3, 2))
+    first = next(iter(chances.values()))
+    for point, chance in zip(points[::3], first[::3], strict=True):
+        color = (1.0 - float(chance), 0.15 + 0.6 * float(chance), 0.2)
+        scene.plot([ball.x, point[0]], [ball.y, point[1]], color=color, linewidth=0.8, alpha=0.7)
+    for robots, paint in ((frame.own, "C0"), (frame.opponents, "C1")):
+        for robot in robots:
+            scene.add_patch(Circle(robot.position, ROBOT_RADIUS, color=paint))
+            tip = (robot.x + 0.14 * cos(robot.heading), robot.y + 0.14 * sin(robot.heading))
+            scene.plot([robot.x, tip[0]], [robot.y, tip[1]], color="black", linewidth=1)
+    scene.add_patch(Circle(ball.position, BALL_RADIUS, color="orange"))
+    goal = field.goal_width / 2.0
+    scene.plot([field.half_length] * 2, [-goal, goal], color="C3", linewidth=4)
+    low = min(ball.x, me.x) - 0.4
+    reach = max(abs(ball.y), goal) + 0.4
+    scene.set(xlim=(low, field.half_length + 0.15), ylim=(-reach, reach), aspect="equal")
+    scene.set(xlabel="x [m]", ylabel="y [m]", title=f"{frame.time:.2f} s")
+    for name, values in chances.items():
+        line.plot(values, points[:, 1], label=name)
+    line.set(
+        xlim=(-0.02, 1.02), ylim=(-goal, goal), xlabel="probability of a goal", ylabel="y of the target [m]"
+    )
+    line.legend(loc="best", fontsize=8)
+    _save(figure, path)
+
+
+def _scene(field: FieldGeometry, ball: Point) -> Frame:
+    goal = field.their_goal
+    heading = direction(ball, goal)
+    me = RobotState(
+        0,
+        ball[0] - HELD_DISTANCE * cos(heading),
+        ball[1] - HELD_DISTANCE * sin(heading),
+        heading,
+        ball_contact=True,
+    )
+    gap = hypot(goal[0] - ball[0], goal[1] - ball[1])
+    out = min(0.5, 0.5 * gap)
+    keeper = RobotState(
+        0,
+        min(goal[0] - out * cos(heading), field.half_length - ROBOT_RADIUS),
+        goal[1] - out * sin(heading),
+        direction(goal, ball),
+    )
+    return Frame(0.0, field, BallState(*ball), (me,), (keeper,))
+
+
+def _save(figure: Any, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        figure.savefig(draft, dpi=120)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
