@@ -135,6 +135,8 @@ class Match:
             # A world may have a referee of its own: the league's game controller.
             self.game = truth.game
         truth.game = self.game
+        if self._recorder is not None:
+            self._recorder.see(truth)
         self.measures.update(truth, self.game, self._commands)
         self._trace.update(truth, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)

@@ -30,10 +30,11 @@ _NOTHING = repeat(object())
 
 @dataclass(slots=True, frozen=True)
 class Look:
-    """What a tree looked like after a tick, as :meth:`TreeWatch.tell` understands it."""
+    """What a tree looked like after a tick or a stop, as :meth:`TreeWatch.tell` understands it."""
 
     seen: _Seen
     error: str | None
+    failed: int | None
     ticked: bool
     marked: tuple[int, ...]
 
@@ -58,17 +59,19 @@ class Change:
 class TreeWatch:
     """What has changed in a runner's tree since it was looked at last.
 
-    ``look`` is quick and called after every tick; what it returns can be told by
-    :meth:`tell` later, in the same order. What a node says counts while it has a status.
+    It looks at the tree after every tick and stop, while that is still at hand, and hands
+    over what it saw only when that is new. What that means, :meth:`tell` can say later, in
+    the same order. What a node says counts while it has a status.
 
     Args:
-        runner: whose tree; it marks nodes that it ticks from now on.
+        runner: whose tree.
+        notice: called with every look that is new.
 
     Attributes:
-        look: what the tree looks like; None when it does as it did at the last look.
+        ticked: whether the tree was ticked since this was last set to False.
     """
 
-    def __init__(self, runner: TreeRunner) -> None:
+    def __init__(self, runner: TreeRunner, notice: Callable[[Look], None]) -> None:
         nodes = runner.nodes
         self._runner = runner
         self._size = len(nodes)
@@ -76,22 +79,38 @@ class TreeWatch:
         self._parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
         self._reach = [ticked_children(node) for node in nodes]
         unsure = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
-        self._marks = runner.mark(unsure)
         self._layout, ask = _Question(nodes, runner).make()
-        self.look = self._looker(ask)
+        self.ticked = False
+        self._notice = notice
+        # As it was looked at last.
+        self._seen: tuple[Any, ...] = ()
+        self._usual = False
+        self._marked: list[Behaviour] = []
+        look = self._looker(ask)
+        self._marks = runner.mark(unsure, look)
         # As it was told last.
         self._told: _Seen = None
         self._error: str | None = None
+        self._failed: int | None = None
         self._statuses = ["-"] * len(nodes)
         self._said = [""] * len(nodes)
         self._letters = "-" * len(nodes)
         self._path: tuple[bool, tuple[int, ...]] = (False, ())
+        look()
 
     def tell(self, look: Look) -> Change | None:
         """What is new in this look since the one told before."""
         said: dict[int, str] = {}
-        turned = self._compare(look.seen, self._told, self._layout, said)
-        self._told = look.seen
+        turned = False
+        if self._failed is not None:
+            self._statuses[self._failed] = "-"
+            self._told, turned = None, True
+        turned = self._compare(look.seen, self._told, self._layout, said) or turned
+        self._told, self._failed = look.seen, look.failed
+        if look.failed is not None and look.error is not None:
+            # The one node that has a status although those above it have none.
+            self._statuses[look.failed], turned = "F", True
+            self._hear(look.failed, look.error.partition(": ")[2], said)
         path = (look.ticked, look.marked)
         letters = None
         if turned or path != self._path:
@@ -105,22 +124,33 @@ class TreeWatch:
         self._error = look.error
         return None if letters is error is None and not said else Change(letters, said, error)
 
-    def _looker(self, ask: Callable[[], tuple[Any, ...]]) -> Callable[[], Look | None]:
-        """What :attr:`look` is: a function with its own variables, for it is called at every tick."""
-        runner, marks = self._runner, self._marks
-        seen: tuple[Any, ...] = ()
-        marked: list[Behaviour] = []
-        ticks, usual = runner.ticks, 0
+    def rest(self) -> None:
+        """Notice that the tree was not ticked: nodes that have a status have kept it."""
+        if self._usual:
+            self._usual = False
+            self._notice(Look(self._seen[:-1], self._seen[-1], self._place_of_failed(), False, ()))
 
-        def look() -> Look | None:
-            nonlocal seen, marked, ticks, usual
-            now, count = ask(), runner.ticks
-            step, ticks = count - ticks, count
-            if now == seen and step == usual and marks == marked:
-                return None
-            seen, usual, marked = now, step, marks.copy()
-            places = [self._places.get(id(node), -1) for node in marked]
-            return Look(now[:-1], now[-1], step > 0, tuple(places))
+    def _place_of_failed(self) -> int | None:
+        failed = self._runner.failed
+        return None if failed is None or failed.status is Status.INVALID else self._places.get(id(failed))
+
+    def _looker(self, ask: Callable[[], tuple[Any, ...]]) -> Callable[[], None]:
+        """What looks, at every tick and stop."""
+        runner = self._runner
+        ticks = runner.ticks
+
+        def look() -> None:
+            nonlocal ticks
+            now = ask()
+            if runner.ticks != ticks:
+                ticks = runner.ticks
+                self.ticked = True
+            if now == self._seen and self.ticked is self._usual and self._marks == self._marked:
+                return
+            self._seen, self._usual, self._marked = now, self.ticked, self._marks.copy()
+            places = [self._places.get(id(node), -1) for node in self._marked]
+            failed = self._place_of_failed()
+            self._notice(Look(now[:-1], now[-1], failed, self.ticked, tuple(places)))
 
         return look
 

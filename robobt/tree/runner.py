@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import PurePath
 from typing import Literal
 
@@ -59,6 +59,7 @@ class TreeRunner:
         self._stock = False
         self._visitor: VisitorBase | None = None
         self._marks: Marks | None = None
+        self._after: Callable[[], None] | None = None
         bind(root, store)
         self._tick = compile_tree(root)
 
@@ -81,7 +82,15 @@ class TreeRunner:
                 raise TreeError(self.error) from error
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
             return Status.INVALID
+        finally:
+            if self._after is not None:
+                self._after()
         return self.root.status
+
+    @property
+    def failed(self) -> Behaviour | None:
+        """The node that raised at the last tick, None when none did."""
+        return self._failed
 
     def _fail(self, error: BaseException) -> None:
         """Bring the tree to rest, with the node that raised as the one that failed."""
@@ -101,12 +110,15 @@ class TreeRunner:
         self._visitor = visitor
         self._renew()
 
-    def mark(self, nodes: Iterable[Behaviour]) -> list[Behaviour]:
+    def mark(self, nodes: Iterable[Behaviour], after: Callable[[], None]) -> list[Behaviour]:
         """From now on keep a list of the nodes ticked by the last tick, and return it.
 
-        Of all nodes of the tree at least those in ``nodes`` are entered.
+        Args:
+            nodes: of all nodes of the tree at least these are entered.
+            after: called after every tick and stop, while what was ticked is still at hand.
         """
         self._marks = Marks(nodes)
+        self._after = after
         self._renew()
         return self._marks.seen
 
@@ -159,6 +171,8 @@ class TreeRunner:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
+        if self._after is not None:
+            self._after()
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """The node that raised, and what it is, with the line of the skill's file."""

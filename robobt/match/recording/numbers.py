@@ -14,11 +14,11 @@ from robobt.world.geometry import FloatArray
 BALL = 4
 """Columns of the ball: x, y, vx, vy."""
 
-ROBOT = 11
-"""Columns of a robot: x, y, heading, vx, vy, omega, flags; command's vx, vy, omega, kick speed."""
+POSE = 7
+"""Columns of a robot: x, y, heading, vx, vy, omega, whether the ball lies in its mouth."""
 
-SENT = 7
-"""The first of a robot's columns that is about its command."""
+SENT = 5
+"""Columns of a robot's command: vx, vy, omega, kick speed, flags."""
 
 UNKNOWN = -(2**31)
 """The integer where there is no number."""
@@ -26,11 +26,12 @@ UNKNOWN = -(2**31)
 _TURN = 2**16
 _LENGTH, _ANGLE, _SPEED, _FAST = 1e-5, 2.0 * pi / _TURN, 1e-4, 1e-3
 _BALL_UNITS = (_LENGTH, _LENGTH, _FAST, _FAST)
-_ROBOT_UNITS = (_LENGTH, _LENGTH, _ANGLE, _SPEED, _SPEED, _FAST, 1.0, _FAST, _FAST, _FAST, _FAST)
+_POSE_UNITS = (_LENGTH, _LENGTH, _ANGLE, _SPEED, _SPEED, _FAST, 1.0)
+_SENT_UNITS = (_FAST, _FAST, _FAST, _FAST, 1.0)
 
 
 class Columns:
-    """The columns of a table of ticks: first the ball's, then those of each robot.
+    """The columns of a table of ticks: the ball's, each robot's, then each robot's command.
 
     Integers count 10 micrometres, 2^-16 of a turn, 0.1 mm/s of a robot's velocity and
     1e-3 m/s or rad/s of everything else: so fine that the differences from tick to tick
@@ -38,10 +39,11 @@ class Columns:
     """
 
     def __init__(self, robots: int) -> None:
-        self.count = BALL + ROBOT * robots
-        self.units = np.array([*_BALL_UNITS, *_ROBOT_UNITS * robots])
+        self.poses = BALL + POSE * robots
+        self.count = self.poses + SENT * robots
+        self.units = np.array([*_BALL_UNITS, *_POSE_UNITS * robots, *_SENT_UNITS * robots])
         self._scale = 1.0 / self.units
-        self._headings = slice(BALL + 2, None, ROBOT)
+        self._headings = slice(BALL + 2, self.poses, POSE)
 
     def pack(self, table: FloatArray) -> str:
         """The table (ticks, columns) in SI units as text; NaN and what is too large become unknown.

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from robobt import __version__
 from robobt.match.recording.header import FORMAT, VERSION, Event, RecordingError, RecordingHeader, RobotFlag
-from robobt.match.recording.numbers import BALL, ROBOT, UNKNOWN, Columns
+from robobt.match.recording.numbers import BALL, POSE, SENT, UNKNOWN, Columns
 from robobt.match.recording.recording import Poses, Recording
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.state import RobotId
@@ -192,7 +192,8 @@ class _Reader:
         if len(self.times) * self.columns.count > MOST_NUMBERS:
             raise RecordingError(self.path, "holds more ticks than any match has", self.number)
         table = self._table(entry["x"], len(times), "x")
-        flags = table[:, BALL + 6 :: ROBOT]
+        poses, sent = BALL + POSE - 1, self.columns.poses + SENT - 1
+        flags = np.hstack([table[:, poses : self.columns.poses : POSE], table[:, sent::SENT]])
         bad = flags[(flags != UNKNOWN) & ((flags < 0) | (flags > sum(RobotFlag)))]
         self._need(not bad.size, "x", f"{bad[:1].tolist()} are no flags")
         if "o" in entry:
@@ -320,10 +321,11 @@ def _arrays(
     numbers[unknown] = np.nan
     ball = numbers[:, :BALL]
     ball[unknown[:, :BALL].any(axis=1)] = np.nan
-    shape = (len(table), (table.shape[1] - BALL) // ROBOT, ROBOT)
-    rows = numbers[:, BALL:].reshape(shape)
-    nowhere = np.isnan(rows[:, :, :7]).any(axis=2)
-    rows[nowhere] = np.nan
-    flags = np.nan_to_num(rows[:, :, 6]).astype(np.uint8)
-    contact = (flags & RobotFlag.BALL_CONTACT).astype(bool)
-    return Poses(ball, rows[:, :, :6], contact), flags, rows[:, :, 7:]
+    robots = (table.shape[1] - BALL) // (POSE + SENT)
+    middle = BALL + POSE * robots
+    poses = numbers[:, BALL:middle].reshape(len(table), robots, POSE)
+    poses[np.isnan(poses).any(axis=2)] = np.nan
+    contact = poses[:, :, -1] == 1.0
+    sent = numbers[:, middle:].reshape(len(table), robots, SENT)
+    flags = np.nan_to_num(sent[:, :, -1]).astype(np.uint8) | contact.astype(np.uint8)
+    return Poses(ball, poses[:, :, :-1], contact), flags, sent[:, :, :-1]

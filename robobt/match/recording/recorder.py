@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import zlib
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import nan
 from pathlib import Path
 from struct import Struct
@@ -27,7 +28,7 @@ from robobt.match.recording.header import (
     RecordedRobot,
     RecordingHeader,
 )
-from robobt.match.recording.numbers import BALL, ROBOT, SENT, Columns
+from robobt.match.recording.numbers import BALL, POSE, SENT, Columns
 from robobt.match.recording.outputs import OutputWatch, Values, quote, team_entries, written_entries
 from robobt.skills.store import Store
 from robobt.tree import TreeRunner
@@ -71,35 +72,38 @@ class Recorder:
         runners = {} if runners is None else runners
         robots = tuple([_with_tree(robot, runners.get(robot.id)) for robot in header.robots])
         self.header = header.model_copy(update={"robots": robots})
-        self._trees = [
-            (slot, robot.id, TreeWatch(runners[robot.id]))
-            for slot, robot in enumerate(robots)
-            if robot.id in runners
-        ]
-        self._look_at = [watch.look for _, _, watch in self._trees]
         self._outputs = OutputWatch(_outputs_of(robots, runners, {} if stores is None else stores))
         # Where each team's robots stand in a tick's numbers, by their own number.
         self._places = [
-            {robot.number: BALL + ROBOT * slot for slot, robot in enumerate(robots) if robot.team is team}
+            {robot.number: BALL + POSE * slot for slot, robot in enumerate(robots) if robot.team is team}
             for team in (Team.BLUE, Team.YELLOW)
         ]
         self._slot_of = {robot.id: slot for slot, robot in enumerate(robots)}
-        self._nowhere = [nan] * (BALL + ROBOT * len(robots))
-        self._pack = Struct(f"={len(self._nowhere)}d").pack
+        self._nowhere = [nan] * (BALL + POSE * len(robots))
+        self._nothing = [0.0] * (SENT * len(robots))
+        self._pack_poses = Struct(f"={len(self._nowhere)}d").pack
+        self._pack_sent = Struct(f"={len(self._nothing)}d").pack
+        self._begun: tuple[Frame | None, bytes] = (None, b"")
         self._columns = Columns(len(robots))
         self._keys: list[RobotId] = []
         self._order: list[int] = []
-        self._sent: dict[int, int] = {}
         self._game: GameState | None = None
         self._touch: RobotId | None = None
         # What is still to be written: events, and of each tick time, numbers and what changed.
         self._events: list[str] = []
         self._times: list[float] = []
         self._packed: list[bytes] = []
+        self._commands: list[bytes] = []
         self._seen: dict[int, bytes] = {}
-        self._looks: list[tuple[int, int, Look]] = []
+        self._looks: dict[tuple[int, int], Look] = {}
         self._values: list[tuple[int, Values]] = []
         self._words: list[tuple[int, str, Any]] = []
+        self._trees = [
+            (slot, robot.id, TreeWatch(runners[robot.id], partial(self._notice, slot)))
+            for slot, robot in enumerate(robots)
+            if robot.id in runners
+        ]
+        self._tree_of = {slot: (robot, watch) for slot, robot, watch in self._trees}
         # Few enough writes, and a kill loses no more than that.
         self._most_ticks = max(1, round(_FLUSH_PERIOD / header.period))
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -135,20 +139,21 @@ class Recorder:
             commands: what the robots were sent.
             observed: what the trees were shown where that was something else.
         """
-        frame = frame if frame.team is Team.BLUE else frame.mirrored()
         tick = len(self._times)
-        self._times.append(frame.time)
-        self._packed.append(self._numbers(frame, commands))
+        begun, poses = self._begun
+        self._packed.append(poses if begun is frame else self._poses(frame))
+        self._commands.append(self._sent(commands or {}))
         if observed is not None:
-            self._seen[tick] = self._numbers(observed.seen_by(Team.BLUE), None)
-        for index, look_at in enumerate(self._look_at):
-            look = look_at()
-            if look is not None:
-                self._looks.append((tick, index, look))
+            self._seen[tick] = self._poses(observed)
+        for _, _, watch in self._trees:
+            if watch.ticked:
+                watch.ticked = False
+            else:
+                watch.rest()
         values = self._outputs.look()
         if values is not None:
             self._values.append((tick, values))
-        game = frame.game
+        game = frame.game if frame.team is Team.BLUE else frame.game.mirrored()
         if game is not self._game:
             if game != self._game:
                 self._words.append((tick, "g", _game_to_json(game)))
@@ -156,6 +161,7 @@ class Recorder:
         if frame.last_touch != self._touch:
             self._touch = frame.last_touch
             self._words.append((tick, "l", self._touch))
+        self._times.append(frame.time)
         if tick + 1 >= self._most_ticks:
             self._flush()
 
@@ -186,72 +192,89 @@ class Recorder:
         self._write([end])
         self._release()
 
-    def _numbers(self, frame: Frame, commands: Mapping[RobotId, RobotCommand] | None) -> bytes:
+    def _notice(self, slot: int, look: Look) -> None:
+        # Of several ticks between two records the last one counts.
+        self._looks[len(self._times), slot] = look
+
+    def see(self, frame: Frame) -> None:
+        """Take down the frame of the coming :meth:`tick`, if it pays to do so while it is still at hand."""
+        self._begun = (frame, self._poses(frame))
+
+    def _poses(self, frame: Frame) -> bytes:
+        blue = frame if frame.team is Team.BLUE else frame.mirrored()
         numbers = self._nowhere.copy()
-        ball = frame.ball
+        ball = blue.ball
         numbers[:BALL] = ball.x, ball.y, ball.vx, ball.vy
-        sent = self._sent
-        if commands:
-            keys = list(commands)
-            if keys != self._keys:
-                # A team's hash is a call of Python, too slow to look up every robot at every tick.
-                self._keys = keys
-                self._order = [BALL + ROBOT * self._slot_of[k] if k in self._slot_of else -1 for k in keys]
-                self._sent = sent = {}
-            for at, command in zip(self._order, commands.values(), strict=True):
-                if at < 0:
-                    continue
-                flags = 18 if command.dribbler else 16
-                if command.kick_speed:
-                    flags += 12 if command.kick_trigger is KickTrigger.NOW else 4
-                sent[at] = flags
-                numbers[at + SENT : at + ROBOT] = command.vx, command.vy, command.omega, command.kick_speed
-        for places, robots in zip(self._places, (frame.own, frame.opponents), strict=True):
+        for places, robots in zip(self._places, (blue.own, blue.opponents), strict=True):
             for robot in robots:
                 if robot.id in places:
                     at = places[robot.id]
-                    numbers[at : at + SENT] = (
+                    numbers[at : at + POSE] = (
                         robot.x,
                         robot.y,
                         robot.heading,
                         robot.vx,
                         robot.vy,
                         robot.omega,
-                        sent.get(at, 0) | robot.ball_contact if commands else robot.ball_contact,
+                        robot.ball_contact,
                     )
-        return self._pack(*numbers)
+        return self._pack_poses(*numbers)
+
+    def _sent(self, commands: Mapping[RobotId, RobotCommand]) -> bytes:
+        keys = list(commands)
+        if keys != self._keys:
+            # A team's hash is a call of Python, too slow to look up every robot at every tick.
+            self._keys = keys
+            self._order = [SENT * self._slot_of[key] if key in self._slot_of else -1 for key in keys]
+        numbers = self._nothing.copy()
+        for at, command in zip(self._order, commands.values(), strict=True):
+            if at < 0:
+                continue
+            flags = 18 if command.dribbler else 16
+            if command.kick_speed:
+                flags += 12 if command.kick_trigger is KickTrigger.NOW else 4
+            numbers[at : at + SENT] = command.vx, command.vy, command.omega, command.kick_speed, flags
+        return self._pack_sent(*numbers)
 
     def _flush(self) -> None:
         """Write the events and ticks that wait for it."""
         block, ticks = "", len(self._times)
         if ticks:
             times = ",".join([repr(round(time, 6)) for time in self._times])
-            truth = self._table(self._packed)
-            block = f'{{"n":{ticks},"t":[{times}],"x":"{self._columns.pack(truth)}"'
-            if self._seen:
-                seen = self._table([self._seen.get(i, row) for i, row in enumerate(self._packed)])
-                # Only what the cameras tell; commands stand beside the truth.
-                for column in range(SENT, ROBOT):
-                    truth[:, BALL + column :: ROBOT] = seen[:, BALL + column :: ROBOT] = nan
-                if not np.array_equal(truth, seen, equal_nan=True):
-                    block += f',"o":"{self._columns.pack(seen)}"'
+            text = self._columns.pack(self._table(self._packed))
+            block = f'{{"n":{ticks},"t":[{times}],"x":"{text}"'
+            shown = [self._seen.get(i, row) for i, row in enumerate(self._packed)]
+            if shown != self._packed:
+                block += f',"o":"{self._columns.pack(self._table(shown))}"'
             changes = self._changes()
             block += f',"c":{changes}}}' if changes else "}"
-            for waiting in (self._times, self._packed, self._seen, self._looks, self._values, self._words):
+            for waiting in (
+                self._times,
+                self._packed,
+                self._commands,
+                self._seen,
+                self._looks,
+                self._values,
+                self._words,
+            ):
                 waiting.clear()
         lines, self._events = self._events, []
         self._write([*lines, block] if block else lines)
 
-    def _table(self, packed: list[bytes]) -> FloatArray:
-        return np.frombuffer(bytearray(b"".join(packed))).reshape(len(packed), -1)
+    def _table(self, poses: list[bytes]) -> FloatArray:
+        rows = [part for row in zip(poses, self._commands, strict=True) for part in row]
+        return np.frombuffer(b"".join(rows)).reshape(len(poses), -1)
 
     def _changes(self) -> str:
         """What changed in this block, a JSON object by tick; "" if nothing did."""
         letters: dict[int, list[str]] = {}
         said: dict[int, list[str]] = {}
         others: dict[int, list[str]] = {}
-        for tick, index, look in self._looks:
-            slot, robot, watch = self._trees[index]
+        for (tick, slot), look in self._looks.items():
+            if tick == len(self._times):
+                # A tree that was ticked or stopped after the last frame.
+                continue
+            robot, watch = self._tree_of[slot]
             change = watch.tell(look)
             if change is None:
                 continue
