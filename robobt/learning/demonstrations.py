@@ -182,7 +182,8 @@ def record(
     running: list[list[tuple[Any, ...]]] = [[] for _ in range(task.n)]
     ended: dict[int, list[tuple[Any, ...]]] = {}
     while len(ended) < episodes:
-        action = teaching.act(observation)
+        # A direction of length 1 may have been rounded past it.
+        action = np.clip(teaching.act(observation), -1.0, 1.0)
         step = task.step(action)
         for arena in range(task.n):
             running[arena].append(

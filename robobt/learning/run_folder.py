@@ -145,9 +145,7 @@ class RunFolder:
             from torch.utils.tensorboard import SummaryWriter
 
             steps = self.stored[1]["steps"] + 1 if self.stored else 0
-            self._events = SummaryWriter(  # type: ignore[no-untyped-call]
-                str(self.path / EVENTS), purge_step=steps
-            )
+            self._events = SummaryWriter(str(self.path / EVENTS), purge_step=steps)
         return self
 
     def __exit__(

@@ -205,16 +205,7 @@ def load_settings(task: str, preset: str = "fast", changes: Mapping[str, Any] | 
     data = {"task": task, **data, "preset": preset}
     for name, value in (changes or {}).items():
         _assign(data, name.split("."), value, name)
-    return settings_of(data, source)
-
-
-def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
-    """Validate plain data.
-
-    Raises:
-        SettingsError: the message begins with ``source`` and names the field.
-    """
-    settings = _validated(TrainSettings, dict(data), source, "")
+    settings = settings_of(data, source)
     if settings.task not in ENVIRONMENTS:
         raise SettingsError(
             f"{source}: task: there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
@@ -222,6 +213,15 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
     environment = environment_of(settings, source)
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
+
+
+def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
+    """Validate plain data, but for the task's environment.
+
+    Raises:
+        SettingsError: the message begins with ``source`` and names the field.
+    """
+    return _validated(TrainSettings, dict(data), source, "")
 
 
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:

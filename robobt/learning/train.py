@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -90,6 +91,8 @@ def train(
     folder = RunFolder(Path(out), settings, resume)
     if folder.result is not None:
         return folder.result
+    if folder.warning is not None:
+        warnings.warn(f"{folder.warning}; going on from the checkpoint before it", stacklevel=2)
     with folder:
         return _Run(settings, problem, folder, clock, on_progress).to_end()
 

@@ -47,7 +47,7 @@ class Slide:
         success = np.abs(self._state[:, 0]) < REACH
         truncated = ~success & (self._ticks >= LIMIT)
         final = self._state.copy()
-        reward = np.where(success, 1.0, -0.1)
+        reward = np.where(success, 1.0, -0.3 * np.abs(final[:, 0]))
         self._begin(success | truncated)
         return StepResult(self._state.copy(), reward, success, truncated, final, success)
 
@@ -79,7 +79,14 @@ def slide_settings(**changes) -> TrainSettings:
     data = {
         "task": "slide",
         "steps": 1920,
-        "agent": {"hidden": (16,), "gamma": 0.9, "tau": 0.05, "n_step": 3, "critic_rate": 3e-3},
+        "agent": {
+            "hidden": (32,),
+            "gamma": 0.9,
+            "tau": 0.1,
+            "n_step": 3,
+            "critic_rate": 5e-3,
+            "actor_rate": 1e-3,
+        },
         "replay": {"batch": 32, "capacity": 1000},
         "collection": {
             "environments": 8,
