@@ -22,7 +22,7 @@ def add_to(app: typer.Typer) -> None:
 
 @one_line_errors
 def export(
-    run: Annotated[Path, typer.Argument(help="The folder of a finished run of 'robobt train'.")],
+    run: Annotated[Path, typer.Argument(help="What 'robobt train' wrote: its folder, or that of one seed.")],
     name: Annotated[
         str, typer.Option("--name", help="Name to load the model by; by default the task's with _ddpg.")
     ] = "",

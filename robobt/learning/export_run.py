@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from robobt.learning.evaluation import Evaluation
 from robobt.learning.export import export_model
 from robobt.learning.networks import policy_of
 from robobt.learning.problems import problem_of
-from robobt.learning.run_folder import TrainResult, load_run
+from robobt.learning.run_folder import RESULT, TrainResult, load_run
 from robobt.learning.settings import environment_of
 from robobt.skills.actions import ActionScaling
 from robobt.skills.model_card import Measured, ModelCard, ObservationCard, action_outputs
@@ -43,7 +44,8 @@ def export_run(
     intervals, are what the card says.
 
     Args:
-        run: the folder of the run.
+        run: the folder of the run, or of several seeds of one, of which the best is taken: by
+            the starts that chose its actor, not by those that tell.
         name: of the model; the task's with ``_ddpg`` when empty.
         folder: where to.
         formats: "torchscript", "onnx" or both.
@@ -56,7 +58,7 @@ def export_run(
         RunFolderError: the folder holds no run that has ended.
         ModelError: the actor cannot be written as it is.
     """
-    result = load_run(run)
+    result = load_run(_best_seed(Path(run)))
     settings = result.settings
     environment = environment_of(settings, str(run))
     problem = problem_of(settings.task, environment)
@@ -83,6 +85,15 @@ def export_run(
         created_by="robobt export",
     )
     return export_model(result.actor, card, Path(folder), formats)
+
+
+def _best_seed(folder: Path) -> Path:
+    """The folder of the best seed where ``folder`` holds several, else ``folder`` itself."""
+    try:
+        seed = json.loads((folder / RESULT).read_text(encoding="utf-8"))["best_seed"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return folder
+    return folder / f"seed_{seed}"
 
 
 def held_out(figures: Evaluation) -> dict[str, Measured]:

@@ -84,6 +84,13 @@ def test_it_is_a_skill_at_once(run: Path, tmp_path: Path) -> None:
     assert LearnedSkill(model=str(path)).model == str(path)
 
 
+def test_of_several_seeds_the_best_is_taken(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "seed_7").symlink_to(run)
+    (tmp_path / "result.json").write_text('{"best_seed": 7}')
+    (path,) = export_run(tmp_path, "best", tmp_path / "models", starts=5)
+    assert read_model_file(path).card.seed == 3
+
+
 def test_a_folder_that_holds_no_finished_run_is_one_error(tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="not the folder of a run that has ended"):
         export_run(tmp_path)
