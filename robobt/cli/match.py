@@ -149,6 +149,9 @@ def match(
         if workers not in (None, 1):
             raise typer.BadParameter("a field outside this process has one worker", param_hint="--workers")
         workers = 1
+        from robobt.league.signals import exit_on_signals
+
+        exit_on_signals()
     count = loaded.trials if trials is None else trials
     recorded = 0 if record is None else record
     if recorded >= count:

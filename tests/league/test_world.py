@@ -143,7 +143,7 @@ def test_a_robot_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> 
     with (
         served(field(), endpoints),
         world,
-        pytest.raises(LeagueError, match="not seen where put .*: blue 20;"),
+        pytest.raises(LeagueError, match=r"not seen where put .*: blue 20;"),
     ):
         world.reset(Placement({ghost: (0.0, 1.0, 0.0)}), 0)
 
