@@ -14,21 +14,18 @@ from robobt.learning.shots.networks import NORM_EPS, NORM_MOMENTUM, Activation, 
 class Rows(NamedTuple):
     """Which rows of a batch count, as weights that average over them.
 
-    ``across`` is (N, 1, B) and ``down`` (N, B, 1), the same numbers; ``unbiased``
-    (N, 1, 1) turns a variance of the rows into an estimate of the population's.
+    ``across`` is (N, 1, B) and ``down`` (N, B, 1), the same numbers.
     """
 
     across: Tensor
     down: Tensor
-    unbiased: Tensor
 
     @classmethod
     def first(cls, counts: Tensor, width: int) -> Self:
         """The first rows of ``width``: (N,) counts."""
         counts = counts.clamp_max(width)
         weights = (torch.arange(width) < counts[:, None]) / counts[:, None]
-        unbiased = (counts / (counts - 1).clamp_min(1))[:, None, None]
-        return cls(weights[:, None, :].contiguous(), weights[:, :, None].contiguous(), unbiased)
+        return cls(weights[:, None, :].contiguous(), weights[:, :, None].contiguous())
 
     def keep(self, members: Tensor) -> Self:
         """The rows of some of the networks."""
@@ -50,7 +47,7 @@ class _Norm:
         centred = x - mean
         variance = torch.bmm(rows.across, centred * centred)
         self.mean.lerp_(mean, NORM_MOMENTUM)
-        self.variance.lerp_(variance * rows.unbiased, NORM_MOMENTUM)
+        self.variance.lerp_(variance, NORM_MOMENTUM)
         self.inverse = (variance + NORM_EPS).rsqrt_()
         self.scaled = centred.mul_(self.inverse)
         return torch.addcmul(self.beta, self.scaled, self.gamma)
@@ -154,7 +151,7 @@ class NetworkStack:
         """A network by itself from its row of weights and moments."""
         # Tensors made in inference mode could never be trained on.
         with torch.inference_mode(False), torch.no_grad():
-            network = ShotNetwork(self.pattern.dense[0].in_features, self.pattern.layers)
+            network = ShotNetwork(self.pattern.inputs, self.pattern.layers)
             state = network.state_dict()
             for row, kinds in ((weights, _WEIGHTS), (moments, _MOMENTS)):
                 begin = 0
@@ -211,6 +208,6 @@ def _views(rows: Tensor, state: dict[str, Tensor], kinds: tuple[str, ...]) -> di
         value = _upright(state[name])
         end = begin + value.numel()
         shape = tuple(value.shape) if value.ndim == 2 else (1, value.numel())
-        views[name] = rows[:, begin:end].unflatten(1, shape)
+        views[name] = rows[:, begin:end].view(-1, *shape)
         begin = end
     return views
