@@ -125,9 +125,9 @@ class RunFolder:
         self.warning: str | None = None
         if path.exists() and not path.is_dir():
             raise RunFolderError(f"{path}: is not a folder")
-        if (path / SETTINGS).exists():
+        if (path / SETTINGS).exists() and (resume or self._has_begun()):
             self._take_up(resume)
-        elif path.is_dir() and any(path.iterdir()):
+        elif path.is_dir() and {entry.name for entry in path.iterdir()} - {SETTINGS, LOG, EVENTS}:
             raise RunFolderError(f"{path}: holds other files; give a new folder")
         else:
             path.mkdir(parents=True, exist_ok=True)
@@ -182,6 +182,11 @@ class RunFolder:
         write_atomically(self.path / RESULT, text.encode())
         for path in (self.path / CHECKPOINT, checkpoint.previous(self.path / CHECKPOINT)):
             path.unlink(missing_ok=True)
+
+    def _has_begun(self) -> bool:
+        """Whether there is anything to lose: a run that failed before its first evaluation has nothing."""
+        log = self.path / LOG
+        return (self.path / RESULT).exists() or (log.exists() and log.stat().st_size > 0)
 
     def _take_up(self, resume: bool) -> None:
         if not resume:

@@ -147,6 +147,14 @@ def test_a_folder_with_something_else_is_not_written_to(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
+def test_a_run_that_failed_before_its_first_evaluation_is_simply_started_again(tmp_path):
+    with pytest.raises(KilledError):
+        train(slide_settings(), tmp_path, problem=breaking_after(10))
+    result = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
+    assert result.settings.steps == 480
+    assert load_run(tmp_path).settings == result.settings
+
+
 def test_a_run_that_has_ended_is_read_not_repeated(tmp_path):
     first = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
     again = train(slide_settings(steps=480), tmp_path, resume=True, problem=breaking_after(0))
