@@ -219,6 +219,8 @@ class LeagueWorld:
                     command.vx, command.vy, command.omega, dribbler=command.dribbler
                 )
         self._wait()
+        for robot, contact in self._link.feedback():
+            self._filter.feedback(robot, contact)
         # All looks until the next act are at this instant.
         self._looked = max(self._now(), self._looked + 1e-6)
         self._looked_at = self._target()
@@ -358,8 +360,6 @@ class LeagueWorld:
         self._filter.sent(self._target() + self.settings.realism.command_delay, commands)
         self.sent += 1
         self._sent_at = now
-        for robot, contact in self._link.feedback():
-            self._filter.feedback(robot, contact)
 
     def _wait(self) -> None:
         """Until the next control period: the next frame if it comes at about that time."""
