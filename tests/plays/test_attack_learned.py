@@ -1,0 +1,37 @@
+import pytest
+
+from robobt.experiments.deployed import deployed_scenario
+from robobt.match import run_trials, summarise
+from robobt.match.scenario import Scenario
+from robobt.worlds import sim_world
+from tests.simulation import Trial, ball_in_their_goal, blue, eventually
+
+
+def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
+    summary = summarise(run_trials(scenario, sim_world, trials, seed=seed).results)
+    assert summary.robots["blue 0"].errors == 0
+    return summary.goals["blue"].trials.count
+
+
+@pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
+@pytest.mark.parametrize("speed", ["half", "full"])
+def test_it_scores_nearly_always_where_attack_main_seldom_does(play: str, speed: str):
+    assert goals(deployed_scenario(speed, play), 8) >= 7
+    assert goals(deployed_scenario(speed, "attack_main"), 8) <= 5
+
+
+@pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
+def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
+    from robobt.plays import PLAYS
+
+    trial = Trial({blue(0): PLAYS[play](max_distance=3.5)}, {blue(0): (0.0, 0.0, 0.0)}, ball=(1.0, 0.8))
+    trial.run(12.0, eventually("the ball is in the goal", ball_in_their_goal))
+
+
+def test_without_patience_it_takes_what_there_is():
+    scenario = deployed_scenario("half", "attack_expected")
+    blue_robot = scenario.robots.blue[0]
+    params = {**blue_robot.params, "threshold": 1.0, "patience": 0.5, "last_resort": 0.2}
+    robots = scenario.robots.model_copy(update={"blue": (blue_robot.model_copy(update={"params": params}),)})
+    results = run_trials(scenario.model_copy(update={"robots": robots}), sim_world, 3, seed=4).results
+    assert all(result.robots["blue 0"].kicks for result in results)
