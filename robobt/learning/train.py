@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import torch
 
 from robobt import __version__
 from robobt.learning.checkpoint import Arrays
+from robobt.learning.clock import RunClock
 from robobt.learning.ddpg import DDPG
 from robobt.learning.demonstrations import demonstrations_for
 from robobt.learning.networks import Actor, policy_of
@@ -84,7 +84,7 @@ def train(
         TrainError: the weights became NaN.
         OSError: a file cannot be written.
     """
-    clock = _Clock()
+    clock = RunClock()
     torch.set_num_threads(1)
     if problem is None:
         problem = problem_of(settings.task, environment_of(settings))
@@ -103,7 +103,7 @@ class _Run:
         settings: TrainSettings,
         problem: Problem,
         folder: RunFolder,
-        clock: _Clock,
+        clock: RunClock,
         on_progress: Callable[[Progress], None] | None,
     ) -> None:
         self._settings = settings
@@ -164,6 +164,10 @@ class _Run:
         else:
             noise = self._noise * self._rng.standard_normal((n, self._task.action_size))
             action = np.clip(self._act(self._observation) + noise, -1.0, 1.0)
+            if not np.isfinite(action).all():
+                raise TrainError(
+                    f"{self._folder.path}: the actor's action is not finite after {self._steps} steps"
+                )
         step = self._task.step(action)
         done = self._returns.add(
             self._observation, action, step.reward, step.final_observation, step.terminated, step.truncated
@@ -351,46 +355,6 @@ class _Run:
                 self._best,
             )
         )
-
-
-class _Clock:
-    """What a run has cost, with what its broken parts cost, and evaluations by themselves."""
-
-    def __init__(self) -> None:
-        self._cpu, self._wall = time.process_time(), time.monotonic()
-        self._earlier = {"cpu_s": 0.0, "wall_s": 0.0}
-        self.apart_s = 0.0
-        self._apart_here = 0.0
-
-    @property
-    def cpu_s(self) -> float:
-        """CPU time but for evaluations [s]."""
-        return self._earlier["cpu_s"] + time.process_time() - self._cpu - self._apart_here
-
-    @property
-    def here_s(self) -> float:
-        """Time since this process took the run up [s]."""
-        return time.monotonic() - self._wall
-
-    @property
-    def wall_s(self) -> float:
-        """Time in all [s]."""
-        return self._earlier["wall_s"] + self.here_s
-
-    @contextmanager
-    def apart(self) -> Iterator[None]:
-        """Count CPU time as an evaluation's."""
-        begun = time.process_time()
-        yield
-        self._apart_here += time.process_time() - begun
-        self.apart_s += time.process_time() - begun
-
-    def state(self) -> dict[str, float]:
-        return {"cpu_s": self.cpu_s, "wall_s": self.wall_s, "apart_s": self.apart_s}
-
-    def restore(self, state: Mapping[str, float]) -> None:
-        self._earlier = {"cpu_s": state["cpu_s"], "wall_s": state["wall_s"]}
-        self.apart_s = state["apart_s"]
 
 
 def _meets(judged: Judged, wanted: EvaluationSettings) -> bool:

@@ -206,7 +206,7 @@ def test_weights_that_are_not_finite_end_the_run_with_an_error(tmp_path):
             step.reward[:] = np.nan
             return step
 
-    with pytest.raises(TrainError, match="not finite after 480 steps"):
+    with pytest.raises(TrainError, match="not finite after"):
         train(slide_settings(), tmp_path, problem=replace(SLIDE, make=Endless))
 
 
