@@ -192,6 +192,11 @@ class Scenario(Part):
         description="a preset's name, or preset, realism and settings to change; for the world factory",
     )
     period: float = Field(0.025, ge=0.005, le=0.1, description="control period [s]")
+    predict: bool = Field(
+        True,
+        description="whether a team that sees late is shown where everything is by now, as follows from "
+        "the commands on their way",
+    )
     seed: int = Field(0, ge=0, le=MAX_SEED, description="what every trial's randomness follows from")
     trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played unless told otherwise")
     robots: Robots

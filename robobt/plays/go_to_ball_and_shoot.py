@@ -21,6 +21,7 @@ def go_to_ball_and_shoot(
     policy: str = "geometric",
     shoot: Literal["kick_to_target", "geometric", "ddpg"] = "kick_to_target",
     shoot_model: str = "ddpg",
+    pickup_speed: float | None = 0.5,
     rater: str = "segment_clearance",
 ) -> Behaviour:
     """Go to the ball, pick it up, shoot at the opponent's goal: Table 4 of the paper.
@@ -40,6 +41,8 @@ def go_to_ball_and_shoot(
         shoot: what shoots in the default style: KickToTarget at the rater's choice, or
             Shoot with its hand-written or its learned policy.
         shoot_model: the learned policy of Shoot: "ddpg", or the name or file of a model.
+        pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for
+            as fast as the robot's dribbler takes it, for approaches that arrive at speed.
         rater: name of the shot rater that chooses the point to shoot at.
     """
     if style == "robobulls":
@@ -62,7 +65,10 @@ def go_to_ball_and_shoot(
             Sequence(
                 "get the ball",
                 memory=False,
-                children=[GoToBall(policy=policy, approach="behind_target"), PickUpBall()],
+                children=[
+                    GoToBall(policy=policy, approach="behind_target"),
+                    PickUpBall(speed=pickup_speed),
+                ],
             ),
         ],
     )

@@ -39,7 +39,7 @@ def dribbling_limits(
 
 def settle(me: RobotState, period: float) -> RobotCommand:
     """Come to rest with the ball."""
-    limits = dribbling_limits()
+    limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.hold_acceleration))
     still = command(me, 0.0, 0.0, turn_rate(me, me.heading, limits, period), limits, period)
     still.dribbler = True
     return still

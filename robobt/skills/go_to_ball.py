@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from math import atan2, cos, hypot, pi, radians, sin
+from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import ClassVar, Literal
 
 from robobt.skills.ball_model import DEFAULT_BALL
@@ -35,6 +35,8 @@ _ARRIVAL_SPEED = 0.5
 _REACHABLE = 0.03
 _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
+_SURE = 0.8
+"""Share of its braking that is reckoned with."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 
 
@@ -183,6 +185,9 @@ def geometric(store: Store, wanted: Approach) -> RobotCommand:
 class LearnedApproach:
     """An approach that a trained policy decides, within the limits that it is asked to keep.
 
+    It does not come closer to the ball faster than it can still brake to the speed at
+    which the robot's dribbler takes it: policies are trained to arrive, not to stop.
+
     Args:
         model: name or file of a model for GoToBall.
 
@@ -206,11 +211,21 @@ class LearnedApproach:
         """
         command, limits = self._control.decide(store.frame, store.me), wanted.limits
         speed = hypot(command.vx, command.vy)
-        if speed > limits.max_speed:
-            command.vx *= limits.max_speed / speed
-            command.vy *= limits.max_speed / speed
+        fastest = min(limits.max_speed, _closing_speed(store))
+        if speed > fastest:
+            command.vx *= fastest / speed
+            command.vy *= fastest / speed
         command.omega = min(limits.max_turn, max(-limits.max_turn, command.omega))
         return command
+
+
+def _closing_speed(store: Store) -> float:
+    """Speed from which the robot can brake to what its dribbler takes before it meets the ball [m/s]."""
+    frame, me = store.frame, store.me
+    limits, ball = me.limits, frame.ball
+    way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
+    braking = _SURE * min(limits.braking, limits.lateral_braking)
+    return ball.speed + sqrt(limits.catch_speed**2 + 2.0 * braking * max(0.0, way))
 
 
 def _reached(contact: object) -> tuple[float, float]:

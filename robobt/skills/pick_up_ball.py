@@ -67,11 +67,12 @@ class PickUpBall(Skill):
     RoboBulls' published code, which creeps at 0.2 m/s.
 
     Args:
-        speed: how much faster than the ball to drive [m/s].
+        speed: how much faster than the ball to drive [m/s], but never faster than the robot's
+            dribbler takes it; None for that.
         settle: how long the ball has to stay in the mouth [s].
     """
 
-    def __init__(self, *, speed: float = 0.5, settle: float = 0.05, name: str = "") -> None:
+    def __init__(self, *, speed: float | None = 0.5, settle: float = 0.05, name: str = "") -> None:
         super().__init__(name)
         self.speed = speed
         self.settle = settle
@@ -82,7 +83,9 @@ class PickUpBall(Skill):
         me, ball = self.me, self.ball
         if hypot(ball.x - me.x, ball.y - me.y) > LOST_DISTANCE:
             return self.fail("the ball is too far away")
-        self.store.command = grab(me, ball, self.speed, self.frame.period)
+        takes = me.limits.catch_speed
+        speed = takes if self.speed is None else min(self.speed, takes)
+        self.store.command = grab(me, ball, speed, self.frame.period)
         if self._grip.held_for(self.frame, me) >= self.settle - 1e-9:
             return self.succeed("it has the ball")
         return self.run("creeping onto the ball")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from math import atan2, cos, hypot, inf, sin
+from math import atan2, cos, hypot, inf, sin, sqrt
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
@@ -15,7 +15,7 @@ from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.geometry import Point, direction, wrap_angle
-from robobt.world.state import BALL_RADIUS, BallState, RobotState
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, RobotState
 
 KICK_SPEED = 6.4
 """Kick speed of the hand-written policy [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
@@ -26,6 +26,7 @@ _INSIDE = 0.6
 """Share of the open angle to each side of the aim in which it kicks."""
 _LEFT = 1.0
 """A ball that is this much faster than the robot after a kick has left [m/s]."""
+_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 _LOST_AFTER = 0.15
 """A ball out of the mouth for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
 
@@ -110,7 +111,7 @@ def geometric(store: Store) -> RobotCommand:
 
 
 class LearnedShot:
-    """A shot that a trained policy decides.
+    """A shot that a trained policy decides, turning and braking no harder than the dribbler bears.
 
     Args:
         model: name or file of a model for Shoot.
@@ -128,7 +129,17 @@ class LearnedShot:
         Raises:
             PolicyError: the policy answers what is no action.
         """
-        return self._control.decide(store.frame, store.me)
+        decided, me = self._control.decide(store.frame, store.me), store.me
+        held = me.limits.hold_acceleration
+        # A ball at distance L that is turned with at w needs w^2 L.
+        fastest = sqrt(held / _TOUCHING)
+        decided.omega = min(fastest, max(-fastest, decided.omega))
+        speed = me.speed
+        if speed > held * store.frame.period:
+            left = 1.0 - held * store.frame.period / speed
+            c, s = left * cos(me.heading), left * sin(me.heading)
+            decided.vx, decided.vy = c * me.vx + s * me.vy, c * me.vy - s * me.vx
+        return decided
 
 
 @POLICIES.register("ddpg")

@@ -10,7 +10,8 @@ class RobotLimits(BaseModel):
 
     ``side_acceleration`` and ``side_braking`` default to the forward values,
     ``turn_braking`` to ``turn_acceleration``. The defaults are the typical league
-    robot of the simulators' presets: 3 m/s, 3 m/s^2, braking at 6 m/s^2.
+    robot of the simulators' presets: 3 m/s, 3 m/s^2, braking at 6 m/s^2, and a
+    dribbler that pulls at the ball with 4 m/s^2.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -23,6 +24,12 @@ class RobotLimits(BaseModel):
     max_turn: float = Field(10.0, gt=0, le=100, description="top turning rate [rad/s]")
     turn_acceleration: float = Field(50.0, gt=0, le=5000, description="change of the turning rate [rad/s^2]")
     turn_braking: float | None = Field(None, gt=0, le=5000, description="slowing a turn down [rad/s^2]")
+    catch_speed: float = Field(
+        0.5, gt=0, le=10, description="speed relative to a ball at which the dribbler still takes it [m/s]"
+    )
+    hold_acceleration: float = Field(
+        3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"
+    )
 
     @property
     def lateral_acceleration(self) -> float:

@@ -263,3 +263,29 @@ def test_the_time_to_the_kick_is_when_it_fired() -> None:
             break
     assert made.ended is not None
     assert made.ended.kick_time[0] == pytest.approx(0.15)
+
+
+def test_robots_may_start_while_they_drive_with_the_ball() -> None:
+    changes = {"simulator": "rsim", "starts": {"robot_speed": (1.0, 3.0)}}
+    made = ShootTask(ShootSettings.model_validate(changes), n=64, seed=1)
+    starts = made.sample_starts(5, 200)
+    speed = np.hypot(starts[:, 3], starts[:, 4])
+    assert 1.0 <= speed.min() < 1.2
+    assert 2.0 < speed.max() <= 3.0
+    assert starts[:, 8:10] == pytest.approx(starts[:, 3:5])
+    made.reset_to(starts[:64], seed=0)
+    for _ in range(60):
+        made.advance(np.tile(HOLD, (64, 1)))
+    robots, balls = made.arenas.robots[:, 0], made.arenas.balls
+    assert made.arenas.contact.all()
+    assert np.hypot(robots[:, 3], robots[:, 4]).max() == pytest.approx(0.0, abs=1e-9)
+    # They come to rest where the field still is, with the ball.
+    assert robots[:, 0].min() > 0.0
+    assert np.abs(robots[:, 1]).max() < 3.0
+    assert np.hypot(balls[:, 0] - robots[:, 0], balls[:, 1] - robots[:, 1]).max() < 0.12
+
+
+def test_a_speed_at_which_no_robot_stops_in_time_is_an_error() -> None:
+    starts = {"robot_speed": (9.0, 10.0), "robot_x": (1.0, 1.1), "robot_y": (0.0, 0.1)}
+    with pytest.raises(ValueError, match="do not stop inside"):
+        ShootTask(ShootSettings.model_validate({"starts": starts})).reset()

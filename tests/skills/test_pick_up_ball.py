@@ -70,3 +70,13 @@ def test_it_takes_a_resting_ball(preset: str, degrees: int) -> None:
     )
     end = trial.run(1.5, eventually("it has the ball", lambda _: pick.status is Status.SUCCESS))
     assert has_ball(end.own[0], end.ball)
+
+
+@pytest.mark.parametrize(("speed", "commanded"), [(0.5, 0.3), (0.2, 0.2), (None, 0.3)])
+def test_it_closes_in_no_faster_than_the_dribbler_takes_the_ball(
+    speed: float | None, commanded: float
+) -> None:
+    alone, me = Alone(PickUpBall(speed=speed)), robot()
+    me.limits = me.limits.model_copy(update={"catch_speed": 0.3})
+    alone.tick(frame(me, ball=(0.18, 0.0)))
+    assert alone.command.vx == pytest.approx(commanded)

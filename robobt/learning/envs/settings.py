@@ -241,6 +241,9 @@ class ShootStarts(_Settings):
     robot_y: Span | None = Field(None, description="None: inside the touch lines less 0.1 m [m]")
     heading: Span = Field((-pi, pi), description="[rad]")
     robot_turn: Span = Field((0.0, 0.0), description="turning rate [rad/s]")
+    robot_speed: Span = Field(
+        (0.0, 0.0), description="with the ball, in any direction in which it stops inside the ranges [m/s]"
+    )
     ball_aside: Span = Field((0.0, 0.0), description="ball off the middle of the mouth, left positive [m]")
     warm_up: int = Field(
         3, ge=0, le=100, description="ticks at rest before the start, in which the dribbler takes the ball"

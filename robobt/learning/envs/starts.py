@@ -89,7 +89,33 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
     # The ball goes round with the robot.
     rows[:, 8] = -rows[:, 5] * (rows[:, 7] - rows[:, 1])
     rows[:, 9] = rows[:, 5] * (rows[:, 6] - rows[:, 0])
+    if starts.robot_speed != (0.0, 0.0):
+        rows[:, 3:5] = _drifts(settings, rng, rows, x, y)
+        rows[:, 8:10] += rows[:, 3:5]
     return rows
+
+
+def _drifts(
+    settings: ShootSettings, rng: np.random.Generator, rows: FloatArray, x: Span, y: Span
+) -> FloatArray:
+    """Velocities from which the robots come to rest inside the ranges.
+
+    Raises:
+        ValueError: none was found for some of them.
+    """
+    limits = settings.robot_limits
+    braking = min(limits.braking, limits.lateral_braking)
+    drifts = np.zeros((len(rows), 2))
+    open_ = np.arange(len(rows))
+    for _ in range(_GIVE_UP):
+        drifts[open_] = _velocities(rng, settings.starts.robot_speed, len(open_))
+        moved = drifts[open_]
+        rest = rows[open_, :2] + moved * np.hypot(moved[:, :1], moved[:, 1:]) / (2.0 * braking)
+        inside = (rest >= (x[0], y[0])) & (rest <= (x[1], y[1]))
+        open_ = open_[~inside.all(axis=1)]
+        if len(open_) == 0:
+            return drifts
+    raise ValueError("starts: robots of that speed do not stop inside the ranges")
 
 
 @lru_cache(maxsize=16)

@@ -1,0 +1,164 @@
+"""What is seen late, brought up to now with the commands that are on their way."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import replace
+from math import ceil, cos, hypot, sin, sqrt
+
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import wrap_angle
+from robobt.world.protocol import Placement, World
+from robobt.world.state import BALL_RADIUS, BallState, Frame, RobotId, RobotState
+
+_STEP = 0.005
+"""Longest step of the motion model [s]."""
+
+_LONGEST_GAP = 0.1
+"""A robot that is seen in the same place for longer stands there, whatever it was told [s]."""
+
+_CARRIED = 0.03
+"""A ball that was seen no farther from its place in the mouth than this lies there [m]."""
+
+_FRONT = 0.08
+"""Centre to the flat front, where nothing better is known [m]."""
+
+
+class PredictedWorld:
+    """A world whose frames show where everything is now, as far as that follows from the commands sent.
+
+    Every robot is driven on from where it was seen, under the commands that were in
+    force since and within its limits. A ball in the mouth, which the robot's own sensor
+    tells without delay, goes with its robot; any other rolls on as it was seen to.
+
+    Args:
+        world: the world that is seen late.
+        vision_delay: age of what it observes [s].
+        command_delay: from a command to its effect [s].
+        gaps: whether a detection that is missing repeats the one before; then one that is
+            the same to the last digit counts as missing and is predicted for longer.
+    """
+
+    def __init__(
+        self, world: World, vision_delay: float, command_delay: float = 0.0, gaps: bool = False
+    ) -> None:
+        self.world = world
+        self.vision_delay = vision_delay
+        self.command_delay = command_delay
+        self._gaps = gaps
+        # What was sent at which frame's time, newest last.
+        self._sent: deque[tuple[float, Mapping[RobotId, RobotCommand]]] = deque(maxlen=64)
+        self._missed: dict[RobotId, tuple[RobotState, float]] = {}
+        self._now = 0.0
+
+    shows_truth = False
+    """Whether :meth:`observe` returns what :meth:`truth` does."""
+
+    def reset(self, placement: Placement, seed: int) -> None:
+        """See :meth:`robobt.world.World.reset`."""
+        self.world.reset(placement, seed)
+        self._sent.clear()
+        self._missed.clear()
+        self._now = 0.0
+
+    def observe(self) -> Frame:
+        """What the world reports, brought up to the moment at which the next command takes effect."""
+        seen = self.world.observe()
+        self._now = seen.time
+        own = tuple([self._moved(RobotId(seen.team, robot.id), robot) for robot in seen.own])
+        theirs = tuple([self._moved(RobotId(seen.team.other, robot.id), robot) for robot in seen.opponents])
+        ball = self._ball(seen, own + theirs)
+        return replace(seen, ball=ball, own=own, opponents=theirs)
+
+    def truth(self) -> Frame:
+        """See :meth:`robobt.world.World.truth`."""
+        return self.world.truth()
+
+    def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """See :meth:`robobt.world.World.act`."""
+        self._sent.append((self._now, dict(commands)))
+        self.world.act(commands)
+
+    def place_ball(self, x: float, y: float) -> None:
+        """See :meth:`robobt.world.World.place_ball`."""
+        self.world.place_ball(x, y)
+
+    def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
+        until = self._now + self.command_delay
+        since = self._now - self.vision_delay
+        if self._gaps:
+            last = self._missed.get(robot)
+            if last is not None and _same(last[0], seen):
+                since = max(last[1], since - _LONGEST_GAP)
+            self._missed[robot] = (seen, since)
+        if since < 0.0:
+            since = min(0.0, until)
+        state = replace(seen)
+        for i, (time, commands) in enumerate(self._sent):
+            begin = max(since, time + self.command_delay)
+            end = until if i + 1 == len(self._sent) else self._sent[i + 1][0] + self.command_delay
+            if end > begin:
+                _drive(state, commands.get(robot, _STILL), min(end, until) - begin)
+        return state
+
+    def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
+        ball = seen.ball
+        for before, after in zip(seen.own + seen.opponents, now, strict=True):
+            if after.ball_contact:
+                c, s = cos(before.heading), sin(before.heading)
+                dx, dy = ball.x - before.x, ball.y - before.y
+                ahead, aside = c * dx + s * dy, c * dy - s * dx
+                place = _FRONT + BALL_RADIUS
+                if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
+                    ahead, aside = place, 0.0
+                c, s = cos(after.heading), sin(after.heading)
+                dx, dy = c * ahead - s * aside, s * ahead + c * aside
+                return BallState(
+                    after.x + dx, after.y + dy, after.vx - after.omega * dy, after.vy + after.omega * dx
+                )
+        age = self.vision_delay + self.command_delay
+        rolled = BallState(ball.x + ball.vx * age, ball.y + ball.vy * age, ball.vx, ball.vy)
+        for robot in now:
+            dx, dy = rolled.x - robot.x, rolled.y - robot.y
+            gap, least = hypot(dx, dy), _FRONT + BALL_RADIUS
+            # No ball lies inside a robot.
+            if 0.0 < gap < least:
+                rolled.x, rolled.y = robot.x + dx / gap * least, robot.y + dy / gap * least
+        return rolled
+
+
+_STILL = RobotCommand()
+
+
+def _same(one: RobotState, other: RobotState) -> bool:
+    return (one.x, one.y, one.heading) == (other.x, other.y, other.heading)
+
+
+def _drive(state: RobotState, command: RobotCommand, time: float) -> None:
+    """Move a robot on under one command, as its limits let it; they form an ellipse in its frame."""
+    limits = state.limits
+    steps = max(1, ceil(time / _STEP - 1e-9))
+    dt = time / steps
+    fast = hypot(command.vx, command.vy)
+    share = min(1.0, limits.max_speed / fast) if fast > 0.0 else 1.0
+    turn = min(limits.max_turn, max(-limits.max_turn, command.omega))
+    for _ in range(steps):
+        c, s = cos(state.heading), sin(state.heading)
+        dx = share * (c * command.vx - s * command.vy) - state.vx
+        dy = share * (s * command.vx + c * command.vy) - state.vy
+        step = hypot(dx, dy)
+        if step > 0.0:
+            ahead, aside = (c * dx + s * dy) / step, (c * dy - s * dx) / step
+            if dx * state.vx + dy * state.vy < 0.0:
+                along, across = limits.braking, limits.lateral_braking
+            else:
+                along, across = limits.acceleration, limits.lateral_acceleration
+            part = min(1.0, dt / (sqrt((ahead / along) ** 2 + (aside / across) ** 2) * step))
+            state.vx += dx * part
+            state.vy += dy * part
+        most = limits.turn_acceleration * dt
+        state.omega += min(max(turn - state.omega, -most), most)
+        state.x += state.vx * dt
+        state.y += state.vy * dt
+        state.heading = wrap_angle(state.heading + state.omega * dt)

@@ -1,0 +1,116 @@
+"""Late frames brought up to now with the commands on their way."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from robobt.sim import SimWorld, preset
+from robobt.sim.settings import RealismSettings
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.game import Team
+from robobt.world.prediction import PredictedWorld
+from robobt.world.protocol import Placement
+from robobt.world.state import Frame, RobotId
+
+BLUE, YELLOW = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 3)
+PERIOD = 0.03
+
+
+def world(ball: tuple[float, float] = (2.0, 2.0), **realism: float) -> PredictedWorld:
+    late = RealismSettings(**realism)
+    settings = preset("grsim", realism=late)
+    sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, settings, PERIOD)
+    made = PredictedWorld(sim, late.vision_delay, late.command_delay, gaps=late.missing_robot > 0.0)
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.5), YELLOW: (1.0, 1.0, -2.0)}, (*ball, 0.0, 0.0)), 1)
+    return made
+
+
+def drive(made: PredictedWorld, ticks: int, command: RobotCommand) -> tuple[Frame, Frame]:
+    """What is shown at the end, and what is."""
+    for _ in range(ticks):
+        made.observe()
+        made.act({BLUE: command, YELLOW: command})
+    return made.observe(), made.truth()
+
+
+def off(shown: Frame, real: Frame) -> float:
+    """Largest distance between where robots are shown and where they are [m]."""
+    pairs = zip(shown.own + shown.opponents, real.own + real.opponents, strict=True)
+    return max(math.hypot(a.x - b.x, a.y - b.y) for a, b in pairs)
+
+
+@pytest.mark.parametrize("ticks", [1, 2, 3, 10, 30])
+@pytest.mark.parametrize("delay", [0.01, 0.035, 0.1])
+def test_robots_are_shown_where_they_are(ticks: int, delay: float) -> None:
+    made = world(vision_delay=delay)
+    shown, real = drive(made, ticks, RobotCommand(2.0, 0.5, 3.0))
+    assert off(shown, real) < 1e-3
+    assert shown.own[0].heading == pytest.approx(real.own[0].heading, abs=1e-3)
+    assert shown.own[0].vx == pytest.approx(real.own[0].vx, abs=1e-2)
+    assert shown.own[0].omega == pytest.approx(real.own[0].omega, abs=1e-2)
+
+
+def test_without_it_they_are_not() -> None:
+    made = world(vision_delay=0.1)
+    _, real = drive(made, 30, RobotCommand(2.0, 0.5, 3.0))
+    assert off(made.world.observe(), real) > 0.1
+
+
+def test_a_command_delay_is_reckoned_with() -> None:
+    """What is shown is what the next command will meet."""
+    made = world(vision_delay=0.03, command_delay=0.06)
+    shown, _ = drive(made, 10, RobotCommand(1.0, 0.0, 0.0))
+    for _ in range(2):
+        made.act({BLUE: RobotCommand(), YELLOW: RobotCommand()})
+    assert off(shown, made.truth()) < 2e-3
+
+
+def test_a_ball_in_the_mouth_goes_with_its_robot() -> None:
+    made = world(ball=(-0.5, 0.273), vision_delay=0.06)
+    for _ in range(40):
+        made.observe()
+        made.act({BLUE: RobotCommand(1.0, dribbler=True)})
+    for _ in range(5):
+        made.observe()
+        made.act({BLUE: RobotCommand(1.0, omega=4.0, dribbler=True)})
+    shown, real = made.observe(), made.truth()
+    assert real.own[0].ball_contact
+    assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.01
+    late = made.world.observe()
+    assert math.hypot(late.ball.x - real.ball.x, late.ball.y - real.ball.y) > 0.03
+
+
+def test_a_detection_that_is_missing_is_bridged() -> None:
+    made = world(vision_delay=0.03, missing_robot=0.5)
+    worst = 0.0
+    for _ in range(40):
+        made.act({BLUE: RobotCommand(2.0), YELLOW: RobotCommand(2.0)})
+        shown = made.observe()
+        worst = max(worst, off(shown, made.truth()))
+    assert worst < 0.25
+    bridged = world(vision_delay=0.03, missing_robot=0.5)
+    bridged._gaps = False
+    unbridged = 0.0
+    for _ in range(40):
+        bridged.act({BLUE: RobotCommand(2.0), YELLOW: RobotCommand(2.0)})
+        unbridged = max(unbridged, off(bridged.observe(), bridged.truth()))
+    assert worst < unbridged
+
+
+def test_a_ball_is_shown_outside_of_robots() -> None:
+    made = world(ball=(-0.85, 0.082), vision_delay=0.09)
+    for _ in range(6):
+        made.act({BLUE: RobotCommand(1.0)})
+        shown = made.observe()
+        robot = shown.own[0]
+        assert math.hypot(shown.ball.x - robot.x, shown.ball.y - robot.y) > 0.09
+
+
+def test_a_reset_forgets_what_was_sent() -> None:
+    made = world(vision_delay=0.05)
+    drive(made, 5, RobotCommand(3.0))
+    made.reset(Placement({BLUE: (0.0, 0.0, 0.0), YELLOW: (1.0, 1.0, 0.0)}, (2.0, 2.0, 0.0, 0.0)), 1)
+    assert off(made.observe(), made.truth()) == 0.0
