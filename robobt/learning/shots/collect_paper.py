@@ -8,6 +8,7 @@ tolerance it was, the middle one.
 from __future__ import annotations
 
 from functools import lru_cache
+from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,7 +83,8 @@ def paper_attempt(settings: CollectionSettings, part: int, trial: int) -> Attemp
     else:
         variant = tuple(SECTIONS)[trial // len(PARTS) % len(SECTIONS)]
         section = x, y = SECTIONS[variant]
-        start = blue.start.model_copy(update={"position": Box(x=x, y=y)})
+        # Pointing anywhere, so that the goalkeeper has taken its place when the shot comes.
+        start = blue.start.model_copy(update={"position": Box(x=x, y=y), "heading": (-pi, pi)})
         blue = blue.model_copy(update={"start": start})
     blue = blue.model_copy(update={"params": params})
     robots = base.robots.model_copy(update={"blue": (blue,)})
