@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,6 +14,7 @@ from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
 def add_to(app: typer.Typer) -> None:
     """Enter the group's commands."""
     app.command()(serve)
+    app.command("log")(log_packets)
 
 
 def _port(name: str, what: str) -> typer.models.OptionInfo:
@@ -72,6 +74,10 @@ def serve(
     yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302,
     blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011,
     yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012,
+    log: Annotated[
+        Path | None,
+        typer.Option("--log", help="Write all that goes out to this league log (*.log, *.log.gz)."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Be one of the league's simulators: other teams' software connects to it as it does to grSim.
@@ -116,7 +122,7 @@ def serve(
             f"commands at {grsim_port} (grSim), {blue_port} and {yellow_port} (control), "
             f"{control_port} (teleport). Ctrl-C ends it."
         )
-    server = serve_field(served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds)
+    server = serve_field(served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds, log)
     figures = {
         "frames": server.frames,
         "simulated_s": served.time,
@@ -130,3 +136,42 @@ def serve(
         if counts.dropped:
             dropped = {name: number for name, number in counts.to_json().items() if number}
             say(f"{port}: " + ", ".join(f"{number} {name}" for name, number in dropped.items()))
+
+
+@one_line_errors
+def log_packets(
+    out: Annotated[Path, typer.Argument(help="The log to write (*.log, *.log.gz).")],
+    seconds: Annotated[
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after so long; by default on Ctrl-C.")
+    ] = None,
+    interface: Annotated[
+        str | None,
+        typer.Option("--interface", help="Own address of the interface to listen on; by default none."),
+    ] = None,
+    vision: Annotated[str, typer.Option("--vision", help="10006 on a real field.")] = "224.5.23.2:10020",
+    tracker: Annotated[str, typer.Option("--tracker")] = "224.5.23.2:10010",
+    referee: Annotated[str, typer.Option("--referee")] = "224.5.23.1:10003",
+    as_json: Json = False,
+) -> None:
+    """Write the league's log of what vision, trackers and game controller send.
+
+    'robobt replay' shows it, and 'robobt match --world LOG' lets a scenario's robots watch it.
+
+    Keys of --json: vision, tracker, referee: packets written.
+    """
+    from robobt.league.endpoints import Endpoints, parse_endpoint
+    from robobt.league.log_recorder import log_field
+    from robobt.league.logs import is_log
+
+    if not is_log(out):
+        raise typer.BadParameter(f"takes a name that ends in .log or .log.gz, not '{out}'", param_hint="OUT")
+    endpoints = Endpoints(
+        vision=parse_endpoint(vision), tracker=parse_endpoint(tracker), referee=parse_endpoint(referee)
+    )
+    written = {
+        kind.name.lower(): count for kind, count in log_field(out, endpoints, interface, seconds).items()
+    }
+    if as_json:
+        print_json(written)
+        return
+    say(f"{out}: " + ", ".join(f"{count} {kind}" for kind, count in written.items()) + " packets.")

@@ -16,6 +16,7 @@ import numpy as np
 from robobt.league.cameras import Cameras
 from robobt.league.commands import read_control, read_grsim, read_teleports
 from robobt.league.endpoints import Endpoint, Endpoints
+from robobt.league.logs import LogKind, LogWriter
 from robobt.league.messages import (
     DecodeError,
     RealismConfigErForce,
@@ -57,6 +58,7 @@ class SimServer:
         speed: simulated time in shares of real time.
         seed: of the cameras' noise.
         epoch: the captures' times count from here [s].
+        log: where all that goes out is written down as well.
 
     Attributes:
         endpoints: as they came out, with the ports that were free.
@@ -78,13 +80,14 @@ class SimServer:
         speed: float = 1.0,
         seed: int = 0,
         epoch: float = 0.0,
+        log: LogWriter | None = None,
     ) -> None:
         if not _SPEEDS[0] <= speed <= _SPEEDS[1]:
             raise ValueError(f"the speed must be {_SPEEDS[0]} to {_SPEEDS[1]}, not {speed}")
         self.field = field
         self.speed = speed
         self.frames = 0
-        self._epoch = epoch
+        self._epoch, self._log = epoch, log
         self._rng = np.random.default_rng(seed)
         self._camera_count = cameras
         self._set_realism(field.settings.realism)
@@ -193,8 +196,11 @@ class SimServer:
     def send_due(self, time: float) -> None:
         """Send what is due at a simulated time [s]."""
         while self._outbox and self._outbox[0][0] <= time + 1e-9:
-            _, _, sender, data = heapq.heappop(self._outbox)
+            due, _, sender, data = heapq.heappop(self._outbox)
             sender.send(data)
+            if self._log is not None:
+                kind = LogKind.VISION if sender is self._vision else LogKind.TRACKER
+                self._log.write(round((self._epoch + due) * 1e9), kind, data)
 
     def close(self) -> None:
         """Free all ports."""

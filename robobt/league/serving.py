@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
 import numpy as np
 
 from robobt.league.endpoints import Endpoint, Endpoints
 from robobt.league.gamecontroller import RefereePublisher
+from robobt.league.logs import LogKind, LogWriter
 from robobt.league.served_field import ServedField, line_up
 from robobt.league.server import SimServer
 from robobt.league.sockets import LOOPBACK, Sender
@@ -70,6 +74,7 @@ class RefereeDesk:
         to: where the messages go.
         interface: own address of the interface they leave by.
         epoch: their times count from here [s].
+        log: where they are written down as well.
     """
 
     def __init__(
@@ -79,13 +84,14 @@ class RefereeDesk:
         to: Endpoint | None = None,
         interface: str = LOOPBACK,
         epoch: float = 0.0,
+        log: LogWriter | None = None,
     ) -> None:
         rules = settings or RefereeSettings()
         self.referee = Referee(field, rules)
         self._sender = Sender(*(to or Endpoints().referee), interface)
         keepers = {team: rules.keeper(team).number for team in Team}
         self._publisher = RefereePublisher(keepers=keepers)
-        self._epoch = epoch
+        self._epoch, self._log = epoch, log
         self._frames = 0
 
     def __call__(self, field: ServedField) -> None:
@@ -95,7 +101,11 @@ class RefereeDesk:
         if decision.place_ball is not None:
             field.place_ball(*decision.place_ball)
         if decision.game != before or self._frames % _REPEAT == 0:
-            self._sender.send(self._publisher.write(decision.game, self._epoch + field.time))
+            now = self._epoch + field.time
+            data = self._publisher.write(decision.game, now)
+            self._sender.send(data)
+            if self._log is not None:
+                self._log.write(round(now * 1e9), LogKind.REFEREE, data)
         self._frames += 1
 
     def close(self) -> None:
@@ -113,25 +123,26 @@ def serve(
     epoch: float = 0.0,
     referee: RefereeSettings | None = None,
     seconds: float | None = None,
+    log: str | Path | None = None,
 ) -> SimServer:
     """Serve a field until interrupted, or for so many seconds of this machine's clock.
 
     Args:
         referee: settings of the referee who judges and publishes; none: nobody does.
+        log: a league log to write.
 
     Returns:
         The server, closed, for its counts.
     """
-    desk = None
-    server = SimServer(field, endpoints, interface, cameras, speed, seed, epoch)
-    try:
+    with ExitStack() as stack:
+        writer = None if log is None else stack.enter_context(LogWriter(log))
+        server = stack.enter_context(
+            SimServer(field, endpoints, interface, cameras, speed, seed, epoch, writer)
+        )
+        desk = None
         if referee is not None:
-            desk = RefereeDesk(field.field, referee, endpoints.referee, interface, epoch)
-        server.run(seconds, desk)
-    except KeyboardInterrupt:
-        pass
-    finally:
-        server.close()
-        if desk is not None:
-            desk.close()
+            desk = RefereeDesk(field.field, referee, endpoints.referee, interface, epoch, writer)
+            stack.callback(desk.close)
+        with suppress(KeyboardInterrupt):
+            server.run(seconds, desk)
     return server
