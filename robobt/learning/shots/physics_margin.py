@@ -47,7 +47,7 @@ def reach(xp: Any, time: Any, speed: Any, top_speed: float, acceleration: float)
         speed: (...) its speed now, in the direction asked for [m/s].
         top_speed, acceleration: [m/s], [m/s^2]; one that is faster keeps its speed.
     """
-    speeding = xp.minimum(time, xp.clip((top_speed - speed) / acceleration, 0.0, np.inf))
+    speeding = xp.minimum(time, _positive(xp, (top_speed - speed) / acceleration))
     steady = speed + acceleration * speeding
     return speed * speeding + acceleration / 2.0 * speeding * speeding + steady * (time - speeding)
 
@@ -154,8 +154,13 @@ def _margin(xp: Any, inputs: Any, constants: dict[str, float]) -> Any:
     ball_speed, top_speed, acceleration = (
         float(np.exp(constants[f"log_{name}"])) for name in ("ball_speed", "top_speed", "acceleration")
     )
-    time = xp.clip(inputs[..., 1] / ball_speed + constants["delay"], 0.0, np.inf)
+    time = _positive(xp, inputs[..., 1] / ball_speed + constants["delay"])
     return inputs[..., 0] - reach(xp, time, inputs[..., 3], top_speed, acceleration)
+
+
+def _positive(xp: Any, value: Any) -> Any:
+    """The value, or 0 where it is negative; of what numpy, torch and exported models have in common."""
+    return xp.maximum(value, value * 0.0)
 
 
 _TYPICAL_LENGTH = 3.2

@@ -36,8 +36,8 @@ class Subsampled(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.random_state = random_state
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Subsampled:  # noqa: N803
-        """Draw and fit."""
-        inputs, given = validate_data(self, X, y, dtype=np.float64, ensure_all_finite=self._finite())
+        """Draw and fit; whether X may lack values is the classifier's to say."""
+        inputs, given = validate_data(self, X, y, dtype=np.float64, ensure_all_finite="allow-nan")
         labels = binary_labels(self, given)
         if len(labels) > self.most:
             rng = np.random.default_rng(self.random_state)
@@ -61,6 +61,3 @@ class Subsampled(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         tags.classifier_tags.multi_class = False
         tags.input_tags.allow_nan = get_tags(self.estimator).input_tags.allow_nan
         return tags
-
-    def _finite(self) -> bool | str:
-        return "allow-nan" if get_tags(self.estimator).input_tags.allow_nan else True
