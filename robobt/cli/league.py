@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
+
+if TYPE_CHECKING:
+    from robobt.league.server import SimServer
 
 
 def add_to(app: typer.Typer) -> None:
@@ -116,13 +119,10 @@ def serve(
         blue_status=blue_status_port,
         yellow_status=yellow_status_port,
     )
-    if not as_json:
-        say(
-            f"Serving {len(served.poses())} robots: vision to {vision}, tracked frames to {tracker}, "
-            f"commands at {grsim_port} (grSim), {blue_port} and {yellow_port} (control), "
-            f"{control_port} (teleport). Ctrl-C ends it."
-        )
-    server = serve_field(served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds, log)
+    ready = None if as_json else _say_ready
+    server = serve_field(
+        served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds, log, ready
+    )
     figures = {
         "frames": server.frames,
         "simulated_s": served.time,
@@ -136,6 +136,15 @@ def serve(
         if counts.dropped:
             dropped = {name: number for name, number in counts.to_json().items() if number}
             say(f"{port}: " + ", ".join(f"{number} {name}" for name, number in dropped.items()))
+
+
+def _say_ready(server: SimServer) -> None:
+    to = server.endpoints
+    say(
+        f"Serving {len(server.field.poses())} robots: vision to {to.vision}, tracked frames to {to.tracker}, "
+        f"commands at {to.grsim} (grSim), {to.blue} and {to.yellow} (control), {to.control} (teleport). "
+        "Ctrl-C ends it."
+    )
 
 
 @one_line_errors

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -124,12 +125,14 @@ def serve(
     referee: RefereeSettings | None = None,
     seconds: float | None = None,
     log: str | Path | None = None,
+    on_ready: Callable[[SimServer], None] | None = None,
 ) -> SimServer:
     """Serve a field until interrupted, or for so many seconds of this machine's clock.
 
     Args:
         referee: settings of the referee who judges and publishes; none: nobody does.
         log: a league log to write.
+        on_ready: called once it listens.
 
     Returns:
         The server, closed, for its counts.
@@ -143,6 +146,8 @@ def serve(
         if referee is not None:
             desk = RefereeDesk(field.field, referee, endpoints.referee, interface, epoch, writer)
             stack.callback(desk.close)
+        if on_ready is not None:
+            on_ready(server)
         with suppress(KeyboardInterrupt):
             server.run(seconds, desk)
     return server
