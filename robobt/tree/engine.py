@@ -122,7 +122,8 @@ class FastTree(BehaviourTree):
             self._compiled_for = wanted
         try:
             self._compiled()
-        except Exception:
+        except BaseException:
+            # Ctrl-C as well: whoever goes on after it finds a tree at rest.
             abandon(self.root)
             for visitor in self.visitors:
                 visitor.finalise()
@@ -158,7 +159,7 @@ def abandon(root: Behaviour) -> None:
         if node.status is _R:
             try:
                 node.stop(_I)
-            except Exception:
+            except (Exception, SystemExit):
                 _log.warning("%r raised again while its tree was being stopped", node.name, exc_info=True)
         node.status = _I
 
@@ -203,9 +204,11 @@ class Step:
 
     __slots__ = ("child", "stop", "tick", "update")
 
-    def __init__(self, child: Behaviour, visit: Visit | None) -> None:
+    def __init__(self, child: Behaviour, visit: Visit | None, parent: Behaviour) -> None:
         self.child = child
         self.tick, self.stop = compile_node(child, visit)
+        if type(parent).tick in _LEAVES_AT and _known_as(child) is _as_it_is:
+            self.tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
         self.update: Tick | None = None
         if _shown(child, visit) is None and _known_as(child) is _leaf:
             initialise, update, terminate = _lifecycle(child)
@@ -228,6 +231,32 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         node.stop(status)
 
     return tick, stop
+
+
+def _until(child: Behaviour, visit: Visit | None, ends: tuple[Status, ...], otherwise: Status) -> Tick:
+    """The tick of a child with a way of its own, left as py_trees' sequences and selectors leave it.
+
+    They look at the child each time it yields itself. What its generator does after
+    they have seen enough does not happen, and one that never shows a status they
+    wait for has let them pass.
+    """
+
+    def tick() -> Status:
+        for ticked in child.tick():
+            if visit is not None:
+                visit(ticked)
+            if ticked is child and child.status in ends:
+                return child.status
+        return otherwise
+
+    return tick
+
+
+_LEAVES_AT: dict[Any, tuple[tuple[Status, ...], Status]] = {
+    Sequence.tick: ((_F, _R, _I), _S),
+    Selector.tick: ((_S, _R), _F),
+}
+"""The statuses of a child upon which a composite goes no further, and what counts when none of them comes."""
 
 
 def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
@@ -287,9 +316,16 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
 
+    def renew() -> None:
+        nonlocal decorated, tick_child, stop_child
+        decorated = node.decorated
+        tick_child, stop_child = compile_node(decorated, visit)
+
     def tick() -> Status:
         if initialise is not None and node.status is not _R:
             initialise()
+        if node.decorated is not decorated:
+            renew()
         tick_child()
         status: Status = node.update()
         if status.__class__ is not Status:
@@ -304,6 +340,8 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
     def stop(status: Status) -> None:
         if terminate is not None:
             terminate(status)
+        if node.decorated is not decorated:
+            renew()
         if status is _I:
             stop_child(_I)
         if decorated.status is _R:
@@ -428,6 +466,7 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 initialise()
         start = 0
         if node.memory and children:
+            assert node.current_child is not None, f"the running child of {node.name!r} has been removed"
             start = children.index(node.current_child)
             for step in plan[:start]:
                 if step.child.status is not _I:
@@ -562,16 +601,19 @@ def replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan
     """Bring a composite's closures up to its children; in place, for the closures share them."""
     known = {step.child.id: step for step in plan}
     children[:] = node.children
-    plan[:] = [known.get(child.id) or Step(child, visit) for child in children]
+    plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]
 
 
 def ticked_children(node: Behaviour) -> Literal["all", "first", "some"]:
     """Which children a tick of this node reaches, as far as they have a status after it.
 
     "all": all of them. "first": those up to the first that succeeded or runs. "some":
-    their statuses do not tell, for a child may keep that of an earlier tick.
+    their statuses do not tell, for a child may keep that of an earlier tick, or one
+    with a way of its own may show another than it had when its parent looked.
     """
     make = _known_as(node)
+    if any(_known_as(child) is _as_it_is for child in node.children):
+        return "some"
     if make is _decorator or (make is _sequence and not node.memory):  # type: ignore[attr-defined]
         return "all"
     if make is _selector and not node.memory:  # type: ignore[attr-defined]

@@ -76,12 +76,16 @@ class TreeRunner:
         try:
             self._tick()
         except (Exception, SystemExit) as error:
-            # A skill that calls sys.exit() has failed like any other; only Ctrl-C ends the program.
+            # A skill that calls sys.exit() has failed like any other; only Ctrl-C ends the program,
+            # and whoever goes on after it finds a tree at rest.
             self._fail(error)
             if self.on_error == "raise":
                 raise TreeError(self.error) from error
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
             return Status.INVALID
+        except BaseException:
+            abandon(self.root)
+            raise
         finally:
             if self._after is not None:
                 self._after()

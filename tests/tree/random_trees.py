@@ -117,6 +117,7 @@ class OwnTick(composites.Sequence):
     def tick(self) -> Iterator[Behaviour]:
         self.log.append((self.name, "own tick"))
         yield from super().tick()
+        self.log.append((self.name, "after its own tick"))
 
     def stop(self, new_status: Status = Status.INVALID) -> None:
         self.log.append((self.name, "own stop", new_status))
@@ -129,6 +130,39 @@ class OwnStopLeaf(Told):
     def stop(self, new_status: Status) -> None:
         self.log.append((self.name, "own stop", new_status))
         super().stop(new_status)
+
+
+class OwnTickLeaf(Told):
+    """A leaf whose tick goes on after it has shown itself."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        yield from super().tick()
+        self.log.append((self.name, "after its tick", self.status))
+
+
+class SecondThoughts(Told):
+    """A leaf that changes its mind after its tick."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        yield from super().tick()
+        self.status = Status.SUCCESS
+
+
+class Unseen(Told):
+    """A leaf whose tick never shows it."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        self.status = self.update()
+        yield from ()
+
+
+class SeenTwice(Told):
+    """A leaf that shows itself before its tick as well."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        self.status = Status.RUNNING
+        yield self
+        yield from super().tick()
 
 
 class Scheduled(Switch):
@@ -195,7 +229,10 @@ def _leaf(rng: random.Random, name: str) -> Callable[[Log, str], Behaviour]:
     if kind < 4:
         return lambda log, word: Told(name, script, log)
     if kind == 4:
-        return lambda log, word: OwnStopLeaf(name, script, log)
+        own = rng.choice([OwnStopLeaf, OwnTickLeaf, SecondThoughts, Unseen, SeenTwice])
+        # What never passes through py_trees' own tick has to be sound by itself.
+        own_script = [status for status in script if isinstance(status, Status)]
+        return lambda log, word: own(name, own_script, log)
     if kind == 5:
         return lambda log, word: Plain(name, script)
     if kind == 6:

@@ -12,12 +12,13 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
+from py_trees.decorators import Inverter
 from py_trees.trees import BehaviourTree
 from py_trees.visitors import SnapshotVisitor
 
 from robobt.tree import bind, engine
 from robobt.tree.engine import FastTree, compile_tree
-from robobt.tree.nodes import CommittingSelector, Gate, ParallelCount, SequenceWithMemory, Switch
+from robobt.tree.nodes import CommittingSelector, Cooldown, Gate, ParallelCount, SequenceWithMemory, Switch
 from tests.tree.random_trees import Log, Told, random_tree
 
 S, F, R, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
@@ -128,6 +129,8 @@ FAULTS = {
     "a leaf's own initialise is forgotten": ("_lifecycle", '_inherits(node, "initialise")', "True"),
     "a leaf's own terminate is forgotten": ("_lifecycle", '_inherits(node, "terminate") and', ""),
     "a guard is not checked": ("_eternal_guard", "if result:", "if True:"),
+    "a generator is ticked to its end": ("_until", "child.status in ends", "False"),
+    "an unseen child counts by its status": ("_until", "return otherwise", "return child.status"),
 }
 
 
@@ -143,9 +146,9 @@ def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) 
         for tick, stop, make in engine._KNOWN
     ]
     monkeypatch.setattr(engine, "_KNOWN", known)
-    if function in ("_decorator", "_lifecycle"):
+    if function in ("_decorator", "_lifecycle", "_until"):
         monkeypatch.setattr(engine, function, scope[function])
-    assert any(first_difference(seed, 25) is not None for seed in range(300))
+    assert any(first_difference(seed, 25) is not None for seed in range(1000))
 
 
 NODE_FAULTS: dict[str, tuple[Any, str, str]] = {
@@ -221,6 +224,36 @@ def test_children_may_come_and_go_between_ticks() -> None:
     for root in roots:
         root.remove_child(root.children[0])
     both()
+
+
+@pytest.mark.parametrize("make", [Inverter, lambda name, child: Cooldown(name, child, seconds=0.0)])
+def test_a_decorators_child_may_be_replaced_between_ticks(make: Any) -> None:
+    logs: list[Log] = [[], []]
+    roots = [make("root", Told("a", [R], log)) for log in logs]
+    for root in roots:
+        bind(root, Clock())
+    tick = compile_tree(roots[1])
+    for script in ([R], [S], [F]):
+        roots[0].tick_once()
+        tick()
+        assert logs[0] == logs[1]
+        assert state(roots[0]) == state(roots[1])
+        for root, log in zip(roots, logs, strict=True):
+            replacement = Told("b", script, log)
+            replacement.parent = root
+            root.decorated = root.children[0] = replacement
+    for root in roots:
+        root.stop(INVALID)
+    assert logs[0] == logs[1]
+
+
+def test_a_selector_whose_running_child_is_gone_fails_as_in_py_trees() -> None:
+    for ticked_by in (lambda root: root.tick_once(), lambda root: compile_tree(root)()):
+        root = Selector("root", memory=True, children=[Told("a", [R], []), Told("b", [S], [])])
+        ticked_by(root)
+        root.remove_child(root.children[0])
+        with pytest.raises(AssertionError):
+            ticked_by(root)
 
 
 def test_visitors_handlers_and_count_work_as_in_py_trees() -> None:

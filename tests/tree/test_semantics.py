@@ -10,6 +10,7 @@ from typing import Any
 
 import py_trees
 import pytest
+from py_trees.behaviours import Running
 from py_trees.common import OneShotPolicy, ParallelPolicy
 from py_trees.decorators import (
     Condition,
@@ -909,6 +910,32 @@ def test_87_after_an_exception_nothing_runs(script: str, caplog: pytest.LogCaptu
     assert "'stubborn' raised again" in caplog.text
 
 
+@pytest.mark.parametrize("what", [SystemExit("bye"), KeyboardInterrupt()])
+def test_rows_85_to_87_hold_when_a_leaf_would_end_the_program(what: BaseException) -> None:
+    class Leaving(Scripted):
+        def on_interrupt(self) -> None:
+            raise SystemExit("bye")
+
+    class Broken(Scripted):
+        def on_running(self) -> Any:
+            raise what
+
+    root = Parallel(
+        "root", ParallelPolicy.SuccessOnAll(), children=[Leaving("leaving", "R"), Broken("b", "R")]
+    )
+    runner = TreeRunner(root, Notes())
+    if isinstance(what, KeyboardInterrupt):
+        with pytest.raises(KeyboardInterrupt):
+            runner.tick()
+        assert runner.statuses() == "---"
+    else:
+        assert runner.tick() is INVALID
+        assert runner.statuses() == "--F"
+    root.children[0].status = R
+    runner.stop()
+    assert runner.statuses() == "---"
+
+
 def test_88_a_fast_tree_finalises_its_visitors_when_a_node_raises() -> None:
     class Visits(VisitorBase):
         calls = ""
@@ -930,6 +957,17 @@ def test_88_a_fast_tree_finalises_its_visitors_when_a_node_raises() -> None:
     with pytest.raises(ZeroDivisionError):
         tree.tick()
     assert visits.calls == "irrf"
+    assert {node.status for node in preorder(root)} == {INVALID}
+
+
+def test_row_88_holds_for_ctrl_c() -> None:
+    class Interrupted(Behaviour):
+        def update(self) -> Any:
+            raise KeyboardInterrupt
+
+    root = Parallel("root", ParallelPolicy.SuccessOnAll(), children=[Running("runs"), Interrupted("i")])
+    with pytest.raises(KeyboardInterrupt):
+        FastTree(root).tick()
     assert {node.status for node in preorder(root)} == {INVALID}
 
 

@@ -65,7 +65,14 @@ class Gate(Decorator):
         answer, update, child = self.answer, self.update, self.decorated
         tick_child, stop_child = compile_node(child, visit)
 
+        def renew() -> None:
+            nonlocal child, tick_child, stop_child
+            child = self.decorated
+            tick_child, stop_child = compile_node(child, visit)
+
         def tick() -> Status:
+            if self.decorated is not child:
+                renew()
             if initialise is not None and self.status is not running:
                 initialise()
             status = answer()
@@ -84,6 +91,8 @@ class Gate(Decorator):
             return status
 
         def stop(status: Status) -> None:
+            if self.decorated is not child:
+                renew()
             if terminate is not None:
                 terminate(status)
             if child.status is running or (status is invalid and child.status is not invalid):
