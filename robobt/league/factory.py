@@ -15,7 +15,16 @@ from robobt.sim.settings import PRESETS, SimSettings, settings_from
 
 SCHEME = "league://"
 
-_OPTIONS = ("host", "interface", "teams", "blue_on_positive_half", "follow_referee", "speed", "physics")
+_OPTIONS = (
+    "host",
+    "interface",
+    "teams",
+    "blue_on_positive_half",
+    "follow_referee",
+    "latency",
+    "speed",
+    "physics",
+)
 _ADDRESSES = ("vision", "tracker", "referee")
 _PORTS = ("grsim", "blue_status", "yellow_status", "control", "blue", "yellow")
 
@@ -29,7 +38,7 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
 
     ``league://SIMULATOR?name=value&...`` with the simulator "grsim",
     "protocol" or "observer" and as names host, interface, teams (blue, yellow or
-    both), blue_on_positive_half, follow_referee, speed, physics; vision,
+    both), blue_on_positive_half, follow_referee, latency, speed, physics; vision,
     tracker and referee (ADDRESS:PORT); and the ports grsim, blue_status,
     yellow_status, control, blue and yellow.
 

@@ -81,6 +81,9 @@ class Connection(BaseModel):
         None, description="whether blue defends +x there; none: as the referee says, else no"
     )
     follow_referee: bool = Field(False, description="whether a game controller is listened to")
+    latency: float = Field(
+        0.0, ge=0, le=0.5, description="what the vision is late beyond what its packets say [s]"
+    )
     speed: float = Field(1.0, ge=0.05, le=20, description="simulated time in shares of real time")
 
 
@@ -284,7 +287,7 @@ class LeagueWorld:
         captured = self._filter.captured
         if captured is None or not self._offsets:
             return self._now()
-        there = self._now() - min(offset for _, offset in self._offsets)
+        there = self._now() - min(offset for _, offset in self._offsets) + self.connection.latency
         return min(max(there, captured), captured + _FURTHEST)
 
     def _hear_clock(self, arrived: float, frame: CameraFrame) -> None:
