@@ -156,3 +156,9 @@ def calibrated(
             (Platt), ``isotonic`` is any rising curve and wants a thousand shots.
     """
     return CalibratedClassifierCV(estimator, method=method, cv=folds, ensemble=False)
+
+
+@PREDICTORS.register("best_calibrated")
+def best_calibrated() -> CalibratedClassifierCV:
+    """The best predictor with its temperature learned by cross-validation: for thousands of shots."""
+    return calibrated(best_predictor())
