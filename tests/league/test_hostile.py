@@ -92,11 +92,11 @@ def mutated(rng: random.Random, packets: list[bytes]) -> bytes:
 
 
 def clocks() -> Callable[[], float]:
-    """A clock that a test can wait for: it moves a millisecond each time it is asked."""
+    """A clock that a test can wait for: it moves five milliseconds each time it is asked."""
     now = [0.0]
 
     def clock() -> float:
-        now[0] += 0.001
+        now[0] += 0.005
         return now[0]
 
     return clock
