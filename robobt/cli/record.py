@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import RECORDING, one_line_errors, say
+from robobt.cli.common import RECORDING, Imports, import_files, one_line_errors, say
 
 if TYPE_CHECKING:
     from robobt.match.recording import Recording
@@ -60,11 +60,13 @@ def case(
     tick: Annotated[int, typer.Option("--tick", min=0, help="Which tick, from 0.")],
     out: Annotated[Path, typer.Option("--out", help="The test case to write, a YAML file.")],
     robot: _Robot = None,
+    imports: Imports = None,
 ) -> None:
     """Save a tick as a test case: what a robot's tree did then, for check_case of robobt.match.cases."""
     from robobt.match.cases import save_case
     from robobt.match.recording import load_recording
 
+    import_files(imports)
     loaded = load_recording(recording)
     who = _robot(loaded, robot)
     _spare(recording, out)

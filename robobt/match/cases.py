@@ -11,6 +11,9 @@ Recorded frames are rounded to the units of the file. A tree on the edge of a de
 may therefore do something else than in the match; that is found out when the case is
 saved, and such a tick is refused.
 
+Tree files are those of the day: a case names them from its own folder, and its trees are
+built from what they hold when it is checked.
+
 In a test::
 
     from robobt.match.cases import check_case
@@ -24,8 +27,10 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import os
 import zlib
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -40,7 +45,7 @@ from robobt.match.recording import (
     recording_lines,
 )
 from robobt.match.recording.outputs import value_text
-from robobt.match.scenario import ScenarioError, scenario_from
+from robobt.match.scenario import ScenarioError, rename_files, scenario_from
 from robobt.tree.recording import node_paths
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
@@ -117,8 +122,8 @@ def save_case(recording: Recording | str | Path, robot: RobotId, tick: int, path
         raise CaseError(f"{recording.path}: there is no tick {tick}; they are 0 to {len(recording) - 1}")
     if not letters.strip("sfr-"):
         raise CaseError(f"{recording.path}: the tree of {robot} was not ticked at tick {tick}")
-    part = _part(recording, tick)
-    played = _play(part, robot, tick)
+    text = _text(recording, tick, path.parent)
+    played = _play(parse_recording(text, recording.path), robot, tick, path.parent)
     nodes = recording.header.robots[recording.slot(robot)].tree
     recorded = {
         node.path: _WORDS[letter]
@@ -154,7 +159,7 @@ def save_case(recording: Recording | str | Path, robot: RobotId, tick: int, path
             ],
             "store": recording.outputs_at(robot, tick),
         },
-        "match": base64.b64encode(zlib.compress(_text(recording, tick), 9)).decode("ascii"),
+        "match": base64.b64encode(zlib.compress(text, 9)).decode("ascii"),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.part")
@@ -217,7 +222,7 @@ def check_case(case: Case | str | Path) -> None:
     """
     if not isinstance(case, Case):
         case = load_case(case)
-    played = _play(case.recording, case.robot, case.tick)
+    played = _play(case.recording, case.robot, case.tick, case.path.parent)
     problems = list(_differences(case, played))
     if problems:
         time = float(case.recording.times[case.tick])
@@ -262,13 +267,19 @@ class _RecordedWorld:
         """Nothing moves."""
 
 
-def _play(recording: Recording, robot: RobotId, tick: int) -> _Played:
-    """All trees on the recorded frames up to a tick, and what one of them did at that one."""
+def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> _Played:
+    """All trees on the recorded frames up to a tick, and what one of them did at that one.
+
+    Args:
+        folder: what the paths of files in the recording's scenario are relative to.
+    """
     header = recording.header
     if not header.played:
         raise CaseError(f"{recording.path}: the recording does not say what was played")
+    played = deepcopy(header.played)
+    rename_files(played, lambda file: os.path.relpath(folder.resolve() / file))
     try:
-        scenario = scenario_from(dict(header.played), str(recording.path))
+        scenario = scenario_from(played, str(recording.path))
         match = Match(scenario, header.seed, lambda _: _RecordedWorld(recording))
     except ScenarioError as error:
         raise CaseError(str(error)) from error
@@ -293,17 +304,25 @@ def _play(recording: Recording, robot: RobotId, tick: int) -> _Played:
     return _Played(statuses, reasons, command | {"kick_trigger": str(command["kick_trigger"])})
 
 
-def _part(recording: Recording, tick: int) -> Recording:
-    return parse_recording(_text(recording, tick), recording.path)
-
-
-def _text(recording: Recording, tick: int) -> bytes:
-    """The lines of the recording up to the one that holds the tick."""
-    lines, ticks = [], 0
-    for line in recording_lines(recording.path):
+def _text(recording: Recording, tick: int, folder: Path) -> bytes:
+    """The lines of the recording up to the tick's one, the scenario's files as seen from a folder."""
+    header, *rest = recording_lines(recording.path)
+    data = json.loads(header)
+    home = folder.resolve()
+    rename_files(data.get("played"), lambda file: os.path.relpath(_found(recording, file), home))
+    lines, ticks = [json.dumps(data, separators=(",", ":")).encode("utf-8")], 0
+    for line in rest:
         lines.append(line)
-        if b'"x":' in line and not line.startswith(b'{"format"'):
+        if b'"x":' in line:
             ticks += json.loads(line)["n"]
         if ticks > tick:
             break
     return b"\n".join(lines) + b"\n"
+
+
+def _found(recording: Recording, file: str) -> Path:
+    """A file of the scenario, seen from here, where the match may have been played, or from the recording."""
+    for folder in (Path(), recording.path.parent):
+        if (folder / file).is_file():
+            return (folder / file).resolve()
+    raise CaseError(f"{recording.path}: {file}, which was played, is neither here nor beside the recording")

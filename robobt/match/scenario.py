@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -305,7 +305,9 @@ def load_scenario(source: str | Path) -> Scenario:
         data = read_yaml(path)
     except YamlError as error:
         raise ScenarioError(str(path), str(error)) from error
-    scenario = scenario_from(_beside(data, path.parent), str(path))
+    # From here, not from the scenario's folder.
+    rename_files(data, lambda file: str(path.parent / file))
+    scenario = scenario_from(data, str(path))
     return scenario if scenario.name else _named(scenario, path.stem)
 
 
@@ -330,8 +332,8 @@ def scenario_from(data: object, source: str) -> Scenario:
     return scenario
 
 
-def _beside(data: object, folder: Path) -> object:
-    """The data with its robots' files as seen from here, not from the scenario's folder."""
+def rename_files(data: object, rename: Callable[[str], str]) -> None:
+    """Call the robots' files (trees, substitution rules) otherwise in a scenario's plain data."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
@@ -339,10 +341,9 @@ def _beside(data: object, folder: Path) -> object:
                 continue
             play, rules = robot.get("play"), robot.get("substitute")
             if isinstance(play, str) and is_play_file(play):
-                robot["play"] = str(folder / play)
+                robot["play"] = rename(play)
             if isinstance(rules, str):
-                robot["substitute"] = str(folder / rules)
-    return data
+                robot["substitute"] = rename(rules)
 
 
 def _named(scenario: Scenario, name: str) -> Scenario:

@@ -1,12 +1,16 @@
 import json
+import shutil
 from pathlib import Path
 
 import pytest
+import yaml
 
 from robobt.match import Match
 from robobt.match.cases import CaseError, CaseFailedError, check_case, load_case, save_case
 from robobt.match.recording import load_recording
 from robobt.match.scenario import load_scenario
+from robobt.plays.files import play_files
+from robobt.resources import bundled_scenarios
 from robobt.skills import SelectShot
 from robobt.tree import Status
 from robobt.world import RobotId, Team
@@ -54,6 +58,32 @@ def test_noisy_late_cameras_are_played_again_as_the_trees_saw_them(tmp_path: Pat
     assert recording.observed is not None
     assert recording.observation(20).ball != recording.frame(20).ball
     check_case(save_case(recording, BLUE_0, 20, tmp_path / "case.yaml"))
+
+
+def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Played here, recorded there, the case somewhere else, and the test run from nowhere."""
+    here, there, tests, nowhere = (tmp_path / name for name in ("here", "there", "tests/cases", "nowhere"))
+    for folder in (here, there, nowhere):
+        folder.mkdir()
+    shutil.copy(play_files()["attack_main"], here / "mine.yaml")
+    (here / "rules.yaml").write_text('"*/KickToTarget": RUNNING\n')
+    scenario = yaml.safe_load(bundled_scenarios()["striker_vs_goalie"].read_text())
+    scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "substitute": "rules.yaml"}
+    (here / "match.yaml").write_text(yaml.safe_dump(scenario))
+    monkeypatch.chdir(here)
+    recorded = there / "match.robobt.jsonl"
+    Match(load_scenario("match.yaml").lasting(0.6), 3, sim_world, recorded).play()
+    save_case(recorded, BLUE_0, 20, Path("../tests/cases/case.yaml"))
+    monkeypatch.chdir(nowhere)
+    check_case(tests / "case.yaml")
+    (here / "mine.yaml").write_text("play: mine\ntree: Stop\n")
+    with pytest.raises(CaseError, match="no node of the tree is left for"):
+        check_case(tests / "case.yaml")
+    (here / "mine.yaml").rename(here / "gone.yaml")
+    with pytest.raises(CaseError, match=r"mine\.yaml: cannot be read"):
+        check_case(tests / "case.yaml")
+    with pytest.raises(CaseError, match=r"mine\.yaml, which was played, is neither here nor"):
+        save_case(recorded, BLUE_0, 20, tmp_path / "case.yaml")
 
 
 def test_a_skill_that_does_something_else_fails_the_case_by_name(
