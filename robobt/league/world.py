@@ -368,6 +368,8 @@ class LeagueWorld:
         """Until the next control period: the next frame if it comes at about that time."""
         self._fresh = False
         repeat = 1.25 / _RATE
+        # Also when it is late already: trees that take too long still get to see what comes.
+        self._receive(0.0)
         while True:
             now = self._now()
             if now >= self._pace.opens() and self._complete():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from math import nan, pi
 
 import pytest
@@ -174,6 +175,17 @@ def test_when_the_vision_stops_commands_go_on_but_robots_stop() -> None:
         assert world.sent - sent >= ticks
         # The filter was told what was really sent.
         assert world._filter._sent[ME][-1].vx == 0.0
+
+
+def test_whoever_is_always_late_still_sees_what_comes() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED), connect(endpoints, "protocol") as world:
+        world.reset(START, 0)
+        world.place_ball(1.0, 1.0)
+        for _ in range(10):
+            time.sleep(2.5 * world.period / SPEED)
+            world.act({})
+        assert world.observe().ball.position == pytest.approx((1.0, 1.0), abs=0.01)
 
 
 def test_a_scenario_is_played_over_the_network_as_in_the_process() -> None:
