@@ -97,7 +97,7 @@ def _print(result: Mapping[str, Any]) -> None:
                 play,
                 "-" if paper is None else f"{paper['goals']} / {paper['shots']}",
                 f"{one['goals']} / {result['shots']}",
-                f"{one['low']:.1%} to {one['high']:.1%}",
+                f"{one['low']:.0%} to {one['high']:.0%}",
                 str(one["attempts"]),
                 "-" if time is None else f"{time:.2f} s",
                 "-" if waiting is None else f"{waiting:+.2f} s",
