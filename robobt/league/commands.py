@@ -22,6 +22,7 @@ from robobt.league.messages import (
 )
 from robobt.league.messages import RobotCommand as RobotCommandMessage
 from robobt.league.sockets import PacketCounts, decode
+from robobt.league.vision import MOST_NUMBER
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import Team
 from robobt.world.geometry import limit_norm
@@ -174,8 +175,8 @@ def read_status(data: bytes, counts: PacketCounts) -> dict[int, bool]:
     message = decode(Robots_Status, data, counts)
     if message is None:
         return {}
-    counts.accepted += 1
-    return {status.robot_id: status.infrared for status in message.robots_status}
+    told = {status.robot_id: status.infrared for status in message.robots_status}
+    return _of_robots(told, counts)
 
 
 def read_feedback(data: bytes, counts: PacketCounts) -> dict[int, bool]:
@@ -183,12 +184,22 @@ def read_feedback(data: bytes, counts: PacketCounts) -> dict[int, bool]:
     message = decode(RobotControlResponse, data, counts)
     if message is None:
         return {}
-    counts.accepted += 1
-    return {
+    told = {
         robot.id: robot.dribbler_ball_contact
         for robot in message.feedback
         if robot.HasField("dribbler_ball_contact")
     }
+    return _of_robots(told, counts)
+
+
+def _of_robots(told: dict[int, bool], counts: PacketCounts) -> dict[int, bool]:
+    """What is told of numbers that robots can have; a packet that knows only others is counted."""
+    known = {number: contact for number, contact in told.items() if 0 <= number <= MOST_NUMBER}
+    if told and not known:
+        counts.implausible += 1
+    else:
+        counts.accepted += 1
+    return known
 
 
 # What whoever serves reads.

@@ -18,6 +18,7 @@ SCHEME = "league://"
 _OPTIONS = (
     "host",
     "interface",
+    "source",
     "teams",
     "blue_on_positive_half",
     "follow_referee",
@@ -37,7 +38,7 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
     """The connection an address describes, and the preset of the physics there if it names one.
 
     ``league://SIMULATOR?name=value&...`` with the simulator "grsim",
-    "protocol" or "observer" and as names host, interface, teams (blue, yellow or
+    "protocol" or "observer" and as names host, interface, source, teams (blue, yellow or
     both), blue_on_positive_half, follow_referee, latency, speed, physics; vision,
     tracker and referee (ADDRESS:PORT); and the ports grsim, blue_status,
     yellow_status, control, blue and yellow.

@@ -45,7 +45,10 @@ _FORGET = 0.5
 """Commands older than this have no bearing on any prediction [s]."""
 
 _JUMP_BACK, _JUMP_AHEAD = 0.5, 5.0
-"""A capture time that jumps further comes from a source that was started anew [s]."""
+"""A source whose capture times jump further was started anew [s]."""
+
+_GAP = 0.5
+"""Capture times that are further ahead are believed only when more frames say the same [s]."""
 
 _MOUTH_SLACK = 0.004
 """What the filter's own error adds to the depth in which the ball counts as in the mouth [m]."""
@@ -93,6 +96,8 @@ class VisionFilter:
     Attributes:
         captured: capture time of the newest frame, None before the first [s].
         duplicates: frames that had been seen already, or came too late to be of use.
+        restarts: how often the source was started anew.
+        unbelieved: frames with a time that no other frame confirmed.
     """
 
     def __init__(
@@ -109,7 +114,8 @@ class VisionFilter:
         self._ball_noise = max(realism.ball_noise, _LEAST_BALL_NOISE)
         self._heading_noise = max(realism.heading_noise, _LEAST_HEADING_NOISE)
         self.captured: float | None = None
-        self.duplicates = 0
+        self.duplicates = self.restarts = self.unbelieved = 0
+        self._elsewhen: tuple[float, int] | None = None
         self._cameras: dict[int, float] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
@@ -150,10 +156,14 @@ class VisionFilter:
     def add(self, frame: CameraFrame) -> bool:
         """Use a camera's frame; False for one that brings nothing new."""
         time = frame.captured
-        if self.captured is not None and not (
-            self.captured - _JUMP_BACK < time < self.captured + _JUMP_AHEAD
-        ):
-            self.clear()
+        if self.captured is not None and not -_JUMP_BACK < time - self.captured < _GAP:
+            if not self._confirmed(time):
+                self.unbelieved += 1
+                return False
+            if not -_JUMP_BACK < time - self.captured < _JUMP_AHEAD:
+                self.clear()
+                self.restarts += 1
+        self._elsewhen = None
         last = self._cameras.get(frame.camera)
         if last is not None and time <= last:
             self.duplicates += 1
@@ -210,6 +220,14 @@ class VisionFilter:
             tuple(own[Team.YELLOW]),
             last_touch=self._last_touch,
         )
+
+    def _confirmed(self, time: float) -> bool:
+        """Whether frames in a row have told of about this time, so that it is no single frame's slip."""
+        seen = 1
+        if self._elsewhen is not None and abs(time - self._elsewhen[0]) < _GAP:
+            seen = self._elsewhen[1] + 1
+        self._elsewhen = (time, seen)
+        return seen >= _CONFIRMED
 
     def _add_robot(self, robot: RobotId, detections: list[RobotDetection], time: float) -> None:
         track = self._robots.get(robot)

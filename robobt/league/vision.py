@@ -33,7 +33,13 @@ _MOST_OBJECTS = 64
 
 _MOST_CAMERAS = 64
 
-_MOST_NUMBER = 31
+_LATEST = 1e10
+"""No clock shows more [s]: beyond it two frames' times can no longer be told apart."""
+
+_LONGEST_DELAY = 1.0
+"""A capture longer ago than this when it was sent, or later than that, is a slip of the sender [s]."""
+
+MOST_NUMBER = 31
 """Largest number of a robot."""
 
 _LINE_THICKNESS = 0.01
@@ -109,10 +115,13 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     impossible number are left out.
     """
     captured, sent = message.t_capture, message.t_sent
-    if not (isfinite(captured) and isfinite(sent) and message.camera_id < _MOST_CAMERAS):
+    # Not finite compares as false.
+    if not (abs(captured) <= _LATEST and abs(sent) <= _LATEST and message.camera_id < _MOST_CAMERAS):
         return None
     if max(len(message.balls), len(message.robots_blue), len(message.robots_yellow)) > _MOST_OBJECTS:
         return None
+    if not 0.0 <= sent - captured <= _LONGEST_DELAY:
+        sent = captured
     frame = CameraFrame(message.camera_id, message.frame_number, captured, sent)
     for ball in message.balls:
         x, y, confidence = ball.x / _MM, ball.y / _MM, ball.confidence
@@ -121,7 +130,7 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     for team, robots in ((Team.BLUE, message.robots_blue), (Team.YELLOW, message.robots_yellow)):
         for robot in robots:
             x, y, confidence = robot.x / _MM, robot.y / _MM, robot.confidence
-            if not robot.HasField("robot_id") or robot.robot_id > _MOST_NUMBER:
+            if not robot.HasField("robot_id") or robot.robot_id > MOST_NUMBER:
                 continue
             if not (_near(x, y) and isfinite(confidence)):
                 continue

@@ -19,7 +19,8 @@ from robobt.league.gamecontroller import RefereeFollower
 from robobt.league.links import GrSimLink, Link, NoLink, ProtocolLink
 from robobt.league.pacing import Pace
 from robobt.league.sockets import LOOPBACK, PacketCounts, Receiver
-from robobt.league.vision import BallDetection, CameraFrame, RobotDetection, read_vision
+from robobt.league.tracker import read_tracked
+from robobt.league.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_B, FieldGeometry
@@ -74,6 +75,9 @@ class Connection(BaseModel):
         None, description="own address of the interface to listen on; none: this machine's packets only"
     )
     endpoints: Endpoints = Endpoints()
+    source: Literal["vision", "tracker"] = Field(
+        "vision", description="what is listened to: the cameras, or somebody's tracked frames"
+    )
     teams: tuple[Team, ...] = Field(
         (Team.BLUE, Team.YELLOW), description="whose robots are commanded, whatever the trees say"
     )
@@ -144,6 +148,7 @@ class LeagueWorld:
         self._offsets: deque[tuple[float, float]] = deque()
         self._arrived = self._heard = -1e9
         self._fresh = False
+        self._tracker: str | None = None
         now = self._now()
         self._pace = Pace(period, now)
         self._sent_at = now
@@ -153,7 +158,8 @@ class LeagueWorld:
         endpoints, interface = self.connection.endpoints, self.connection.interface
         self._open: list[Receiver] = []
         try:
-            self._vision = self._listen(*endpoints.vision, interface)
+            self._source = endpoints.vision if self.connection.source == "vision" else endpoints.tracker
+            self._vision = self._listen(*self._source, interface)
             self._controller = self._listen(*endpoints.referee, interface) if self.referee else None
             self._link = self._make_link(endpoints, interface)
         except OSError:
@@ -242,7 +248,7 @@ class LeagueWorld:
 
     def counts(self) -> dict[str, PacketCounts]:
         """What became of the packets, by port."""
-        counts = {"vision": self._vision.counts, **self._link.counts()}
+        counts = {self.connection.source: self._vision.counts, **self._link.counts()}
         if self._controller is not None and self.referee is not None:
             counts["referee_port"] = self._controller.counts
             counts["referee"] = self.referee.counts
@@ -317,7 +323,7 @@ class LeagueWorld:
             return
         arrived = self._now()
         for packet in self._vision.receive():
-            seen = read_vision(packet.data, self._vision.counts)
+            seen = self._read(packet.data)
             if seen is None:
                 continue
             if seen.field is not None and seen.field != self.field:
@@ -327,6 +333,16 @@ class LeagueWorld:
         if self._controller is not None and self.referee is not None:
             for packet in self._controller.receive():
                 self.referee.read(packet.data)
+
+    def _read(self, data: bytes) -> VisionPacket | None:
+        if self.connection.source == "vision":
+            return read_vision(data, self._vision.counts)
+        tracked = read_tracked(data, self.field, self._vision.counts)
+        # Several trackers may speak; the first that is heard is followed.
+        if tracked is None or tracked[0] != (self._tracker or tracked[0]):
+            return None
+        self._tracker = tracked[0]
+        return VisionPacket(_as_detections(tracked[1]), None)
 
     def _see(self, frame: CameraFrame, arrived: float) -> None:
         captured = self._filter.captured
@@ -470,8 +486,8 @@ class LeagueWorld:
             if self._clock() > end:
                 counts = self._vision.counts
                 heard = f" ({counts.dropped} packets were dropped)" if counts.dropped else ""
-                where = self.connection.endpoints.vision
-                raise LeagueError(f"no vision at {where} for {seconds:g} s{heard}: is the simulator running?")
+                what, where = self.connection.source, self._source
+                raise LeagueError(f"no {what} at {where} for {seconds:g} s{heard}: is the simulator running?")
             self._receive(0.05)
 
     def _put(self, placement: Placement) -> None:
@@ -541,3 +557,14 @@ class LeagueWorld:
         end = self._clock() + 0.1 / self._speed
         while self._clock() < end:
             self._receive(end - self._clock())
+
+
+def _as_detections(frame: Frame) -> CameraFrame:
+    """A tracked frame as what one camera that sees everything would report."""
+    robots = [
+        RobotDetection(RobotId(team, robot.id), robot.x, robot.y, robot.heading)
+        for team, states in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents))
+        for robot in states
+    ]
+    balls = [BallDetection(frame.ball.x, frame.ball.y)]
+    return CameraFrame(0, 0, frame.time, frame.time, balls, robots)
