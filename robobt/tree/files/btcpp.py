@@ -93,6 +93,19 @@ UNKNOWN_HERE: Mapping[str, str] = {
     "IfThenElse": "robobt has no such node",
     "WhileDoElse": "robobt has no such node",
     "RunOnce": "robobt has no such node; OneShot is the nearest",
+    **{f"Switch{cases}": "robobt has no blackboard; write a switch of your own" for cases in range(2, 7)},
+    **dict.fromkeys(
+        (
+            "LoopInt",
+            "LoopBool",
+            "LoopDouble",
+            "LoopString",
+            "SkipUnlessUpdated",
+            "WaitValueUpdate",
+            "WasEntryUpdated",
+        ),
+        "robobt has no blackboard and no such node",
+    ),
 }
 """What to say about tags of BehaviorTree.CPP that cannot be read."""
 

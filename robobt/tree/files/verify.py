@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 
 from robobt.tree.files.errors import TreeFileError
@@ -169,11 +169,15 @@ class _Verifier:
         return TreeFileError(self.file.source, line, problem)
 
 
-def unknown_type(name: str, vocabulary: Vocabulary) -> str:
-    """What to say about a type that does not exist, or that another package failed to bring."""
+def unknown_type(name: str, vocabulary: Vocabulary, tags: Iterable[str] = ()) -> str:
+    """What to say about a type that does not exist, or that another package failed to bring.
+
+    Args:
+        tags: what else could have been meant.
+    """
     if isinstance(vocabulary.leaves, Registry) and (problem := vocabulary.leaves.problem_with(name)):
         return problem
-    by_lower = {known.lower(): known for known in vocabulary}
+    by_lower = {known.lower(): known for known in (*vocabulary, *tags)}
     close = [by_lower[word] for word in get_close_matches(name[:80].lower(), by_lower)]
     hint = f"is it {' or '.join(close)}?" if close else f"there are {', '.join(vocabulary)}"
     return f"no node is called {name!r:.80}; {hint}"

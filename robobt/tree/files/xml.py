@@ -233,7 +233,7 @@ class _Reader:
         if kind is None and shown in UNKNOWN_HERE:
             raise self._error(element, f"<{shown}>: {UNKNOWN_HERE[shown]}")
         if kind is None:
-            raise self._error(element, unknown_type(shown, self.vocabulary))
+            raise self._error(element, unknown_type(shown, self.vocabulary, TAGS))
         if shown not in TAGS and shown not in OTHER_TAGS and _tags_of(kind.name):
             raise self._error(element, f"<{shown}> is written {' or '.join(_tags_of(kind.name))} in XML")
         if long_form and element.tag not in _long_tags(kind):
