@@ -122,6 +122,14 @@ def match(
             help="Where it is played: sim, or a field of the league like league://grsim (one worker).",
         ),
     ] = "sim",
+    publish: Annotated[
+        bool,
+        typer.Option(
+            "--publish",
+            help="Play in real time and tell the league's programs on this machine: vision, tracked frames "
+            "and what the referee says (one worker).",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print what came out.
@@ -145,9 +153,15 @@ def match(
     # The simulator's settings are checked before any worker is started.
     sim_world(loaded)
     factory = world_from(world)
-    if world != SIM:
+    if publish:
+        from robobt.league.publishing import PublishingFactory
+
+        factory = PublishingFactory(factory)
+    if world != SIM or publish:
         if workers not in (None, 1):
-            raise typer.BadParameter("a field outside this process has one worker", param_hint="--workers")
+            raise typer.BadParameter(
+                "what is played or published over the network has one worker", param_hint="--workers"
+            )
         workers = 1
         from robobt.league.signals import exit_on_signals
 
