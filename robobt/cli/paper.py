@@ -9,6 +9,7 @@ import typer
 
 from robobt.cli.common import Json, Progress, console, one_line_errors, print_json, say, table
 from robobt.cli.deployed import deployed
+from robobt.cli.table4 import table4
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +27,7 @@ _Data = Annotated[
 def add_to(app: typer.Typer) -> None:
     """Enter the group and its commands."""
     paper = typer.Typer(no_args_is_help=True, help="The tables of the paper, its figures beside ours.")
-    for command in (table2, table3, deployed):
+    for command in (table2, table3, table4, deployed):
         paper.command()(command)
     app.add_typer(paper, name="paper")
 

@@ -1,0 +1,266 @@
+"""Table 4 of the paper: get the ball and shoot, with hand-written and learned skills in every combination."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot
+from statistics import fmean
+from typing import Any
+
+from robobt.learning.envs.episodes import straight_line_time
+from robobt.match.loop import Match
+from robobt.match.runner import trial_seed
+from robobt.match.scenario import Scenario, load_scenario
+from robobt.skills.go_to_ball import HANDOVER_DISTANCE
+from robobt.statistics import corrected_resampled_t_test, mean_interval, wilson_interval
+from robobt.world.state import Frame
+from robobt.worlds import sim_world
+
+TRIALS = ("1", "2")
+"""The ball in the centre, and at (0, 1.5) m."""
+
+_FIGURES = ("to_ball", "to_ball_s2", "shoot", "shoot_s2", "total", "total_s2", "goals")
+
+
+def _row(*figures: float) -> dict[str, float]:
+    return dict(zip(_FIGURES, figures, strict=True))
+
+
+PAPER: dict[str, dict[str, dict[str, float]]] = {
+    "1": {
+        "ddpg": _row(2.9217, 0.0008, 0.2604, 0.0027, 3.1821, 0.0048, 23),
+        "baseline": _row(3.4998, 0.0040, 0.2665, 0.0006, 3.7662, 0.0044, 25),
+        "human": _row(3.483, 10.9620, 0.4032, 0.1709, 3.8862, 12.8650, 25),
+    },
+    "2": {
+        "ddpg": _row(3.1262, 0.0196, 0.4031, 0.0012, 3.5294, 0.0196, 21),
+        "baseline": _row(4.9846, 0.0141, 0.4713, 0.0057, 5.4560, 0.0193, 25),
+        "human": _row(3.1691, 0.3725, 1.1236, 0.3481, 4.2927, 1.1300, 14),
+    },
+}
+"""The printed rows: means [s], variances [s^2] and goals of 25."""
+
+COMBINATIONS: dict[str, dict[str, Any]] = {
+    "robobulls": {"style": "robobulls"},
+    "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
+    "geometric, kick, quick": {
+        "policy": "geometric",
+        "shoot": "kick_to_target",
+        "pickup_speed": None,
+    },
+    "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},
+    "geometric, ddpg": {"policy": "geometric", "shoot": "ddpg"},
+    "ddpg, kick": {"policy": "ddpg", "shoot": "kick_to_target", "pickup_speed": None},
+    "ddpg, shoot": {"policy": "ddpg", "shoot": "geometric", "pickup_speed": None},
+    "ddpg, ddpg": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
+}
+"""Parameters of the play go_to_ball_and_shoot, by who approaches and who shoots.
+
+Hand-written shots are KickToTarget ("kick") and the geometric Shoot ("shoot").
+
+The learned approach hands over at full speed and the pick-up goes on as fast as the
+dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
+"""
+
+BESIDE = {"robobulls": "baseline", "ddpg, ddpg": "ddpg"}
+"""The paper's row that stands beside one of ours."""
+
+LEARNED = "ddpg, ddpg"
+HAND_WRITTEN = tuple(name for name in COMBINATIONS if "ddpg" not in name)
+
+_SHOOTER, _GOAL = "blue 0", "goal_blue"
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One run.
+
+    Attributes:
+        approach: start until robot and ball are 0.2 m apart, between two frames by their straight line [s].
+        to_ball: start until the ball first lies in the mouth, as the paper counts [s].
+        shoot: from then until the kick [s].
+        goal: whether it went in.
+
+    Times are None for what never happened.
+    """
+
+    approach: float | None
+    to_ball: float | None
+    shoot: float | None
+    goal: bool
+
+    @property
+    def pick_up(self) -> float | None:
+        """From the end of the approach until the ball lies in the mouth [s]."""
+        return None if self.approach is None or self.to_ball is None else self.to_ball - self.approach
+
+    @property
+    def total(self) -> float | None:
+        """Start to kick [s]."""
+        return None if self.to_ball is None or self.shoot is None else self.to_ball + self.shoot
+
+
+def table4(
+    runs: int = 25,
+    seed: int | None = None,
+    *,
+    preset: str = "robobulls",
+    realism: str | None = None,
+    combinations: Sequence[str] = tuple(COMBINATIONS),
+    trials: Sequence[str] = TRIALS,
+    progress: Callable[[], object] = lambda: None,
+) -> dict[str, Any]:
+    """Play both trials with every combination.
+
+    Run n of every combination has the same seed, so that differences are paired.
+
+    Args:
+        runs: of each.
+        seed: what they follow from; by default the scenarios' own.
+        preset: of the simulator.
+        realism: level of noise, losses and delays; by default the scenarios' own little noise.
+        combinations: some of :data:`COMBINATIONS`.
+        trials: some of :data:`TRIALS`.
+        progress: called after every run.
+
+    Returns:
+        Plain data: ``runs``, ``preset``, ``realism`` and ``trials``, by trial: ``paper``
+        (its rows) and ``rows``, by combination: ``approach``, ``pick_up``, ``to_ball``,
+        ``shoot`` and ``total``, each with ``n``, ``mean``, ``variance`` and the 95 % interval
+        of the mean ``low``, ``high`` [s]; ``goals``, ``reached`` and ``shots``, each with
+        ``count``, ``rate`` and its Wilson interval ``low``, ``high``; ``optimum``, the
+        straight line's time for the approach at the speed and acceleration that it may
+        use, ``optimum_ratio``, the mean approach over that. ``best_hand_written`` is the
+        hand-written combination that is first at the ball, and ``test`` the paired t-test
+        of the learned one's time to the ball against it (difference, variance, t, p, n).
+
+    Raises:
+        KeyError: no such preset, realism level or combination.
+        ScenarioError: a play cannot be made, as where a model is missing.
+    """
+    found: dict[str, Any] = {}
+    for trial in trials:
+        attempts: dict[str, list[Attempt]] = {}
+        rows: dict[str, Any] = {}
+        for name in combinations:
+            scenario = table4_scenario(trial, COMBINATIONS[name], preset, realism)
+            first = scenario.seed if seed is None else seed
+            attempts[name] = []
+            for run in range(runs):
+                attempts[name].append(play_attempt(scenario, trial_seed(first, run)))
+                progress()
+            rows[name] = _figures(attempts[name]) | _optimum(scenario, name, attempts[name])
+        found[trial] = {"paper": PAPER[trial], "rows": rows} | _compared(attempts)
+    return {"runs": runs, "preset": preset, "realism": realism, "trials": found}
+
+
+def table4_scenario(
+    trial: str, params: Mapping[str, Any], preset: str = "robobulls", realism: str | None = None
+) -> Scenario:
+    """The bundled scenario of a trial with another play's parameters, simulator or noise."""
+    scenario = load_scenario(f"table4_trial{trial}")
+    shooter = scenario.robots.blue[0].model_copy(update={"params": dict(params)})
+    simulator = {**scenario.simulator, "preset": preset}
+    if realism is not None:
+        simulator["realism"] = realism
+    robots = scenario.robots.model_copy(update={"blue": (shooter,)})
+    return scenario.model_copy(update={"robots": robots, "simulator": simulator})
+
+
+def play_attempt(scenario: Scenario, seed: int) -> Attempt:
+    """Play one run to its end."""
+    approach: float | None = None
+    with Match(scenario, seed, sim_world) as match:
+        before = match.world.truth()
+        while match.tick():
+            now = match.world.truth()
+            if approach is None and _gap(now) <= HANDOVER_DISTANCE:
+                way, left = _gap(before) - _gap(now), _gap(before) - HANDOVER_DISTANCE
+                share = min(1.0, max(0.0, left / way)) if way > 0.0 else 1.0
+                approach = before.time + share * (now.time - before.time)
+            before = now
+        result = match.result()
+    figures = result.robots[_SHOOTER]
+    return Attempt(approach, figures.go_to_ball, figures.shoot, result.outcome == _GOAL)
+
+
+def _gap(frame: Frame) -> float:
+    robot, ball = frame.own[0], frame.ball
+    return hypot(ball.x - robot.x, ball.y - robot.y)
+
+
+def _figures(attempts: Sequence[Attempt]) -> dict[str, Any]:
+    figures: dict[str, Any] = {
+        name: _spread([getattr(attempt, name) for attempt in attempts])
+        for name in ("approach", "pick_up", "to_ball", "shoot", "total")
+    }
+    for name, count in (
+        ("goals", sum(attempt.goal for attempt in attempts)),
+        ("reached", sum(attempt.to_ball is not None for attempt in attempts)),
+        ("shots", sum(attempt.shoot is not None for attempt in attempts)),
+    ):
+        low, high = wilson_interval(count, len(attempts))
+        figures[name] = {"count": count, "rate": count / len(attempts), "low": low, "high": high}
+    return figures
+
+
+def _spread(given: Iterable[float | None]) -> dict[str, Any]:
+    values = [value for value in given if value is not None]
+    mean = fmean(values) if values else None
+    low, high = mean_interval(values) if len(values) > 1 else (None, None)
+    variance = None
+    if mean is not None and len(values) > 1:
+        variance = sum((value - mean) ** 2 for value in values) / (len(values) - 1)
+    return {"n": len(values), "mean": mean, "variance": variance, "low": low, "high": high}
+
+
+def _optimum(scenario: Scenario, name: str, attempts: Sequence[Attempt]) -> dict[str, Any]:
+    """The straight line's time for what the approach may use; a model's own top speed is on its card."""
+    frame = sim_world(scenario)
+    with Match(scenario, 0, lambda _: frame) as match:
+        start = match.world.truth()
+    limits = start.own[0].limits
+    fastest = limits.max_speed
+    if COMBINATIONS[name].get("policy") == "ddpg":
+        fastest = min(fastest, _model_speed())
+    elif "style" in COMBINATIONS[name]:
+        from robobt.skills.pilot import ROBOBULLS_LIMITS
+
+        limits, fastest = ROBOBULLS_LIMITS, ROBOBULLS_LIMITS.max_speed
+    strongest = max(limits.acceleration, limits.lateral_acceleration)
+    optimum = float(straight_line_time(_gap(start) - HANDOVER_DISTANCE, fastest, strongest))
+    approaches = [attempt.approach for attempt in attempts if attempt.approach is not None]
+    ratio = fmean(approaches) / optimum if approaches else None
+    return {"optimum": optimum, "optimum_ratio": ratio}
+
+
+def _model_speed() -> float:
+    from robobt.skills.go_to_ball import SHIPPED
+    from robobt.skills.policy import load_policy
+
+    action = load_policy(SHIPPED["ddpg"], skill="GoToBall").card.action
+    assert action is not None
+    return action.max_speed
+
+
+def _compared(attempts: Mapping[str, Sequence[Attempt]]) -> dict[str, Any]:
+    """The learned combination against the hand-written one that is first at the ball."""
+    times: dict[str, list[float | None]] = {
+        name: [attempt.to_ball for attempt in played] for name, played in attempts.items()
+    }
+    means = {
+        name: fmean([time for time in times[name] if time is not None])
+        for name in HAND_WRITTEN
+        if name in times and any(time is not None for time in times[name])
+    }
+    best = min(means, key=lambda name: means[name]) if means else None
+    if best is None or LEARNED not in times:
+        return {"best_hand_written": best, "test": None}
+    pairs = zip(times[LEARNED], times[best], strict=True)
+    differences = [ours - theirs for ours, theirs in pairs if ours is not None and theirs is not None]
+    if len(differences) < 2:
+        return {"best_hand_written": best, "test": None}
+    # A share of 0 to correct for leaves the plain paired t-test.
+    test = corrected_resampled_t_test(differences, 0.0)
+    return {"best_hand_written": best, "test": test._asdict() | {"n": len(differences)}}

@@ -1,0 +1,64 @@
+"""Table 4 as a picture: how long everybody takes to the ball and to the shot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+_PARTS = (("approach", "approach", "C0"), ("pick_up", "pick-up", "C2"), ("shoot", "shoot", "C1"))
+
+
+def draw_table4(result: Mapping[str, Any], path: Path) -> None:
+    """Draw the times of every row, one panel a trial, and write a picture, whole or not at all.
+
+    Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
+    rows, whose approach and pick-up are one figure, are hatched.
+
+    Args:
+        result: of :func:`~robobt.experiments.table4.table4`.
+        path: the ending says the form (.png, .svg, .pdf).
+
+    Raises:
+        ValueError: an ending that matplotlib does not know.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    trials = result["trials"]
+    figure = Figure(figsize=(6.5 * len(trials), 5.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    for i, (trial, found) in enumerate(trials.items()):
+        axes = figure.add_subplot(1, len(trials), i + 1)
+        labels: list[str] = []
+        for name, row in found["paper"].items():
+            at = len(labels)
+            axes.barh(at, row["to_ball"], color="0.75", hatch="//", edgecolor="white")
+            axes.barh(at, row["shoot"], left=row["to_ball"], color="C1", alpha=0.5, hatch="//", edgecolor="w")
+            labels.append(f"paper: {name}\n{row['goals']:.0f} of 25 goals")
+        for name, row in found["rows"].items():
+            at, left = len(labels), 0.0
+            for part, _, color in _PARTS:
+                mean = row[part]["mean"]
+                if mean is not None:
+                    axes.barh(at, mean, left=left, color=color)
+                    left += mean
+            total = row["total"]
+            if total["low"] is not None:
+                span = [[total["mean"] - total["low"]], [total["high"] - total["mean"]]]
+                axes.errorbar(total["mean"], at, xerr=span, color="black", capsize=3)
+            labels.append(f"{name}\n{row['goals']['count']} of {result['runs']} goals")
+        axes.set_yticks(range(len(labels)), labels, fontsize=8)
+        axes.invert_yaxis()
+        axes.set(xlabel="time [s]", title=f"Trial {trial}, {result['preset']}")
+        for _, title, color in _PARTS:
+            axes.barh(0, 0, color=color, label=title)
+        axes.barh(0, 0, color="0.75", hatch="//", edgecolor="white", label="to the ball (paper)")
+        axes.legend(loc="lower right", fontsize=8)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        figure.savefig(draft, dpi=120)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
