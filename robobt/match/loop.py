@@ -129,14 +129,15 @@ class Match:
         """
         truth = self.world.truth()
         self._time = truth.time
+        if self._recorder is not None:
+            # Before the referee moves the ball.
+            self._recorder.see(truth)
         if self._referee is not None:
             self._follow_referee(truth)
         else:
             # A world may have a referee of its own: the league's game controller.
             self.game = truth.game
         truth.game = self.game
-        if self._recorder is not None:
-            self._recorder.see(truth)
         self.measures.update(truth, self.game, self._commands)
         self._trace.update(truth, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
@@ -270,6 +271,7 @@ class Match:
             header,
             {player.robot: player.runner for player in self.players},
             {player.robot: player.store for player in self.players},
+            self.world,
         )
 
     def _limits_of(self, robot: RobotId) -> RobotLimits:

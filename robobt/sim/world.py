@@ -114,6 +114,20 @@ class SimWorld:
         """The simulated state itself."""
         return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
 
+    @property
+    def robots(self) -> tuple[RobotId, ...]:
+        """Its robots, in the order of :meth:`snapshot` and :meth:`sent`."""
+        return tuple(self._ids)
+
+    def snapshot(self) -> bytes:
+        """See :meth:`robobt.world.protocol.Snapshots.snapshot`."""
+        arenas = self._arenas
+        return arenas.balls.tobytes() + arenas.robots.tobytes() + arenas.contact.tobytes()
+
+    def sent(self) -> bytes | None:
+        """See :meth:`robobt.world.protocol.Snapshots.sent`; None where commands are lost."""
+        return None if self.settings.realism.command_loss > 0.0 else self._commands.tobytes()
+
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands and simulate one control period.
 

@@ -34,6 +34,7 @@ _log = logging.getLogger(__name__)
 Tick: TypeAlias = Callable[[], Status]
 Stop: TypeAlias = Callable[[Status], None]
 Visit: TypeAlias = Callable[[Behaviour], None]
+Told: TypeAlias = tuple[Status | None, object]
 _Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 
 _S, _F, _R, _I = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
@@ -69,19 +70,27 @@ class BringsClosures(Protocol):
 class Marks:
     """A :data:`Visit` that need only be told of some nodes, so that all others lose no time over it.
 
+    Which nodes a tick reaches and what they have afterwards follows from what the leaves
+    return, as long as every node on the way is of a known kind. So a tick at which each
+    leaf returned and said what it did when it was ticked last has left the tree as it was.
+
     Args:
         nodes: the nodes that are asked for.
 
     Attributes:
+        nodes: those.
         seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among
             them; for its owner to clear.
+        changed: whether statuses, words or the nodes that are ticked may be other than after
+            the tick before; for its owner to set to False after a tick.
     """
 
     def __init__(self, nodes: Iterable[Behaviour]) -> None:
-        self._nodes = list(nodes)
-        self._asked = {id(node) for node in self._nodes}
+        self.nodes = list(nodes)
+        self._asked = {id(node) for node in self.nodes}
         self.seen: list[Behaviour] = []
         self._note = self.seen.append
+        self.changed = True
 
     def __call__(self, node: Behaviour) -> None:
         """``node`` has been ticked."""
@@ -90,6 +99,23 @@ class Marks:
     def of(self, node: Behaviour) -> Visit | None:
         """What to call with this node; None when it is not asked for."""
         return self._note if id(node) in self._asked else None
+
+    def compare(self, now: Told, before: Told) -> Told:
+        """Notice whether what a node returned and said differs from what it did before; ``now``."""
+        # A text made anew is often the same one; of anything else nobody knows what == does.
+        same = now[0] is before[0] and now[1].__class__ is str and before[1].__class__ is str
+        if not (same and now[1] == before[1]):
+            self.changed = True
+        return now
+
+    def whenever(self, tick: Tick) -> Tick:
+        """``tick`` of a node of which nobody knows what follows from what."""
+
+        def changing() -> Status:
+            self.changed = True
+            return tick()
+
+        return changing
 
 
 class FastTree(BehaviourTree):
@@ -166,7 +192,22 @@ def abandon(root: Behaviour) -> None:
 
 def compile_node(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     """Functions that tick and stop this node and everything below it."""
-    return _known_as(node)(node, visit)
+    make = _known_as(node)
+    tick, stop = make(node, visit)
+    if isinstance(visit, Marks) and not _followed(node, make):
+        return visit.whenever(tick), stop
+    return tick, stop
+
+
+def _followed(node: Behaviour, make: _Make) -> bool:
+    """Whether its closures tell :class:`Marks` whatever else than its children decides about a node."""
+    if make is _sequence or make is _selector:
+        return own_method(node, "initialise") is own_method(node, "terminate") is None
+    return make is _leaf or make is _decorator
+
+
+def _marks(visit: Visit | None) -> Marks | None:
+    return visit if isinstance(visit, Marks) else None
 
 
 def _shown(node: Behaviour, visit: Visit | None) -> Visit | None:
@@ -200,16 +241,20 @@ class Step:
         tick, stop: its closures.
         update: set for a leaf of which nothing else is to be called, so that a
             composite may spare itself the closures.
+        status, said: what that leaf returned and said last, as far as anybody asks for it.
     """
 
-    __slots__ = ("child", "stop", "tick", "update")
+    __slots__ = ("child", "said", "status", "stop", "tick", "update")
 
     def __init__(self, child: Behaviour, visit: Visit | None, parent: Behaviour) -> None:
         self.child = child
         self.tick, self.stop = compile_node(child, visit)
         if type(parent).tick in _LEAVES_AT and _known_as(child) is _as_it_is:
-            self.tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
+            tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
+            self.tick = visit.whenever(tick) if isinstance(visit, Marks) else tick
         self.update: Tick | None = None
+        self.status: Status | None = None
+        self.said: object = None
         if _shown(child, visit) is None and _known_as(child) is _leaf:
             initialise, update, terminate = _lifecycle(child)
             self.update = update if initialise is terminate is None else None
@@ -265,9 +310,12 @@ def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
 
 def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     initialise, update, terminate = _lifecycle(node)
-    visit = _shown(node, visit)
+    marks, visit = _marks(visit), _shown(node, visit)
+    last: Status | None = None
+    said: object = None
 
     def tick() -> Status:
+        nonlocal last, said
         if initialise is not None and node.status is not _R:
             initialise()
         status = update()
@@ -276,6 +324,8 @@ def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         if terminate is not None and status is not _R:
             terminate(status)
         node.status = status
+        if marks is not None and (status is not last or node.feedback_message is not said):
+            last, said = marks.compare((status, node.feedback_message), (last, said))
         if visit is not None:
             visit(node)
         return status
@@ -311,17 +361,22 @@ def _inherits(leaf: Leaf[Any], method: str) -> bool:
 
 
 def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    show = _shown(node, visit)
+    marks, show = _marks(visit), _shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
+    last: Status | None = None
+    said: object = None
 
     def renew() -> None:
         nonlocal decorated, tick_child, stop_child
         decorated = node.decorated
         tick_child, stop_child = compile_node(decorated, visit)
+        if marks is not None:
+            marks.changed = True
 
     def tick() -> Status:
+        nonlocal last, said
         if initialise is not None and node.status is not _R:
             initialise()
         if node.decorated is not decorated:
@@ -333,6 +388,8 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if status is not _R:
             stop(status)
         node.status = status
+        if marks is not None and (status is not last or node.feedback_message is not said):
+            last, said = marks.compare((status, node.feedback_message), (last, said))
         if show is not None:
             show(node)
         return status
@@ -395,13 +452,15 @@ def _one_shot(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    show = _shown(node, visit)
+    marks, show = _marks(visit), _shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     children: list[Behaviour] = []
     plan: Plan = []
     stop = composite_stop(node, visit, children, plan)
+    began = 0
 
     def tick() -> Status:
+        nonlocal began
         if node.children != children:
             replan(node, visit, children, plan)
         start = 0
@@ -418,6 +477,10 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 initialise()
         elif node.memory and node.current_child is not None:
             start = children.index(node.current_child)
+        if start != began:
+            began = start
+            if marks is not None:
+                marks.changed = True
         status = _S
         for step in plan[start:] if start else plan:
             node.current_child = child = step.child
@@ -429,6 +492,11 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
+                if marks is not None and (
+                    status is not step.status or child.feedback_message is not step.said
+                ):
+                    told = (status, child.feedback_message)
+                    step.status, step.said = marks.compare(told, (step.status, step.said))
             if status is not _S:
                 if not node.memory and child is not children[-1]:
                     for later in plan[children.index(child) + 1 :]:
@@ -451,13 +519,15 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
-    show = _shown(node, visit)
+    marks, show = _marks(visit), _shown(node, visit)
     initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
     plan: Plan = []
     stop = composite_stop(node, visit, children, plan)
+    began = 0
 
     def tick() -> Status:
+        nonlocal began
         if node.children != children:
             replan(node, visit, children, plan)
         if node.status is not _R:
@@ -471,6 +541,10 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
             for step in plan[:start]:
                 if step.child.status is not _I:
                     step.stop(_I)
+        if start != began:
+            began = start
+            if marks is not None:
+                marks.changed = True
         previous = node.current_child
         for step in plan[start:] if start else plan:
             child = step.child
@@ -482,6 +556,11 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
+                if marks is not None and (
+                    status is not step.status or child.feedback_message is not step.said
+                ):
+                    told = (status, child.feedback_message)
+                    step.status, step.said = marks.compare(told, (step.status, step.said))
             if status is _R or status is _S:
                 node.current_child = child
                 if previous is not child:
@@ -600,6 +679,8 @@ def composite_stop(node: Any, visit: Visit | None, children: list[Behaviour], pl
 def replan(node: Behaviour, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
     """Bring a composite's closures up to its children; in place, for the closures share them."""
     known = {step.child.id: step for step in plan}
+    if isinstance(visit, Marks):
+        visit.changed = True
     children[:] = node.children
     plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]
 

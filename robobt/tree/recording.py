@@ -11,7 +11,8 @@ from collections.abc import Callable
 from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import repeat
+from itertools import compress, count
+from operator import is_not
 from types import CodeType, FunctionType
 from typing import Any, TypeAlias
 
@@ -25,7 +26,6 @@ from robobt.tree.runner import TreeRunner, text_of
 _LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R", "INVALID": "-"}
 _SILENT = (Selector, Sequence, Parallel)
 _Seen: TypeAlias = tuple[Any, ...] | None
-_NOTHING = repeat(object())
 
 
 @dataclass(slots=True, frozen=True)
@@ -68,26 +68,28 @@ class TreeWatch:
         notice: called with every look that is new.
 
     Attributes:
-        ticked: whether the tree was ticked since this was last set to False.
+        runner: whose tree.
+        ticks: how often it had been ticked when a record was complete the last time.
+        usual: whether it was ticked when it was looked at last.
     """
 
     def __init__(self, runner: TreeRunner, notice: Callable[[Look], None]) -> None:
         nodes = runner.nodes
-        self._runner = runner
+        self.runner = runner
         self._size = len(nodes)
         self._places = places = {id(node): place for place, node in enumerate(nodes)}
         self._parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
         self._reach = [ticked_children(node) for node in nodes]
         unsure = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
         self._layout, ask = _Question(nodes, runner).make()
-        self.ticked = False
+        self._ask = ask
         self._notice = notice
+        self.ticks = runner.ticks
         # As it was looked at last.
         self._seen: tuple[Any, ...] = ()
-        self._usual = False
+        self.usual = False
         self._marked: list[Behaviour] = []
-        look = self._looker(ask)
-        self._marks = runner.mark(unsure, look)
+        self._marks = runner.mark(unsure, self._look)
         # As it was told last.
         self._told: _Seen = None
         self._error: str | None = None
@@ -96,7 +98,7 @@ class TreeWatch:
         self._said = [""] * len(nodes)
         self._letters = "-" * len(nodes)
         self._path: tuple[bool, tuple[int, ...]] = (False, ())
-        look()
+        self._look()
 
     def tell(self, look: Look) -> Change | None:
         """What is new in this look since the one told before."""
@@ -124,35 +126,32 @@ class TreeWatch:
         self._error = look.error
         return None if letters is error is None and not said else Change(letters, said, error)
 
-    def rest(self) -> None:
-        """Notice that the tree was not ticked: nodes that have a status have kept it."""
-        if self._usual:
-            self._usual = False
-            self._notice(Look(self._seen[:-1], self._seen[-1], self._place_of_failed(), False, ()))
+    def settle(self) -> None:
+        """A record is complete: notice whether the tree was ticked for it.
+
+        Nodes that have a status have kept it where the tree was not.
+        """
+        if (self.runner.ticks != self.ticks) is not self.usual:
+            self._look()
+        self.ticks = self.runner.ticks
+
+    def check(self) -> None:
+        """Look again at the next tick, for what a node may have done to another one unseen."""
+        self._marks.changed = True
 
     def _place_of_failed(self) -> int | None:
-        failed = self._runner.failed
+        failed = self.runner.failed
         return None if failed is None or failed.status is Status.INVALID else self._places.get(id(failed))
 
-    def _looker(self, ask: Callable[[], tuple[Any, ...]]) -> Callable[[], None]:
-        """What looks, at every tick and stop."""
-        runner = self._runner
-        ticks = runner.ticks
-
-        def look() -> None:
-            nonlocal ticks
-            now = ask()
-            if runner.ticks != ticks:
-                ticks = runner.ticks
-                self.ticked = True
-            if now == self._seen and self.ticked is self._usual and self._marks == self._marked:
-                return
-            self._seen, self._usual, self._marked = now, self.ticked, self._marks.copy()
-            places = [self._places.get(id(node), -1) for node in self._marked]
-            failed = self._place_of_failed()
-            self._notice(Look(now[:-1], now[-1], failed, self.ticked, tuple(places)))
-
-        return look
+    def _look(self) -> None:
+        now = self._ask()
+        ticked = self.runner.ticks != self.ticks
+        marked = self._marks.seen
+        if now == self._seen and ticked is self.usual and marked == self._marked:
+            return
+        self._seen, self.usual, self._marked = now, ticked, marked.copy()
+        places = tuple([self._places.get(id(node), -1) for node in marked]) if ticked else ()
+        self._notice(Look(now[:-1], now[-1], self._place_of_failed(), ticked, places))
 
     def _compare(self, seen: _Seen, before: _Seen, layout: _Layout, said: dict[int, str]) -> bool:
         """Bring statuses and what was said up to date; whether a status changed."""
@@ -162,14 +161,13 @@ class TreeWatch:
             turned = statuses[layout.start : layout.end] != none
             statuses[layout.start : layout.end] = none
             return turned
-        turned, index = False, -1
-        for item, old in zip(seen, _NOTHING if before is None else before, strict=False):
-            index += 1
-            if item is old:
-                continue
+        turned = False
+        # Most are as they were, which is found out here without a step of the interpreter for each.
+        for index in range(len(seen)) if before is None else compress(count(), map(is_not, seen, before)):
+            item, old = seen[index], None if before is None else before[index]
             inside = items[index]
             if inside.__class__ is _Layout:
-                if item != old:
+                if item != old or before is None:
                     known = old if old.__class__ is tuple else None
                     turned = self._compare(item, known, inside, said) or turned
             elif inside < 0:

@@ -59,7 +59,7 @@ class TreeRunner:
         self._stock = False
         self._visitor: VisitorBase | None = None
         self._marks: Marks | None = None
-        self._after: Callable[[], None] | None = None
+        self._after: Callable[[], None] = _nothing
         bind(root, store)
         self._tick = compile_tree(root)
 
@@ -87,7 +87,10 @@ class TreeRunner:
             abandon(self.root)
             raise
         finally:
-            if self._after is not None:
+            marks = self._marks
+            if marks is not None and (marks.changed or self.error is not None):
+                # What becomes of a tree that was brought to rest is not what its leaves did before.
+                marks.changed = self.error is not None or self.root.status is Status.INVALID
                 self._after()
         return self.root.status
 
@@ -114,17 +117,18 @@ class TreeRunner:
         self._visitor = visitor
         self._renew()
 
-    def mark(self, nodes: Iterable[Behaviour], after: Callable[[], None]) -> list[Behaviour]:
-        """From now on keep a list of the nodes ticked by the last tick, and return it.
+    def mark(self, nodes: Iterable[Behaviour], after: Callable[[], None]) -> Marks:
+        """From now on keep the nodes ticked by the last tick, and notice when it changed something.
 
         Args:
             nodes: of all nodes of the tree at least these are entered.
-            after: called after every tick and stop, while what was ticked is still at hand.
+            after: called after every stop, and after every tick after which the tree may not be
+                what it was after the one before, while what was ticked is still at hand.
         """
-        self._marks = Marks(nodes)
+        self._marks = marks = Marks(nodes)
         self._after = after
         self._renew()
-        return self._marks.seen
+        return marks
 
     def _renew(self) -> None:
         """Compile the tree for whoever wants to see its nodes."""
@@ -140,10 +144,16 @@ class TreeRunner:
 
             visit = visit_both
         inner = self._by_py_trees(visit) if self._stock else compile_tree(self.root, visit)
+        blind = self._stock or visit is not marks
+        if visitor is None and (marks is None or not (blind or marks.nodes)):
+            self._tick = inner
+            return
 
         def tick() -> Status:
             if marks is not None:
                 marks.seen.clear()
+                if blind:
+                    marks.changed = True
             if visitor is None:
                 return inner()
             visitor.initialise()
@@ -175,8 +185,9 @@ class TreeRunner:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
-        if self._after is not None:
-            self._after()
+        self._after()
+        if self._marks is not None:
+            self._marks.changed = True
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """The node that raised, and what it is, with the line of the skill's file."""
@@ -203,6 +214,10 @@ def text_of(said: object) -> str:
         return str(said)
     except (Exception, SystemExit) as error:
         return f"a {type(said).__name__} whose text is a {type(error).__name__}"
+
+
+def _nothing() -> None:
+    pass
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:

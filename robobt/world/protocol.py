@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -52,3 +52,27 @@ class World(Protocol):
 
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest (the referee's hand), in world coordinates [m]."""
+
+
+@runtime_checkable
+class Snapshots(Protocol):
+    """What a world may offer besides: its numbers as they lie in memory, for records.
+
+    Taking a frame apart number by number costs many times as much.
+    """
+
+    @property
+    def robots(self) -> Sequence[RobotId]:
+        """The robots, all of them always on the field, in the order of the numbers."""
+
+    def snapshot(self) -> bytes:
+        """What ``truth`` says: x, y, vx, vy of the ball [m, m/s], x, y, heading, vx, vy, omega of
+        each robot [m, rad, m/s, rad/s], all float64, and one byte a robot: whether it feels the ball.
+        """
+
+    def sent(self) -> bytes | None:
+        """The commands of the last ``act``, None where not all of them may have been taken down.
+
+        Of each robot vx, vy [m/s], omega [rad/s], kick speed [m/s], whether the kick waits
+        for contact and whether the dribbler turns, all float64.
+        """

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import base64
 import binascii
+from collections.abc import Iterable, Sequence
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.match.recording.header import RobotFlag
 from robobt.world.geometry import FloatArray
+from robobt.world.state import RobotId
 
 BALL = 4
 """Columns of the ball: x, y, vx, vy."""
@@ -90,6 +93,49 @@ class Columns:
             headings = rows[self._headings]
             rows[self._headings] = (headings + _TURN // 2) % _TURN - _TURN // 2
         return rows.T
+
+
+class Snapshot:
+    """Where the numbers that a world takes down itself belong among the columns.
+
+    Args:
+        world: in the order of the world's numbers its robots.
+        robots: the robots of the columns.
+    """
+
+    def __init__(self, world: Sequence[RobotId], robots: Sequence[RobotId]) -> None:
+        self._count, self._size = len(robots), len(world)
+        self._slots: list[int] | slice = [slot for slot, robot in enumerate(robots) if robot in world]
+        self._rows: list[int] | slice = [world.index(robot) for robot in robots if robot in world]
+        if tuple(world) == tuple(robots):
+            self._slots = self._rows = slice(None)
+
+    def poses(self, taken: Iterable[bytes]) -> FloatArray:
+        """The columns of ball and robots of what :meth:`Snapshots.snapshot` gave."""
+        contact = 8 * (BALL + (POSE - 1) * self._size)
+        rows = np.frombuffer(b"".join(taken), np.uint8).reshape(-1, contact + self._size)
+        numbers = rows[:, :contact].copy().view(np.float64)
+        table = np.full((len(rows), BALL + POSE * self._count), np.nan)
+        table[:, :BALL] = numbers[:, :BALL]
+        robots = table[:, BALL:].reshape(len(rows), self._count, POSE)
+        poses = numbers[:, BALL:].reshape(len(rows), self._size, POSE - 1)
+        robots[:, self._slots, :-1] = poses[:, self._rows]
+        robots[:, self._slots, -1] = rows[:, contact:][:, self._rows]
+        table[:, BALL:] = robots.reshape(len(rows), -1)
+        return table
+
+    def sent(self, taken: Iterable[bytes]) -> FloatArray:
+        """The columns of commands of what :meth:`Snapshots.sent` gave."""
+        sent: FloatArray = np.frombuffer(b"".join(taken)).reshape(-1, self._size, 6)[:, self._rows]
+        table = np.zeros((len(sent), self._count, SENT))
+        kick = np.where(
+            sent[:, :, 4] > 0.0, RobotFlag.KICK.value, (RobotFlag.KICK | RobotFlag.KICK_NOW).value
+        )
+        dribbler = RobotFlag.DRIBBLER.value * sent[:, :, 5]
+        flags = RobotFlag.COMMANDED.value + dribbler + kick * (sent[:, :, 3] != 0.0)
+        table[:, self._slots, :-1] = sent[:, :, : SENT - 1]
+        table[:, self._slots, -1] = flags
+        return table.reshape(len(sent), -1)
 
 
 def _shuffled(values: NDArray[np.signedinteger]) -> bytes:

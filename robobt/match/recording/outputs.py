@@ -19,6 +19,9 @@ from robobt.world.state import Frame
 
 Values: TypeAlias = tuple[Any, ...]
 
+Written: TypeAlias = tuple[int, Values, Values]
+"""A store by its place, what its entries held before and what they hold."""
+
 quote = json.encoder.encode_basestring_ascii
 _LONGEST_TEXT = 200
 _MOST_ITEMS = 100
@@ -51,57 +54,80 @@ class OutputWatch:
     """
 
     def __init__(self, entries: Mapping[str, tuple[object, SequenceOf[str]]]) -> None:
-        self._entries = [(name, store, entry) for name, (store, some) in entries.items() for entry in some]
+        self._entries = [(name, store, tuple(some)) for name, (store, some) in entries.items() if some]
         self._ask = self._asker()
-        self._values: Values = (None,) * len(self._entries)
-        self._seen = self._values
-        self._told = ["null"] * len(self._entries)
+        self._values: list[Values] = [(None,) * len(some) for _, _, some in self._entries]
+        self._all = tuple(self._values)
+        self._told = [["null"] * len(some) for _, _, some in self._entries]
 
-    def look(self) -> Values | None:
-        """The values; None when they are as at the last look."""
+    def look(self) -> list[Written] | None:
+        """The stores of which a value is not what it was at the last look, None without any."""
         try:
             values = self._ask()
-            if values == self._values:
+            if values == self._all:
                 return None
         except Exception:
             # An entry that is not there, or values that do not compare to a truth, as arrays.
-            values = tuple([getattr(store, entry, None) for _, store, entry in self._entries])
-        self._values = tuple(
-            [
-                item if item.__class__ not in _COPIED else old if _same(item, old) else item.copy()
-                for item, old in zip(values, self._values, strict=True)
-            ]
-        )
-        return self._values
-
-    def tell(self, values: Values) -> str:
-        """What changed since the values told before: a JSON object by store and entry, "" if nothing."""
-        changed: dict[str, list[str]] = {}
-        seen, self._seen = self._seen, values
-        for place, (value, before) in enumerate(zip(values, seen, strict=True)):
-            if value is before:
+            values = self._ask_slowly()
+        written: list[Written] = []
+        for place, now in enumerate(values):
+            before = self._values[place]
+            if _same(now, before):
                 continue
-            text = value_text(value)
-            if text != self._told[place]:
-                self._told[place] = text
-                name, _, entry = self._entries[place]
-                changed.setdefault(name, []).append(f"{quote(entry)}:{text}")
-        if not changed:
-            return ""
-        return "{" + ",".join([f"{quote(name)}:{{{','.join(some)}}}" for name, some in changed.items()]) + "}"
+            if not _COPIED.isdisjoint(map(type, now)):
+                now = _kept(now, before)
+            self._values[place] = now
+            written.append((place, before, now))
+        self._all = tuple(self._values)
+        return written
 
-    def _asker(self) -> Callable[[], Values]:
+    def tell(self, written: list[Written]) -> str:
+        """What changed since what was told before: a JSON object by store and entry, "" if nothing."""
+        changed: list[str] = []
+        for place, before, now in written:
+            name, _, entries = self._entries[place]
+            told, parts = self._told[place], []
+            for i, value in enumerate(now):
+                if value is before[i]:
+                    continue
+                text = value_text(value)
+                if text != told[i]:
+                    told[i] = text
+                    parts.append(f"{quote(entries[i])}:{text}")
+            if parts:
+                changed.append(f"{quote(name)}:{{{','.join(parts)}}}")
+        return f"{{{','.join(changed)}}}" if changed else ""
+
+    def _asker(self) -> Callable[[], tuple[Values, ...]]:
         """A function that gets all values, with a place in its code for each, as in TreeWatch."""
+        if not all(entry.isidentifier() for _, _, some in self._entries for entry in some):
+            return self._ask_slowly
+        stores = [
+            "(" + "".join([f"'{place}'.{entry}," for entry in some]) + ")"
+            for place, (_, _, some) in enumerate(self._entries)
+        ]
+        made: FunctionType = eval(f"lambda:({''.join([store + ',' for store in stores])})")
         named = {f"{place}": store for place, (_, store, _) in enumerate(self._entries)}
-        if not all(entry.isidentifier() for _, _, entry in self._entries):
-            return lambda: tuple([getattr(store, entry, None) for _, store, entry in self._entries])
-        parts = [f"'{place}'.{entry}" for place, (_, _, entry) in enumerate(self._entries)]
-        made: FunctionType = eval(f"lambda:({''.join(part + ',' for part in parts)})")
         constants = tuple([named.get(item, item) for item in made.__code__.co_consts])
         return FunctionType(made.__code__.replace(co_consts=constants), {})
 
+    def _ask_slowly(self) -> tuple[Values, ...]:
+        return tuple(
+            [tuple([getattr(store, entry, None) for entry in some]) for _, store, some in self._entries]
+        )
+
 
 _COPIED = frozenset((list, set, dict))
+
+
+def _kept(now: Values, before: Values) -> Values:
+    """The values with copies of those that may be changed in place."""
+    return tuple(
+        [
+            item if item.__class__ not in _COPIED else old if _same(item, old) else item.copy()
+            for item, old in zip(now, before, strict=True)
+        ]
+    )
 
 
 def _same(one: object, other: object) -> bool:

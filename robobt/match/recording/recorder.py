@@ -28,8 +28,8 @@ from robobt.match.recording.header import (
     RecordedRobot,
     RecordingHeader,
 )
-from robobt.match.recording.numbers import BALL, POSE, SENT, Columns
-from robobt.match.recording.outputs import OutputWatch, Values, quote, team_entries, written_entries
+from robobt.match.recording.numbers import BALL, POSE, SENT, Columns, Snapshot
+from robobt.match.recording.outputs import OutputWatch, Written, quote, team_entries, written_entries
 from robobt.skills.store import Store
 from robobt.tree import TreeRunner
 from robobt.tree.drawing import describe
@@ -37,6 +37,7 @@ from robobt.tree.recording import Look, TreeWatch, node_paths
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import GameState, Team
 from robobt.world.geometry import FloatArray
+from robobt.world.protocol import Snapshots
 from robobt.world.state import Frame, RobotId
 
 _FLUSH_PERIOD = 1.0
@@ -56,6 +57,8 @@ class Recorder:
         header: what stays the same. The trees of its robots are taken from ``runners``.
         runners: the runner of each robot whose tree is recorded.
         stores: the store of each robot whose skills' outputs are recorded.
+        world: where it is played; from one that offers :class:`~robobt.world.protocol.Snapshots`
+            the numbers of frames that the recorder is told to :meth:`see` are taken as they are.
 
     Raises:
         OSError: the file cannot be written.
@@ -67,6 +70,7 @@ class Recorder:
         header: RecordingHeader,
         runners: Mapping[RobotId, TreeRunner] | None = None,
         stores: Mapping[RobotId, Store] | None = None,
+        world: object = None,
     ) -> None:
         self.path = Path(path)
         runners = {} if runners is None else runners
@@ -83,7 +87,13 @@ class Recorder:
         self._nothing = [0.0] * (SENT * len(robots))
         self._pack_poses = Struct(f"={len(self._nowhere)}d").pack
         self._pack_sent = Struct(f"={len(self._nothing)}d").pack
+        self._world = world if isinstance(world, Snapshots) else None
+        order = () if self._world is None else self._world.robots
+        self._snapshot = Snapshot(order, [robot.id for robot in robots])
+        self._crowd = len(order)
+        # The frame that was seen for the coming tick, and the last tick's commands if the world knows them.
         self._begun: tuple[Frame | None, bytes] = (None, b"")
+        self._pending: Mapping[RobotId, RobotCommand] | None = None
         self._columns = Columns(len(robots))
         self._keys: list[RobotId] = []
         self._order: list[int] = []
@@ -92,17 +102,21 @@ class Recorder:
         # What is still to be written: events, and of each tick time, numbers and what changed.
         self._events: list[str] = []
         self._times: list[float] = []
-        self._packed: list[bytes] = []
-        self._commands: list[bytes] = []
-        self._seen: dict[int, bytes] = {}
+        # By tick: numbers as the world has them, or else in the order of the columns.
+        self._taken: dict[int, bytes] = {}
+        self._poses: dict[int, bytes] = {}
+        self._acted: dict[int, bytes] = {}
+        self._commands: dict[int, bytes] = {}
+        self._shown: dict[int, bytes] = {}
         self._looks: dict[tuple[int, int], Look] = {}
-        self._values: list[tuple[int, Values]] = []
+        self._written: list[tuple[int, list[Written]]] = []
         self._words: list[tuple[int, str, Any]] = []
         self._trees = [
             (slot, robot.id, TreeWatch(runners[robot.id], partial(self._notice, slot)))
             for slot, robot in enumerate(robots)
             if robot.id in runners
         ]
+        self._watches = [watch for _, _, watch in self._trees]
         self._tree_of = {slot: (robot, watch) for slot, robot, watch in self._trees}
         # Few enough writes, and a kill loses no more than that.
         self._most_ticks = max(1, round(_FLUSH_PERIOD / header.period))
@@ -140,19 +154,31 @@ class Recorder:
             observed: what the trees were shown where that was something else.
         """
         tick = len(self._times)
-        begun, poses = self._begun
-        self._packed.append(poses if begun is frame else self._poses(frame))
-        self._commands.append(self._sent(commands or {}))
+        begun, numbers = self._begun
+        if begun is not frame:
+            self._poses[tick] = self._numbers_of(frame)
+        elif self._world is None:
+            self._poses[tick] = numbers
+        else:
+            self._taken[tick] = numbers
+        if self._pending is not None:
+            self._commands[tick - 1] = self._sent(self._pending)
+            self._pending = None
+        if commands and begun is frame and len(commands) == self._crowd:
+            self._pending = commands
+        else:
+            self._commands[tick] = self._sent(commands or {})
         if observed is not None:
-            self._seen[tick] = self._poses(observed)
-        for _, _, watch in self._trees:
-            if watch.ticked:
-                watch.ticked = False
+            self._shown[tick] = self._numbers_of(observed)
+        for watch in self._watches:
+            ticks = watch.runner.ticks
+            if watch.usual and ticks != watch.ticks:
+                watch.ticks = ticks
             else:
-                watch.rest()
-        values = self._outputs.look()
-        if values is not None:
-            self._values.append((tick, values))
+                watch.settle()
+        written = self._outputs.look()
+        if written is not None:
+            self._written.append((tick, written))
         game = frame.game if frame.team is Team.BLUE else frame.game.mirrored()
         if game is not self._game:
             if game != self._game:
@@ -197,10 +223,23 @@ class Recorder:
         self._looks[len(self._times), slot] = look
 
     def see(self, frame: Frame) -> None:
-        """Take down the frame of the coming :meth:`tick`, if it pays to do so while it is still at hand."""
-        self._begun = (frame, self._poses(frame))
+        """Take down the frame of the coming :meth:`tick`, which the world has just shown.
 
-    def _poses(self, frame: Frame) -> bytes:
+        It pays while its numbers are still at hand. A world that was told to act on the commands
+        of the last tick has them at hand as well.
+        """
+        world = self._world
+        if world is None:
+            self._begun = (frame, self._numbers_of(frame))
+            return
+        if self._pending is not None:
+            sent = world.sent()
+            if sent is not None:
+                self._acted[len(self._times) - 1] = sent
+                self._pending = None
+        self._begun = (frame, world.snapshot())
+
+    def _numbers_of(self, frame: Frame) -> bytes:
         blue = frame if frame.team is Team.BLUE else frame.mirrored()
         numbers = self._nowhere.copy()
         ball = blue.ball
@@ -241,29 +280,50 @@ class Recorder:
         block, ticks = "", len(self._times)
         if ticks:
             times = ",".join([repr(round(time, 6)) for time in self._times])
-            text = self._columns.pack(self._table(self._packed))
+            if self._pending is not None:
+                self._commands[ticks - 1] = self._sent(self._pending)
+                self._pending = None
+            table = self._table()
+            text = self._columns.pack(table)
             block = f'{{"n":{ticks},"t":[{times}],"x":"{text}"'
-            shown = [self._seen.get(i, row) for i, row in enumerate(self._packed)]
-            if shown != self._packed:
-                block += f',"o":"{self._columns.pack(self._table(shown))}"'
+            if self._shown:
+                shown = self._columns.pack(self._with_shown(table))
+                block += f',"o":"{shown}"' if shown != text else ""
             changes = self._changes()
             block += f',"c":{changes}}}' if changes else "}"
             for waiting in (
                 self._times,
-                self._packed,
+                self._taken,
+                self._poses,
+                self._acted,
                 self._commands,
-                self._seen,
+                self._shown,
                 self._looks,
-                self._values,
+                self._written,
                 self._words,
             ):
                 waiting.clear()
         lines, self._events = self._events, []
         self._write([*lines, block] if block else lines)
 
-    def _table(self, poses: list[bytes]) -> FloatArray:
-        rows = [part for row in zip(poses, self._commands, strict=True) for part in row]
-        return np.frombuffer(b"".join(rows)).reshape(len(poses), -1)
+    def _table(self) -> FloatArray:
+        """The numbers of all waiting ticks (ticks, columns)."""
+        columns = self._columns
+        table = np.empty((len(self._times), columns.count))
+        poses, sent = table[:, : columns.poses], table[:, columns.poses :]
+        if self._taken:
+            poses[list(self._taken)] = self._snapshot.poses(self._taken.values())
+        if self._poses:
+            poses[list(self._poses)] = _rows(self._poses)
+        if self._acted:
+            sent[list(self._acted)] = self._snapshot.sent(self._acted.values())
+        if self._commands:
+            sent[list(self._commands)] = _rows(self._commands)
+        return table
+
+    def _with_shown(self, table: FloatArray) -> FloatArray:
+        table[list(self._shown), : self._columns.poses] = _rows(self._shown)
+        return table
 
     def _changes(self) -> str:
         """What changed in this block, a JSON object by tick; "" if nothing did."""
@@ -285,10 +345,10 @@ class Recorder:
             if change.said:
                 words = ",".join([f'"{place}":{quote(text)}' for place, text in change.said.items()])
                 said.setdefault(tick, []).append(f'"{slot}":{{{words}}}')
-        for tick, values in self._values:
-            written = self._outputs.tell(values)
-            if written:
-                others.setdefault(tick, []).append(f'"w":{written}')
+        for tick, written in self._written:
+            text = self._outputs.tell(written)
+            if text:
+                others.setdefault(tick, []).append(f'"w":{text}')
         for tick, key, value in self._words:
             others.setdefault(tick, []).append(f'"{key}":{_encode(value)}')
         ticks = []
@@ -323,6 +383,10 @@ class Recorder:
             self._file = None
             with naming(self.path):
                 file.close()
+
+
+def _rows(packed: Mapping[int, bytes]) -> FloatArray:
+    return np.frombuffer(b"".join(packed.values())).reshape(len(packed), -1)
 
 
 def _outputs_of(
