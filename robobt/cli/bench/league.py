@@ -55,13 +55,11 @@ def bench_filter(
         f"ball {noise['ball'] * 1e3:.1f} mm, heading {noise['heading']:.3f} rad; "
         f"latency {figures['latency'] * 1e3:.0f} ms."
     )
-    listed = table(
-        "situation", "", "robot, mm", "heading, rad", "robot, m/s", "turn, rad/s", "ball, mm", "ball, m/s"
-    )
-    for situation in ("constant_velocity", "play"):
+    for situation, title in (("constant_velocity", "at constant velocity"), ("play", "in a match")):
+        listed = table(title, "robot, mm", "rad", "m/s", "rad/s", "ball, mm", "m/s")
         for when, rms in figures[situation].items():
-            listed.add_row(situation.replace("_", " "), when.replace("_", " "), *_row(rms))
-    console.print(listed)
+            listed.add_row(when.replace("_", " "), *_row(rms))
+        console.print(listed)
 
 
 def _row(rms: dict[str, float]) -> list[str]:
