@@ -442,7 +442,8 @@ class LeagueWorld:
         return CameraFrame(frame.camera, frame.number, frame.captured, frame.sent, balls, robots)
 
     def _frame(self, at: float) -> Frame:
-        frame = self._filter.frame_at(at)
+        captured = self._filter.captured
+        frame = self._filter.frame_at(at if captured is None else min(at, captured + _FURTHEST))
         frame.time = self._looked - self._began
         frame.period = self.period
         frame.game = self._game(frame)

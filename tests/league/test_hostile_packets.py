@@ -1,0 +1,256 @@
+"""Whatever arrives at an open port is used or counted; nothing crashes, hangs or piles up."""
+
+from __future__ import annotations
+
+import math
+import socket
+import sys
+from collections.abc import Callable, Iterator
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from robobt.league.cameras import Cameras
+from robobt.league.commands import BallTeleport, Teleport, write_grsim, write_grsim_placement, write_teleport
+from robobt.league.endpoints import Endpoints
+from robobt.league.gamecontroller import RefereePublisher
+from robobt.league.messages import (
+    Message,
+    RealismConfigErForce,
+    Referee,
+    RobotControl,
+    Robots_Status,
+    SimulatorCommand,
+    SSL_WrapperPacket,
+    grSim_Packet,
+)
+from robobt.league.served_field import ServedField, line_up
+from robobt.league.server import SimServer
+from robobt.league.sockets import PacketCounts
+from robobt.league.vision import write_field, write_vision
+from robobt.league.world import LeagueWorld
+from robobt.sim.settings import REALISM
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.game import GameState, RefereeCommand, Restart, Team
+from robobt.world.state import RobotId
+from tests.league.mutations import mutations
+from tests.league.served import free_endpoints
+
+FEW, MANY = 2_000, 1_000_000
+BATCH = 40
+"""Datagrams sent in one go; so many of the longest ones a socket can keep."""
+
+AMOUNTS = [FEW, pytest.param(MANY, marks=pytest.mark.slow)]
+
+ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 1)
+
+
+@pytest.fixture
+def endpoints() -> Endpoints:
+    return free_endpoints()
+
+
+@pytest.fixture
+def server(endpoints: Endpoints) -> Iterator[SimServer]:
+    with SimServer(ServedField(DIVISION_B, line_up(DIVISION_B, 2)), endpoints) as server:
+        yield server
+
+
+@pytest.fixture
+def world(endpoints: Endpoints) -> Iterator[LeagueWorld]:
+    robots = dict.fromkeys((ME, HER))
+    with LeagueWorld(robots=robots, endpoints=endpoints, follow_referee=True) as world:
+        yield world
+
+
+def hammer(
+    to: tuple[str, int],
+    seeds: list[Message],
+    amount: int,
+    counts: list[PacketCounts],
+    take_in: Callable[[], object],
+) -> None:
+    """Send mutated packets and have them taken in; every one of them has to be counted."""
+    packets = mutations(seeds, seed=amount)
+
+    def counted(name: str | None = None) -> int:
+        every = [one.to_json() for one in counts]
+        return sum(one[name] if name else sum(one.values()) for one in every)
+
+    before = counted()
+    blocks = []
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        for number in range(0, amount, BATCH):
+            if number in (amount // 2, amount - BATCH):
+                blocks.append(sys.getallocatedblocks())
+            for data in islice(packets, BATCH):
+                sock.sendto(data, to)
+            for _ in range(1000):
+                if counted() >= before + number + BATCH:
+                    break
+                take_in()
+            assert counted() == before + number + BATCH
+    for name in ("accepted", "unreadable", "incomplete", "implausible", "oversized"):
+        assert counted(name) > 0, name
+    # Objects that Python has for all that: no more than before.
+    assert blocks[1] - blocks[0] < 5_000
+
+
+def commands_of_grsim() -> list[Message]:
+    commands = {number: RobotCommand(1.0, -0.5, 2.0, 4.0, dribbler=True) for number in range(2)}
+    robots = [Teleport(RobotId(team, n), 1.0, float(n), 0.5) for team in Team for n in range(2)]
+    place = write_grsim_placement(robots, BallTeleport(0.5, 0.5, 1.0, 0.0))
+    wheels = grSim_Packet.FromString(write_grsim(Team.YELLOW, commands, 1.0))
+    for robot in wheels.commands.robot_commands:
+        robot.wheelsspeed = True
+        robot.wheel1 = robot.wheel2 = robot.wheel3 = robot.wheel4 = 30.0
+    return [
+        grSim_Packet.FromString(write_grsim(Team.BLUE, commands, 1.0)),
+        grSim_Packet.FromString(place),
+        wheels,
+    ]
+
+
+def controls() -> list[Message]:
+    message = RobotControl()
+    for number in range(3):
+        robot = message.robot_commands.add(id=number, kick_speed=3.0, kick_angle=0.0, dribbler_speed=1500.0)
+        if number == 0:
+            robot.move_command.local_velocity.forward = 1.0
+            robot.move_command.local_velocity.left = robot.move_command.local_velocity.angular = 0.5
+        elif number == 1:
+            robot.move_command.global_velocity.x = robot.move_command.global_velocity.y = 0.5
+            robot.move_command.global_velocity.angular = 0.1
+        else:
+            wheels = robot.move_command.wheel_velocity
+            wheels.front_left = wheels.back_left = wheels.back_right = wheels.front_right = 1.0
+    return [message]
+
+
+def orders_to_the_simulator() -> list[Message]:
+    robots = [
+        Teleport(RobotId(team, n), 1.0, float(n), 0.5, 1.0, 0.0, 1.0) for team in Team for n in range(2)
+    ]
+    teleport = SimulatorCommand.FromString(write_teleport(robots, BallTeleport(0.5, 0.5, 1.0, 0.0)))
+    configure = SimulatorCommand()
+    configure.control.simulation_speed = 1.0
+    for number in range(2):
+        spec = configure.config.robot_specs.add()
+        spec.id.id, spec.id.team = number, 2
+        spec.limits.vel_absolute_max = spec.limits.vel_angular_max = 2.0
+    configurations: list[Message] = [teleport, configure]
+    for realism in (
+        RealismConfigErForce(stddev_ball_p=0.1, stddev_robot_p=1e38, missing_ball_detections=0.5),
+        RealismConfigErForce(vision_delay=2**62),
+        RealismConfigErForce(vision_delay=100_000_000, robot_command_loss=0.1, stddev_robot_phi=0.1),
+    ):
+        one = SimulatorCommand()
+        one.config.realism_config.custom.add().Pack(realism)
+        configurations.append(one)
+    return configurations
+
+
+@pytest.mark.parametrize("amount", AMOUNTS)
+@pytest.mark.parametrize("port", ["grsim", "control", "blue", "yellow"])
+def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: str, amount: int) -> None:
+    seeds = {"grsim": commands_of_grsim, "control": orders_to_the_simulator}.get(port, controls)()
+
+    def take_in() -> None:
+        server.receive()
+        server.step()
+        server.send_due(server.field.time)
+
+    hammer(("127.0.0.1", getattr(server.endpoints, port)), seeds, amount, [server.counts[port]], take_in)
+    # Nothing is left of it but a field like any other, on which robots obey.
+    server._set_realism(REALISM["none"])
+    server.field.teleport_ball(BallTeleport(-1.0, 1.0, 0.0, 0.0))
+    assert server.field.teleport(Teleport(ME, 0.0, 0.0, 0.0)) is None
+    server.field.limit(ME, server.field.settings.limits)
+    for robot, pose in server.field.poses().items():
+        assert all(map(math.isfinite, pose)), robot
+        if robot != ME:
+            server.field.teleport(Teleport(robot, present=False))
+    for _ in range(30):
+        assert server.field.command(ME, RobotCommand(1.0))
+        server.step()
+    (me,) = server.field.truth().own
+    assert me.speed == pytest.approx(1.0, abs=0.01)
+    assert server.field.ball() == pytest.approx((-1.0, 1.0))
+
+
+class Vision:
+    """What a camera over a field at rest sends, its clock running on."""
+
+    def __init__(self) -> None:
+        self.field = ServedField(DIVISION_B, line_up(DIVISION_B, 2))
+        self.cameras = Cameras(DIVISION_B, REALISM["none"], 1, np.random.default_rng(0))
+        self.time = 100.0
+
+    def packet(self) -> bytes:
+        self.time += 1 / 60
+        (frame,) = self.cameras.look(self.time, self.time, self.field.poses(), self.field.ball())
+        return write_vision(frame, write_field(DIVISION_B))
+
+
+@pytest.mark.parametrize("amount", AMOUNTS)
+def test_the_player_survives_what_is_sent_as_vision(
+    world: LeagueWorld, endpoints: Endpoints, amount: int
+) -> None:
+    vision = Vision()
+    seeds: list[Message] = [SSL_WrapperPacket.FromString(vision.packet()) for _ in range(20)]
+    turn = 0
+
+    def take_in() -> None:
+        nonlocal turn
+        turn += 1
+        world._receive(0.0)
+        for frame in (world.observe(), world.truth()):
+            for state in (*frame.own, *frame.opponents):
+                assert all(
+                    map(math.isfinite, (state.x, state.y, state.heading, state.vx, state.vy, state.omega))
+                )
+            assert all(map(math.isfinite, (*frame.ball.position, frame.ball.vx, frame.ball.vy)))
+        if turn % 500 == 0:
+            world.act({ME: RobotCommand(1.0)})
+
+    hammer(endpoints.vision, seeds, amount, [world.counts()["vision"]], take_in)
+    # It sees again at once what is there.
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        for _ in range(60):
+            sock.sendto(vision.packet(), endpoints.vision)
+            world._receive(0.1)
+            world.observe()
+    assert {RobotId(team, n) for team in Team for n in range(2)} <= set(world.robots())
+    frame = world.truth()
+    assert frame.own[0].position == pytest.approx(vision.field.poses()[ME][:2], abs=0.01)
+
+
+@pytest.mark.parametrize("amount", AMOUNTS)
+@pytest.mark.parametrize("port", ["referee_port", "blue_status", "yellow_status"])
+def test_the_player_survives_what_is_sent_to_its_other_ports(
+    world: LeagueWorld, endpoints: Endpoints, port: str, amount: int
+) -> None:
+    counts = [world.counts()[port]]
+    if port == "referee_port":
+        counts.append(world.counts()["referee"])
+        game = GameState(
+            RefereeCommand.STOP, restart=Restart.FREE_KICK, restart_team=Team.BLUE, placement=(1.0, 1.0)
+        )
+        seeds: list[Message] = [Referee.FromString(RefereePublisher().write(game, 5.0))]
+        to: tuple[str, int] = endpoints.referee
+    else:
+        status = Robots_Status()
+        for number in range(3):
+            status.robots_status.add(robot_id=number, infrared=True, flat_kick=False, chip_kick=False)
+        seeds = [status]
+        to = ("127.0.0.1", getattr(endpoints, port))
+
+    def take_in() -> None:
+        world._receive(0.0)
+        for robot, contact in world._link.feedback():
+            world._filter.feedback(robot, contact)
+        world.observe()
+
+    hammer(to, seeds, amount, counts, take_in)
