@@ -30,6 +30,7 @@ MOST_FEEDBACK = 40_000
 _ABSENT = -(2**15)
 _SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
 _FEEDBACK_PERIOD = 0.1
+_GOAL_LINE = "goal_line"
 
 
 def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
@@ -98,6 +99,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
                 "statuses": _steps(((tick, letters[word]) for tick, word in statuses[slot]), frames, stride),
                 "feedback": _feedback_steps(feedback, texts, frames, stride),
                 "outputs": _steps(_output_texts(recording.outputs[slot], texts), frames, stride),
+                "goal_line": _steps(_goal_lines(recording.outputs[slot], texts), frames, stride),
             }
         )
     ball = recording.ball[::stride]
@@ -215,8 +217,29 @@ def _output_texts(changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table) 
     written: dict[str, Any] = {}
     for tick, change in changes:
         written.update(change)
-        parts = [f"{entry} {_say(value)}" for entry, value in written.items() if value is not None]
+        parts = [
+            f"{entry} {_say(value)}"
+            for entry, value in written.items()
+            if value is not None and entry != _GOAL_LINE
+        ]
         yield tick, texts[" · ".join(parts)]
+
+
+def _goal_lines(
+    changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table
+) -> Iterable[tuple[int, list[Any] | None]]:
+    """What a robot thought of the goal line: half its length [mm] and its text, None for nothing."""
+    for tick, change in changes:
+        if _GOAL_LINE not in change:
+            continue
+        line = change[_GOAL_LINE]
+        try:
+            found = [float(line["reach"]) * 1000.0, texts[_base64(base64.b64decode(line["chances"]))]]
+        except (KeyError, TypeError, ValueError):
+            # Some other skill's idea of it, which the page shows nothing of.
+            yield tick, None
+        else:
+            yield tick, found
 
 
 def _say(value: Any) -> str:

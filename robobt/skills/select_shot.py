@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.skills.raters import ShotRater, make_rater
+from robobt.skills.raters.goal_line import judged_goal_line
 from robobt.skills.store import Shot
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance, wrap_angle
@@ -16,7 +17,8 @@ class SelectShot(Skill):
     """Rate the shots from where the ball lies and write the best one to ``shot``.
 
     SUCCESS when there is one good enough. FAILURE otherwise, with the reason, and
-    ``shot`` is None.
+    ``shot`` is None. What a rater with an opinion on every point of the goal line thinks of
+    it goes to ``goal_line``, to be recorded and shown.
 
     Args:
         rater: name of a shot rater, or a rater with settings of its own.
@@ -29,7 +31,7 @@ class SelectShot(Skill):
     """
 
     reads: ClassVar[tuple[str, ...]] = ("shot",)
-    writes: ClassVar[tuple[str, ...]] = ("shot",)
+    writes: ClassVar[tuple[str, ...]] = ("shot", "goal_line")
     optional: ClassVar[tuple[str, ...]] = ("shot",)
 
     def __init__(
@@ -51,11 +53,14 @@ class SelectShot(Skill):
     def on_running(self) -> Status:
         """Rate and choose."""
         last, self.store.shot = self.store.shot, None
+        judged, self.store.goal_line = self.store.goal_line, None
         frame = self.frame
         origin = self.ball.position
         if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
             return self.fail(f"farther than {self.max_distance:g} m from the goal")
-        shots = self.rater.rate_all(frame, origin, self.me)
+        shots, chances = self.rater.judge(frame, origin, self.me)
+        if chances is not None:
+            self.store.goal_line = judged_goal_line(*chances, judged)
         if not shots:
             return self.fail("no way to the goal is free")
         best = shots[0].score

@@ -27,6 +27,21 @@ class Shot:
 
 
 @dataclass(slots=True, frozen=True)
+class GoalLine:
+    """The opponent's goal line as a shot rater judges it, small enough to be recorded at every tick.
+
+    Attributes:
+        reach: the outermost points lie this far to either side of the goal's middle, the others
+            evenly between them [m].
+        chances: of every point from right (y < 0) to left the chance of a goal in percent, a
+            byte each, in base64.
+    """
+
+    reach: float
+    chances: str
+
+
+@dataclass(slots=True, frozen=True)
 class Pass:
     """A chosen pass: the receiver's number, where it shall go [m], ball speed [m/s], score 0 to 1."""
 
@@ -88,6 +103,7 @@ class Store:
         team: what the team shares.
         target: where a skill wants the robot or the ball to go [m].
         shot: the shot selected last, None when there is none.
+        goal_line: what a rater that judges every point of it thought of it then, None without one.
         pass_: the pass selected last, None when there is none.
     """
 
@@ -98,6 +114,7 @@ class Store:
     team: TeamStore = field(default_factory=TeamStore)
     target: Point | None = None
     shot: Shot | None = None
+    goal_line: GoalLine | None = None
     pass_: Pass | None = None
 
     @property

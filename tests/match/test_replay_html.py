@@ -11,9 +11,11 @@ import pytest
 from robobt.match import replay_html as module
 from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
 from robobt.match.replay_html import page_data, replay_html, write_html
+from robobt.skills import SelectShot, Store
 from robobt.tree import Selector, TreeRunner
-from robobt.world import DIVISION_A, Team
+from robobt.world import DIVISION_A, RobotId, Team
 from tests.match.made_recording import BLUE_1, YELLOW_0, Wait, frame, header, record
+from tests.skills import fixed_world
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror='alert(2)'>&lt;{{data}}{{title}}<!--"
 
@@ -219,3 +221,52 @@ def test_the_page_is_written_from_a_recording_or_its_file(tmp_path: Path, record
     with pytest.raises(RecordingError, match="not a robobt recording"):
         write_html(tmp_path / "words", tmp_path / "no.html")
     assert not (tmp_path / "no.html").exists()
+
+
+def shooting(path: Path, rater: str) -> Recording:
+    """A shooter that looks for a shot past a goalkeeper that goes from one side to the other."""
+    me, shooter = fixed_world.robot(2.4, 0.0), RobotId(Team.BLUE, 0)
+    scenes = [
+        fixed_world.frame(
+            me, fixed_world.held(me), opponents=(fixed_world.robot(3.9, y, 3.1),), time=tick / 60
+        )
+        for tick, y in enumerate((0.4, 0.4, 0.4, -0.4, -0.4))
+    ]
+    store = Store(scenes[0], me)
+    runner = TreeRunner(SelectShot(rater=rater), store)
+    robots = (RecordedRobot(team=Team.BLUE, number=0),)
+    with Recorder(path, header(robots=robots), {shooter: runner}, {shooter: store}) as recorder:
+        for store.frame in scenes:
+            runner.tick()
+            recorder.tick(store.frame)
+        recorder.close({})
+    return load_recording(path)
+
+
+def test_the_page_holds_the_goal_line_as_a_robot_judges_it_when_that_changes(tmp_path: Path) -> None:
+    data = page_data(shooting(tmp_path / "shooting.robobt.jsonl", "expected_goal"))
+    (shooter,) = data["robots"]
+    assert shooter["goal_line"][::2] == [0, 3]
+    for (reach, text), best in zip(shooter["goal_line"][1::2], (slice(0, 47), slice(47, 94)), strict=True):
+        assert reach == pytest.approx(465.0)
+        percent = np.frombuffer(base64.b64decode(data["texts"][text]), dtype=np.uint8)
+        assert len(percent) == 94
+        assert percent[best].max() == percent.max() > 90
+    assert not any("goal_line" in text for text in data["texts"])
+
+
+def test_a_robot_with_a_geometric_rater_has_no_goal_line(tmp_path: Path) -> None:
+    path = tmp_path / "shooting.robobt.jsonl"
+    data = page_data(shooting(path, "segment_clearance"))
+    assert data["robots"][0]["goal_line"] == []
+    assert "goal_line" not in path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("other", ["far", {"reach": 0.4}, {"reach": 0.4, "chances": "not base64!"}, [1, 2]])
+def test_a_goal_line_of_some_other_kind_is_not_drawn(tmp_path: Path, other: Any) -> None:
+    path = tmp_path / "shooting.robobt.jsonl"
+    text = json.dumps(shooting(path, "expected_goal").outputs_at(RobotId(Team.BLUE, 0), 4)["goal_line"])
+    lines = path.read_text(encoding="utf-8").replace(text.replace(" ", ""), json.dumps(other))
+    path.write_text(lines, encoding="utf-8")
+    data = page_data(load_recording(path))
+    assert data["robots"][0]["goal_line"][3] is None

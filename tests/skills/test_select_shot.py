@@ -1,11 +1,14 @@
+from base64 import b64decode
 from math import pi
 
+import numpy as np
 import pytest
 
-from robobt.skills.raters import MovingHorizon
+from robobt.skills.raters import ExpectedGoal, MovingHorizon, NNFiltered
+from robobt.skills.raters.goal_line import goal_candidates, judged_goal_line
 from robobt.skills.select_shot import SelectShot
 from robobt.tree import Status
-from robobt.world import Frame
+from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame
 from tests.skills.fixed_world import Alone, frame, held, robot, shot_at
 
 ME = robot(1.9, 0.0)
@@ -107,3 +110,62 @@ def test_a_mistaken_setting_is_refused_when_the_tree_is_made() -> None:
         SelectShot(rater="segment_clearence")
     with pytest.raises(ValueError, match="tolerance"):
         SelectShot(rater="gaussian", tolerance=0.2)
+
+
+@pytest.mark.parametrize("rater", [NNFiltered(), ExpectedGoal()])
+def test_what_a_learned_rater_thinks_of_every_target_point_is_written(
+    rater: NNFiltered | ExpectedGoal,
+) -> None:
+    alone = Alone(SelectShot(rater=rater))
+    assert alone.tick(guarded(0.4, 3.9)) is Status.SUCCESS
+    line = alone.store.goal_line
+    assert line is not None
+    assert line.reach == pytest.approx(0.465)
+    percent = np.frombuffer(b64decode(line.chances), dtype=np.uint8)
+    assert len(percent) == 94
+    # From right to left: the goalkeeper stands on the left.
+    assert percent[20] > 90
+    assert percent[-1] < 10
+    _, chances = rater.judge(alone.store.frame, alone.store.frame.ball.position, ME)
+    assert chances is not None
+    np.testing.assert_allclose(percent / 100, chances[1], atol=0.0051)
+
+
+def test_a_geometric_rater_judges_no_goal_line() -> None:
+    alone = Alone(SelectShot())
+    alone.tick(guarded(0.2))
+    assert alone.store.goal_line is None
+
+
+def test_a_goal_line_that_was_not_judged_is_not_kept() -> None:
+    alone = Alone(SelectShot(rater="expected_goal", max_distance=3.0))
+    alone.tick(guarded(0.3))
+    assert alone.store.goal_line is not None
+    far = robot(-1.0, 0.0)
+    assert alone.tick(frame(far, held(far), opponents=(robot(4.2, 0.3, pi),))) is Status.FAILURE
+    assert alone.store.goal_line is None
+
+
+def test_a_goal_line_stays_the_same_object_until_a_difference_can_be_seen() -> None:
+    points = goal_candidates(DIVISION_B)
+    first = judged_goal_line(points, np.full(94, 0.5))
+    assert judged_goal_line(points, np.full(94, 0.515), first) is first
+    # What has crept away in small steps is noticed in the end.
+    assert judged_goal_line(points, np.full(94, 0.53), first) != first
+    elsewhere = np.full(94, 0.5)
+    elsewhere[93] = 0.0
+    assert judged_goal_line(points, elsewhere, first) != first
+
+
+@pytest.mark.parametrize(("field", "spacing"), [(DIVISION_A, 0.01), (DIVISION_B, 0.001), (DIVISION_B, 1.0)])
+def test_a_goal_line_of_any_number_of_points_fits_into_a_recording(
+    field: FieldGeometry, spacing: float
+) -> None:
+    points = goal_candidates(field, spacing)
+    line = judged_goal_line(points, np.linspace(0.0, 1.0, len(points)))
+    percent = np.frombuffer(b64decode(line.chances), dtype=np.uint8)
+    assert 1 <= len(percent) <= 100
+    assert line.reach == pytest.approx(points[-1, 1])
+    if len(points) > 1:
+        assert (percent[0], percent[-1]) == (0, 100)
+        assert (np.diff(percent.astype(int)) >= 0).all()

@@ -168,6 +168,7 @@ ON_PURPOSE = {
     ("two-actions", "off the ball"),
     ("two-actions", "Wall"),
     ("two-actions", "CoverAngle"),
+    ("two-actions", "DrawGoalkeeper"),
     # PrepareRestart succeeds for good once the restart may be taken.
     ("two-actions", "KickToTarget"),
     # The ball may be touched until the restart is over, and then it is not a restart.

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 from pydantic import BaseModel, ConfigDict
 
 from robobt.skills.store import Shot
 from robobt.tree import Registry
-from robobt.world.geometry import Point, direction, wrap_angle
+from robobt.world.geometry import FloatArray, Point, direction, wrap_angle
 from robobt.world.state import Frame, RobotState
+
+Chances: TypeAlias = tuple[FloatArray, FloatArray]
+"""Target points (T, 2) along the goal line, from right to left [m], and the chance of a goal at each (T,)."""
 
 
 class ShotRater(BaseModel, ABC):
@@ -40,6 +43,15 @@ class ShotRater(BaseModel, ABC):
             me: the robot that kicks; it does not block itself.
             delay: time until the kick [s], for raters that know about motion.
         """
+
+    def judge(
+        self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0
+    ) -> tuple[list[Shot], Chances | None]:
+        """The openings, and what the rater thinks of every point of the goal line if it asks itself that.
+
+        Arguments as in :meth:`rate_all`.
+        """
+        return self.rate_all(frame, origin, me, delay=delay), None
 
     def rate(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> Shot | None:
         """The best opening, None when there is none; arguments as in :meth:`rate_all`."""

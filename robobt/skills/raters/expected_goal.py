@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr
 
-from robobt.skills.raters.base import RATERS, ShotRater, best_first
+from robobt.skills.raters.base import RATERS, Chances, ShotRater, best_first
 from robobt.skills.raters.goal_line import goal_candidates, lane_clearances, runs
 from robobt.skills.raters.openings import goal_mouth
 from robobt.skills.raters.shot_predictor import shot_predictor
@@ -38,12 +38,23 @@ class ExpectedGoal(ShotRater):
     kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
 
-    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""
+        return self.judge(frame, origin, me, delay=delay)[0]
+
+    def judge(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        *,
+        delay: float = 0.0,  # noqa: ARG002
+    ) -> tuple[list[Shot], Chances | None]:
+        """See :meth:`ShotRater.judge`."""
         points = goal_candidates(frame.field, self.spacing)
         chances = self.chances(frame, origin, me, points)
         if chances is None:
-            return []
+            return [], None
         aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
         half_step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1) / 2.0
         shots = []
@@ -53,7 +64,7 @@ class ExpectedGoal(ShotRater):
             # To the nearer end: an aim that is off by the tolerance is still good on either side.
             near = min(float(aims[region[1] - 1]) - aim, aim - float(aims[region[0]]))
             shots.append(Shot((frame.field.half_length, middle), near + half_step, score))
-        return best_first(shots, origin, me.heading)
+        return best_first(shots, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
         """Probability of a goal for every target point, None where there is no way into the goal.

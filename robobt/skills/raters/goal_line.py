@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from base64 import b64decode, b64encode
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.skills.store import GoalLine
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.state import BALL_RADIUS, Frame, RobotState
 
 POST_GAP = BALL_RADIUS + 0.01
 """Least distance of a target point from a post [m]. Source: the paper's shot selection."""
+
+_MOST_POINTS = 100
+"""Points of a judged goal line that are kept."""
+
+_NOTICED = 2
+"""A judged goal line is another one when a point differs by more than this [%]."""
 
 
 def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
@@ -86,3 +94,24 @@ def runs(clear: NDArray[np.bool_]) -> list[tuple[int, int]]:
     padded[1:-1] = clear
     edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
     return list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine | None = None) -> GoalLine:
+    """A goal line as it was judged, or the one ``before`` while it differs too little to be seen.
+
+    Args:
+        points: (T, 2) on the goal line, evenly from right to left [m].
+        chances: (T,) in [0, 1].
+        before: what was thought of it before.
+    """
+    percent = 100.0 * chances
+    if len(percent) > _MOST_POINTS:
+        kept = np.linspace(0.0, len(percent) - 1.0, _MOST_POINTS)
+        percent = np.interp(kept, np.arange(len(percent)), percent)
+    reach = round(float(points[-1, 1] - points[0, 1]) / 2.0, 6)
+    whole = np.rint(percent).astype(np.uint8)
+    if before is not None and before.reach == reach:
+        old = np.frombuffer(b64decode(before.chances), dtype=np.uint8)
+        if len(old) == len(whole) and bool((np.abs(percent - old) <= _NOTICED).all()):
+            return before
+    return GoalLine(reach, b64encode(whole.tobytes()).decode("ascii"))

@@ -7,7 +7,7 @@ from math import atan2
 import numpy as np
 from pydantic import Field
 
-from robobt.skills.raters.base import RATERS, ShotRater, best_first
+from robobt.skills.raters.base import RATERS, Chances, ShotRater, best_first
 from robobt.skills.raters.goal_line import goal_candidates, lane_clearances, obstacles, runs
 from robobt.skills.raters.shot_predictor import shot_predictor
 from robobt.skills.store import Shot
@@ -34,15 +34,28 @@ class NNFiltered(ShotRater):
     tolerance: float = Field(0.3645, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
 
-    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""
+        return self.judge(frame, origin, me, delay=delay)[0]
+
+    def judge(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        *,
+        delay: float = 0.0,  # noqa: ARG002
+    ) -> tuple[list[Shot], Chances | None]:
+        """See :meth:`ShotRater.judge`; a point that is not clear has no chance."""
         goal_x = frame.field.half_length
         if origin[0] >= goal_x:
-            return []
+            return [], None
         points = goal_candidates(frame.field, self.spacing)
         good = np.all(lane_clearances(origin, points, obstacles(frame, me)) > self.tolerance, axis=1)
+        chances = np.zeros(len(points))
         if good.any():
-            good[good] = self.chances(frame, me, points[good]) >= self.threshold
+            chances[good] = self.chances(frame, me, points[good])
+            good &= chances >= self.threshold
         shots = []
         for first, stop in runs(good):
             low, high = float(points[first, 1]), float(points[stop - 1, 1])
@@ -50,7 +63,7 @@ class NNFiltered(ShotRater):
             margin = self.spacing / 2.0
             angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
             shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
-        return best_first(shots, origin, me.heading)
+        return best_first(shots, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
         """The least chance that any robot leaves each target point.
