@@ -153,6 +153,14 @@ class VisionFilter:
         """Set who touched the ball last, as at a start."""
         self._last_touch = robot
 
+    def ball_put(self, x: float, y: float) -> None:
+        """Believe that the ball lies there until it is seen somewhere else: a robot may hide it."""
+        if self.captured is not None:
+            self._ball = BallTrack(x, y, self.captured, self.settings.ball, self._ball_noise)
+            self._ball_seen = self.captured
+            self._hold = None
+            self._strangers.pop(None, None)
+
     def add(self, frame: CameraFrame) -> bool:
         """Use a camera's frame; False for one that brings nothing new."""
         time = frame.captured

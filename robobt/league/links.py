@@ -114,7 +114,10 @@ class GrSimLink:
 
 
 class ProtocolLink:
-    """The simulation protocol: a control port a team, and one for teleports."""
+    """The simulation protocol: a control port a team, and one for teleports.
+
+    A team without commands gets empty messages, for grSim's sake; see :class:`GrSimLink`.
+    """
 
     places = True
 
@@ -125,11 +128,17 @@ class ProtocolLink:
             Team.YELLOW: Sender(host, endpoints.yellow),
         }
         self._counts = {team: PacketCounts() for team in Team}
+        self._alive_at = -math.inf
 
-    def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:  # noqa: ARG002
+    def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
         """See :class:`Link`."""
-        for team, of_team in by_team(commands).items():
-            self._teams[team].send(write_control(of_team))
+        teams = by_team(commands)
+        silent = not time - self._alive_at < _KEEP_ALIVE
+        if silent:
+            self._alive_at = time
+        for team, sender in self._teams.items():
+            if team in teams or silent:
+                sender.send(write_control(teams.get(team, {})))
 
     def place(self, robots: Iterable[Teleport], ball: BallTeleport | None) -> None:
         """See :class:`Link`."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import isfinite
 
 from robobt.league.messages import TrackerWrapperPacket
 from robobt.league.sockets import PacketCounts, decode
+from robobt.league.vision import LATEST, MOST_NUMBER
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -19,7 +19,6 @@ _FASTEST = 30.0
 """Nothing on a field is faster [m/s, rad/s / 10]."""
 
 _MOST_OBJECTS = 64
-_MOST_NUMBER = 31
 _YELLOW, _BLUE = 1, 2
 
 
@@ -67,7 +66,7 @@ def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tup
         return None
     tracked = message.tracked_frame
     crowded = max(len(tracked.balls), len(tracked.robots)) > _MOST_OBJECTS
-    if not message.HasField("tracked_frame") or not isfinite(tracked.timestamp) or crowded:
+    if not message.HasField("tracked_frame") or not abs(tracked.timestamp) <= LATEST or crowded:
         counts.implausible += 1
         return None
     ball = BallState(0.0, 0.0)
@@ -81,7 +80,7 @@ def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tup
         team = int(robot.robot_id.team)
         values = (robot.pos.x, robot.pos.y, robot.vel.x, robot.vel.y)
         turning = (robot.orientation, robot.vel_angular)
-        if team not in teams or robot.robot_id.id > _MOST_NUMBER or not _plausible(values):
+        if team not in teams or robot.robot_id.id > MOST_NUMBER or not _plausible(values):
             continue
         if not all(abs(value) <= 10.0 * _FASTEST for value in turning):
             continue

@@ -33,7 +33,7 @@ _MOST_OBJECTS = 64
 
 _MOST_CAMERAS = 64
 
-_LATEST = 1e10
+LATEST = 1e10
 """No clock shows more [s]: beyond it two frames' times can no longer be told apart."""
 
 _LONGEST_DELAY = 1.0
@@ -116,7 +116,7 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     """
     captured, sent = message.t_capture, message.t_sent
     # Not finite compares as false.
-    if not (abs(captured) <= _LATEST and abs(sent) <= _LATEST and message.camera_id < _MOST_CAMERAS):
+    if not (abs(captured) <= LATEST and abs(sent) <= LATEST and message.camera_id < _MOST_CAMERAS):
         return None
     if max(len(message.balls), len(message.robots_blue), len(message.robots_yellow)) > _MOST_OBJECTS:
         return None

@@ -7,7 +7,7 @@ import select
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from math import isfinite, pi
+from math import hypot, isfinite, pi
 from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -50,6 +50,11 @@ _AGAIN = 0.3
 
 _PUT_TOLERANCE, _PUT_HEADING = 0.05, 0.2
 """How close to its place everything has to be seen after a reset [m, rad]."""
+
+_HIDDEN, _SHADOW = 0.8, 0.5
+"""A ball not seen for so long after it was put this close to a robot lies in its shadow [s, m]."""
+
+_BALL = "the ball"
 
 _PARKED = 0.6
 """From the field's lines to robots that do not play, which the simulator takes off the field [m]."""
@@ -147,6 +152,7 @@ class LeagueWorld:
         self._cameras: dict[int, float] = {}
         self._offsets: deque[tuple[float, float]] = deque()
         self._arrived = self._heard = -1e9
+        self._restarts = 0
         self._fresh = False
         self._tracker: str | None = None
         now = self._now()
@@ -236,7 +242,7 @@ class LeagueWorld:
 
     def place_ball(self, x: float, y: float) -> None:
         """See :meth:`robobt.world.World.place_ball`; on a real field somebody has to."""
-        self._check_inside("the ball", x, y)
+        self._check_inside(_BALL, x, y)
         side = self._side()
         self._link.place([], BallTeleport(side * x, side * y, 0.0, 0.0))
 
@@ -350,7 +356,8 @@ class LeagueWorld:
             return
         self.frames += 1
         self._heard = arrived
-        if captured is not None and frame.captured < captured - 1.0:
+        if self._filter.restarts != self._restarts:
+            self._restarts = self._filter.restarts
             self._offsets.clear()
             self._cameras.clear()
         self._hear_clock(arrived, frame)
@@ -471,7 +478,7 @@ class LeagueWorld:
             self._check_inside(str(robot), *pose[:2])
         if not all(map(isfinite, placement.ball)):
             raise ValueError(f"the ball is placed at {placement.ball}: not finite")
-        self._check_inside("the ball", *placement.ball[:2])
+        self._check_inside(_BALL, *placement.ball[:2])
 
     def _check_inside(self, what: str, x: float, y: float) -> None:
         outer_x = self.field.half_length + self.field.margin
@@ -507,13 +514,18 @@ class LeagueWorld:
             self._link.place([], ball)
 
     def _until_seen(self, placement: Placement, robots: list[Teleport], ball: BallTeleport) -> None:
-        end = self._clock() + _PATIENCE
+        began = self._clock()
+        end = began + _PATIENCE
         again = -1e9
         while True:
             now = self._clock()
             strangers = [robot for robot in self._filter.robots() if robot not in placement.robots]
             wrong = self._out_of_place(placement)
             if not wrong and not strangers:
+                return
+            waited = now > began + _HIDDEN / self._speed
+            if wrong == [_BALL] and not strangers and waited and self._ball_is_hidden(placement):
+                self._filter.ball_put(*placement.ball[:2])
                 return
             if now > end:
                 what = ", ".join(wrong or [str(robot) for robot in strangers])
@@ -550,8 +562,15 @@ class LeagueWorld:
         ball = frame.ball
         off = max(abs(ball.x - placement.ball[0]), abs(ball.y - placement.ball[1]))
         if not self._filter.sees_ball() or off > _PUT_TOLERANCE:
-            wrong.append("the ball")
+            wrong.append(_BALL)
         return wrong
+
+    def _ball_is_hidden(self, placement: Placement) -> bool:
+        """Whether a robot may stand between a camera and a ball that nobody has seen since it was put."""
+        if self._filter.sees_ball() and self._filter.ball_unseen() < _HIDDEN / 2:
+            return False
+        x, y = placement.ball[:2]
+        return any(hypot(pose[0] - x, pose[1] - y) < _SHADOW for pose in placement.robots.values())
 
     def _filter_settles(self) -> None:
         """A few frames more, so that velocities are known at the start."""
