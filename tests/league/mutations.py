@@ -47,7 +47,7 @@ def mutations(seeds: list[Message], seed: int) -> Iterator[bytes]:
         copy.CopyFrom(message)
         for _ in range(rng.choice((1, 1, 2, 4, 12))):
             _absurd(copy, rng)
-        data = copy.SerializePartialToString()
+        data = copy.SerializePartialToString()[:_LONG]
         yield _bytes_changed(bytearray(data), rng) if rng.random() < 0.1 else data
 
 
@@ -80,8 +80,7 @@ def _bytes_changed(data: bytearray, rng: random.Random) -> bytes:
         data = bytearray()
     else:
         data += bytes(rng.choice((16_384, 16_385, 40_000, _LONG)))
-        del data[_LONG:]
-    return bytes(data)
+    return bytes(data[:_LONG])
 
 
 def _absurd(message: Message, rng: random.Random) -> None:
