@@ -41,6 +41,9 @@ _WHEELS = (60.0, 135.0, 225.0, 300.0)
 _WHEEL_RADIUS = 0.027
 """Of grSim's wheels [m]."""
 
+_MOST_OBJECTS = 64
+"""Most objects of a kind in a packet; nobody has so many robots."""
+
 _TEAM_NUMBERS = {Team.YELLOW: 1, Team.BLUE: 2}
 _TEAMS = {number: team for team, number in _TEAM_NUMBERS.items()}
 
@@ -219,6 +222,9 @@ def read_grsim(data: bytes, counts: PacketCounts) -> GrSimOrders | None:
     message = decode(grSim_Packet, data, counts)
     if message is None:
         return None
+    if max(len(message.commands.robot_commands), len(message.replacement.robots)) > _MOST_OBJECTS:
+        counts.implausible += 1
+        return None
     orders = GrSimOrders({}, [], None)
     team = Team.YELLOW if message.commands.isteamyellow else Team.BLUE
     for robot in message.commands.robot_commands:
@@ -260,6 +266,9 @@ def read_control(
     message = decode(RobotControl, data, counts)
     if message is None:
         return None
+    if len(message.robot_commands) > _MOST_OBJECTS:
+        counts.implausible += 1
+        return None
     commands, errors = {}, []
     for robot in message.robot_commands:
         command, problem = _read_command(robot, headings.get(robot.id, 0.0))
@@ -274,8 +283,11 @@ def read_control(
 
 
 def read_teleports(message: SimulatorCommand) -> tuple[list[Teleport], BallTeleport | None] | None:
-    """Teleports of the simulation protocol; None when one of them is not finite."""
-    control = message.control
+    """Teleports of the simulation protocol; None when one of them is not finite, or too much is asked."""
+    control, config = message.control, message.config
+    asked = (control.teleport_robot, config.robot_specs, config.realism_config.custom)
+    if max(map(len, asked)) > _MOST_OBJECTS:
+        return None
     robots = []
     for robot in control.teleport_robot:
         team = _TEAMS.get(int(robot.id.team))

@@ -6,6 +6,7 @@ import heapq
 import select
 import time as clocks
 from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import count
 from math import isfinite
 from typing import Self
@@ -39,6 +40,9 @@ _GEOMETRY_EVERY = 60
 
 _BEHIND = 0.25
 """A server that is later than this skips what it missed instead of hurrying after it [s]."""
+
+_MOST_READING = 0.002
+"""For how long one port is read at a time, so that no flood keeps the others or the field waiting [s]."""
 
 _SPEEDS = (0.05, 20.0)
 """Slowest and fastest simulation that may be asked for, in shares of real time."""
@@ -120,6 +124,14 @@ class SimServer:
             "blue": self._teams[Team.BLUE].counts,
             "yellow": self._teams[Team.YELLOW].counts,
         }
+        self._readers: list[tuple[Receiver, Callable[[Packet], None]]] = [
+            (self._grsim, self._obey_grsim),
+            *(
+                (receiver, partial(self._obey_control, team, receiver))
+                for team, receiver in self._teams.items()
+            ),
+            (self._control, self._obey_simulator),
+        ]
         self._status_to: dict[Team, str] = {}
         self._status: dict[RobotId, tuple[bool, bool]] = {}
         # Packets on their way: when they are due, in what order, to whom.
@@ -168,14 +180,13 @@ class SimServer:
                 self.receive()
 
     def receive(self) -> None:
-        """Take in all packets that wait."""
-        for packet in self._grsim.receive():
-            self._obey_grsim(packet)
-        for team, receiver in self._teams.items():
+        """Take in the packets that wait; a flood of them not all at once."""
+        for receiver, obey in self._readers:
+            end = clocks.monotonic() + _MOST_READING
             for packet in receiver.receive():
-                self._obey_control(team, receiver, packet)
-        for packet in self._control.receive():
-            self._obey_simulator(packet)
+                obey(packet)
+                if clocks.monotonic() > end:
+                    break
 
     def step(self) -> None:
         """Simulate one period, and put what the cameras then see into the outbox."""

@@ -59,6 +59,9 @@ _BALL = "the ball"
 _PARKED = 0.6
 """From the field's lines to robots that do not play, which the simulator takes off the field [m]."""
 
+_MOST_READING = 0.004
+"""For how long packets that are of no use are read at a time: a flood must not delay the commands [s]."""
+
 _CLOCK_MEMORY = 2.0
 """For how long the fastest packet tells the offset between the clocks [s]."""
 
@@ -328,9 +331,12 @@ class LeagueWorld:
         if not select.select(sources, [], [], max(0.0, wait))[0]:
             return
         arrived = self._now()
+        end = self._clock() + _MOST_READING
         for packet in self._vision.receive():
             seen = self._read(packet.data)
             if seen is None:
+                if self._clock() > end:
+                    break
                 continue
             if seen.field is not None and seen.field != self.field:
                 self.field = self._filter.field = seen.field

@@ -254,3 +254,26 @@ def test_the_player_survives_what_is_sent_to_its_other_ports(
         world.observe()
 
     hammer(to, seeds, amount, counts, take_in)
+
+
+def test_packets_that_ask_for_more_robots_than_there_are_cost_next_to_nothing(server: SimServer) -> None:
+    control, grsim, orders = RobotControl(), grSim_Packet(), SimulatorCommand()
+    for _ in range(300):
+        control.robot_commands.add(id=1)
+        grsim.replacement.robots.add(x=0.0, y=0.0, dir=0.0, id=1, yellowteam=True)
+        orders.config.realism_config.custom.add()
+    before = server.field.poses()
+    ports = server.endpoints
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        for name, port, message in (
+            ("blue", ports.blue, control),
+            ("grsim", ports.grsim, grsim),
+            ("control", ports.control, orders),
+        ):
+            sock.sendto(message.SerializeToString(), ("127.0.0.1", port))
+            for _ in range(1000):
+                server.receive()
+                if server.counts[name].dropped:
+                    break
+            assert server.counts[name].implausible == 1
+    assert server.field.poses() == before
