@@ -34,7 +34,6 @@ _log = logging.getLogger(__name__)
 Tick: TypeAlias = Callable[[], Status]
 Stop: TypeAlias = Callable[[Status], None]
 Visit: TypeAlias = Callable[[Behaviour], None]
-Told: TypeAlias = tuple[Status | None, object]
 _Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 
 _S, _F, _R, _I = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
@@ -72,7 +71,8 @@ class Marks:
 
     Which nodes a tick reaches and what they have afterwards follows from what the leaves
     return, as long as every node on the way is of a known kind. So a tick at which each
-    leaf returned and said what it did when it was ticked last has left the tree as it was.
+    leaf returned what it did when it was ticked last has left the tree as it was, but for
+    what nodes say.
 
     Args:
         nodes: the nodes that are asked for.
@@ -83,6 +83,8 @@ class Marks:
             them; for its owner to clear.
         changed: whether statuses, words or the nodes that are ticked may be other than after
             the tick before; for its owner to set to False after a tick.
+        words: unless ``changed``, the nodes that said something else than at the tick before,
+            which is all that is new; for its owner to clear.
     """
 
     def __init__(self, nodes: Iterable[Behaviour]) -> None:
@@ -91,6 +93,7 @@ class Marks:
         self.seen: list[Behaviour] = []
         self._note = self.seen.append
         self.changed = True
+        self.words: list[Behaviour] = []
 
     def __call__(self, node: Behaviour) -> None:
         """``node`` has been ticked."""
@@ -99,14 +102,6 @@ class Marks:
     def of(self, node: Behaviour) -> Visit | None:
         """What to call with this node; None when it is not asked for."""
         return self._note if id(node) in self._asked else None
-
-    def compare(self, now: Told, before: Told) -> Told:
-        """Notice whether what a node returned and said differs from what it did before; ``now``."""
-        # A text made anew is often the same one; of anything else nobody knows what == does.
-        same = now[0] is before[0] and now[1].__class__ is str and before[1].__class__ is str
-        if not (same and now[1] == before[1]):
-            self.changed = True
-        return now
 
     def whenever(self, tick: Tick) -> Tick:
         """``tick`` of a node of which nobody knows what follows from what."""
@@ -254,7 +249,7 @@ class Step:
             self.tick = visit.whenever(tick) if isinstance(visit, Marks) else tick
         self.update: Tick | None = None
         self.status: Status | None = None
-        self.said: object = None
+        self.said: str | None = None
         if _shown(child, visit) is None and _known_as(child) is _leaf:
             initialise, update, terminate = _lifecycle(child)
             self.update = update if initialise is terminate is None else None
@@ -312,7 +307,7 @@ def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     initialise, update, terminate = _lifecycle(node)
     marks, visit = _marks(visit), _shown(node, visit)
     last: Status | None = None
-    said: object = None
+    said: str | None = None
 
     def tick() -> Status:
         nonlocal last, said
@@ -324,8 +319,14 @@ def _leaf(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         if terminate is not None and status is not _R:
             terminate(status)
         node.status = status
-        if marks is not None and (status is not last or node.feedback_message is not said):
-            last, said = marks.compare((status, node.feedback_message), (last, said))
+        if marks is not None:
+            now = node.feedback_message
+            if status is not last:
+                marks.changed = True
+                last, said = status, now if now.__class__ is str else None
+            elif now is not said and (now.__class__ is not str or now != said):
+                marks.words.append(node)
+                said = now if now.__class__ is str else None
         if visit is not None:
             visit(node)
         return status
@@ -366,7 +367,7 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
     last: Status | None = None
-    said: object = None
+    said: str | None = None
 
     def renew() -> None:
         nonlocal decorated, tick_child, stop_child
@@ -388,8 +389,14 @@ def _decorator(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
         if status is not _R:
             stop(status)
         node.status = status
-        if marks is not None and (status is not last or node.feedback_message is not said):
-            last, said = marks.compare((status, node.feedback_message), (last, said))
+        if marks is not None:
+            now = node.feedback_message
+            if status is not last:
+                marks.changed = True
+                last, said = status, now if now.__class__ is str else None
+            elif now is not said and (now.__class__ is not str or now != said):
+                marks.words.append(node)
+                said = now if now.__class__ is str else None
         if show is not None:
             show(node)
         return status
@@ -492,11 +499,15 @@ def _sequence(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
-                if marks is not None and (
-                    status is not step.status or child.feedback_message is not step.said
-                ):
-                    told = (status, child.feedback_message)
-                    step.status, step.said = marks.compare(told, (step.status, step.said))
+                if marks is not None:
+                    said = child.feedback_message
+                    if status is not step.status:
+                        marks.changed = True
+                        step.status, step.said = status, said if said.__class__ is str else None
+                    elif said is not step.said and (said.__class__ is not str or said != step.said):
+                        # A text made anew is often the same; of anything else nobody knows what != does.
+                        marks.words.append(child)
+                        step.said = said if said.__class__ is str else None
             if status is not _S:
                 if not node.memory and child is not children[-1]:
                     for later in plan[children.index(child) + 1 :]:
@@ -556,11 +567,15 @@ def _selector(node: Any, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
-                if marks is not None and (
-                    status is not step.status or child.feedback_message is not step.said
-                ):
-                    told = (status, child.feedback_message)
-                    step.status, step.said = marks.compare(told, (step.status, step.said))
+                if marks is not None:
+                    said = child.feedback_message
+                    if status is not step.status:
+                        marks.changed = True
+                        step.status, step.said = status, said if said.__class__ is str else None
+                    elif said is not step.said and (said.__class__ is not str or said != step.said):
+                        # A text made anew is often the same; of anything else nobody knows what != does.
+                        marks.words.append(child)
+                        step.said = said if said.__class__ is str else None
             if status is _R or status is _S:
                 node.current_child = child
                 if previous is not child:

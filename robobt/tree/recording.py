@@ -37,6 +37,8 @@ class Look:
     failed: int | None
     ticked: bool
     marked: tuple[int, ...]
+    words: tuple[tuple[int, object], ...] = ()
+    """What nodes said, by their place, when nothing else is new; the rest does not count then."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -103,6 +105,12 @@ class TreeWatch:
     def tell(self, look: Look) -> Change | None:
         """What is new in this look since the one told before."""
         said: dict[int, str] = {}
+        if look.words:
+            for place, message in look.words:
+                if self._statuses[place] != "-":
+                    self._hear(place, message, said)
+            self._told = None
+            return Change(None, said, None) if said else None
         turned = False
         if self._failed is not None:
             self._statuses[self._failed] = "-"
@@ -144,9 +152,17 @@ class TreeWatch:
         return None if failed is None or failed.status is Status.INVALID else self._places.get(id(failed))
 
     def _look(self) -> None:
-        now = self._ask()
-        ticked = self.runner.ticks != self.ticks
-        marked = self._marks.seen
+        ticks = self.runner.ticks - self.ticks
+        ticked, marks = ticks > 0, self._marks
+        # Of several ticks for one record only the first can do with what is new since the last record.
+        if not marks.changed and ticks == 1 and self.usual:
+            self._seen = ()
+            known = self._places
+            words = [(known[id(node)], node.feedback_message) for node in marks.words if id(node) in known]
+            if words:
+                self._notice(Look(None, None, None, True, (), tuple(words)))
+            return
+        now, marked = self._ask(), marks.seen
         if now == self._seen and ticked is self.usual and marked == self._marked:
             return
         self._seen, self.usual, self._marked = now, ticked, marked.copy()

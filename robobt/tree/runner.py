@@ -87,12 +87,18 @@ class TreeRunner:
             abandon(self.root)
             raise
         finally:
-            marks = self._marks
-            if marks is not None and (marks.changed or self.error is not None):
-                # What becomes of a tree that was brought to rest is not what its leaves did before.
-                marks.changed = self.error is not None or self.root.status is Status.INVALID
-                self._after()
+            if self._marks is not None:
+                self._tell_after(self._marks)
         return self.root.status
+
+    def _tell_after(self, marks: Marks) -> None:
+        # What becomes of a tree that was brought to rest is not what its leaves did before.
+        at_rest = self.error is not None or self.root.status is Status.INVALID
+        if marks.changed or marks.words or at_rest:
+            marks.changed = marks.changed or at_rest
+            self._after()
+            marks.words.clear()
+            marks.changed = at_rest
 
     @property
     def failed(self) -> Behaviour | None:
@@ -185,9 +191,9 @@ class TreeRunner:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
-        self._after()
         if self._marks is not None:
             self._marks.changed = True
+            self._after()
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """The node that raised, and what it is, with the line of the skill's file."""

@@ -8,7 +8,9 @@ from collections.abc import Sequence as SequenceOf
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import lru_cache
+from itertools import compress, count
 from math import isfinite
+from operator import ne
 from types import FunctionType
 from typing import Any, TypeAlias, get_args, get_type_hints
 
@@ -57,28 +59,27 @@ class OutputWatch:
         self._entries = [(name, store, tuple(some)) for name, (store, some) in entries.items() if some]
         self._ask = self._asker()
         self._values: list[Values] = [(None,) * len(some) for _, _, some in self._entries]
-        self._all = tuple(self._values)
         self._told = [["null"] * len(some) for _, _, some in self._entries]
 
     def look(self) -> list[Written] | None:
         """The stores of which a value is not what it was at the last look, None without any."""
+        before = self._values
         try:
             values = self._ask()
-            if values == self._all:
+            if values == before:
                 return None
+            places = [*compress(count(), map(ne, values, before))]
         except Exception:
             # An entry that is not there, or values that do not compare to a truth, as arrays.
             values = self._ask_slowly()
+            places = [place for place, now in enumerate(values) if not _same(now, before[place])]
         written: list[Written] = []
-        for place, now in enumerate(values):
-            before = self._values[place]
-            if _same(now, before):
-                continue
+        for place in places:
+            now = values[place]
             if not _COPIED.isdisjoint(map(type, now)):
-                now = _kept(now, before)
-            self._values[place] = now
-            written.append((place, before, now))
-        self._all = tuple(self._values)
+                now = _kept(now, before[place])
+            written.append((place, before[place], now))
+            before[place] = now
         return written
 
     def tell(self, written: list[Written]) -> str:
@@ -98,7 +99,7 @@ class OutputWatch:
                 changed.append(f"{quote(name)}:{{{','.join(parts)}}}")
         return f"{{{','.join(changed)}}}" if changed else ""
 
-    def _asker(self) -> Callable[[], tuple[Values, ...]]:
+    def _asker(self) -> Callable[[], list[Values]]:
         """A function that gets all values, with a place in its code for each, as in TreeWatch."""
         if not all(entry.isidentifier() for _, _, some in self._entries for entry in some):
             return self._ask_slowly
@@ -106,15 +107,13 @@ class OutputWatch:
             "(" + "".join([f"'{place}'.{entry}," for entry in some]) + ")"
             for place, (_, _, some) in enumerate(self._entries)
         ]
-        made: FunctionType = eval(f"lambda:({''.join([store + ',' for store in stores])})")
+        made: FunctionType = eval(f"lambda:[{','.join(stores)}]")
         named = {f"{place}": store for place, (_, store, _) in enumerate(self._entries)}
         constants = tuple([named.get(item, item) for item in made.__code__.co_consts])
         return FunctionType(made.__code__.replace(co_consts=constants), {})
 
-    def _ask_slowly(self) -> tuple[Values, ...]:
-        return tuple(
-            [tuple([getattr(store, entry, None) for entry in some]) for _, store, some in self._entries]
-        )
+    def _ask_slowly(self) -> list[Values]:
+        return [tuple([getattr(store, entry, None) for entry in some]) for _, store, some in self._entries]
 
 
 _COPIED = frozenset((list, set, dict))

@@ -303,6 +303,8 @@ class Recorder:
                 self._words,
             ):
                 waiting.clear()
+        for watch in self._watches:
+            watch.check()
         lines, self._events = self._events, []
         self._write([*lines, block] if block else lines)
 
