@@ -15,6 +15,9 @@ EXPECTED = {
     "02_attack_against_a_goalkeeper.py": (["3"], ["segment_clearance", "moving_horizon", "scored"]),
     "03_write_your_own_skill.py": ([], ["alone: RUNNING", "in a match: goal_blue"]),
     "04_six_against_six.py": (["4"], ["PREPARE_KICKOFF", "ball in play", "blue 0"]),
+    "05_train_a_skill.py": (["2000"], ["held out", "written: out/models/example.pt", "goals of 5"]),
+    "06_judge_shots.py": (["60", "3"], ["unseen shots", "attack_expected"]),
+    "07_play_over_the_network.py": (["1"], ["of 1 scored over the network"]),
 }
 
 
