@@ -2,7 +2,7 @@
 
 Only what JSON has comes out: null, booleans, numbers, strings, lists and
 mappings with string keys. Everything that makes YAML dangerous or surprising
-(tags, aliases, dates, keys given twice, bottomless nesting) is an error.
+(tags, aliases, dates, 010 for 8, 1:30 for 90, keys given twice, bottomless nesting) is an error.
 """
 
 from __future__ import annotations
@@ -110,6 +110,8 @@ class _PlainLoader(yaml.SafeLoader):
             return Marked([self.marked(part) for part in node.value], line)
         try:
             value = self.construct_object(node)
+            if _AMBIGUOUS.match(node.value) and isinstance(value, int | float):
+                raise _problem(f"write {value}, not {node.value!r:.40}, as a number", node.start_mark)
             if isinstance(value, int):
                 # In base 16 a number can have more digits than can be said, or written as JSON.
                 str(value)
@@ -140,6 +142,9 @@ class _PlainDumper(yaml.SafeDumper):
 def _problem(problem: str, mark: Any) -> yaml.MarkedYAMLError:
     return yaml.MarkedYAMLError(problem=problem, problem_mark=mark)
 
+
+_AMBIGUOUS = re.compile(r"[-+]?0[0-7_]+$|.*:")
+"""Numbers of YAML 1.1 that nobody means: 010 is 8 and 1:30 is 90; in YAML 1.2 they are 10 and a text."""
 
 _RARE_LINE_ENDS = re.compile("[\x85\u2028\u2029]")
 
