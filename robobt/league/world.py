@@ -12,6 +12,7 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robobt.league.clocks import CameraClocks
 from robobt.league.commands import BallTeleport, Teleport, bounded
 from robobt.league.endpoints import Endpoints
 from robobt.league.filter import VisionFilter
@@ -154,6 +155,7 @@ class LeagueWorld:
         self._commands: dict[RobotId, RobotCommand] = {}
         self._cameras: dict[int, float] = {}
         self._offsets: deque[tuple[float, float]] = deque()
+        self._camera_clocks = CameraClocks()
         self._arrived = self._heard = -1e9
         self._restarts = 0
         self._fresh = False
@@ -302,12 +304,16 @@ class LeagueWorld:
         captured = self._filter.captured
         if captured is None or not self._offsets:
             return self._now()
-        there = self._now() - min(offset for _, offset in self._offsets) + self.connection.latency
+        there = self._now() - self._offsets[0][1] + self.connection.latency
         return min(max(there, captured), captured + _FURTHEST)
 
     def _hear_clock(self, arrived: float, frame: CameraFrame) -> None:
         """Learn the offset between the clocks: what a packet without any delay would show."""
-        self._offsets.append((arrived, arrived - frame.sent))
+        offset = arrived - frame.sent
+        # Only those that may still become the least are kept, so a flood does not pile up here.
+        while self._offsets and self._offsets[-1][1] >= offset:
+            self._offsets.pop()
+        self._offsets.append((arrived, offset))
         while self._offsets and self._offsets[0][0] < arrived - _CLOCK_MEMORY:
             self._offsets.popleft()
 
@@ -358,6 +364,9 @@ class LeagueWorld:
 
     def _see(self, frame: CameraFrame, arrived: float) -> None:
         captured = self._filter.captured
+        apart = self._camera_clocks.shift(frame.camera, arrived, frame.sent)
+        frame.captured += apart
+        frame.sent += apart
         if not self._filter.add(self._turned(frame)):
             return
         self.frames += 1
@@ -365,6 +374,7 @@ class LeagueWorld:
         if self._filter.restarts != self._restarts:
             self._restarts = self._filter.restarts
             self._offsets.clear()
+            self._camera_clocks.clear()
             self._cameras.clear()
         self._hear_clock(arrived, frame)
         if captured is None or frame.captured > captured or not self._fresh:
