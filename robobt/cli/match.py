@@ -267,9 +267,9 @@ def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: in
     )
     for name, robot in summary.robots.items():
         if robot.errors:
+            first = " ".join(str(robot.first_error).split())
             errors.print(
-                f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; "
-                f"the first: {escape(str(robot.first_error))}",
+                f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; the first: {escape(first)}",
                 soft_wrap=True,
             )
 
