@@ -23,11 +23,13 @@ from robobt.league.messages import (
     Robots_Status,
     SimulatorCommand,
     SSL_WrapperPacket,
+    TrackerWrapperPacket,
     grSim_Packet,
 )
 from robobt.league.served_field import ServedField, line_up
 from robobt.league.server import SimServer
 from robobt.league.sockets import PacketCounts
+from robobt.league.tracker import write_tracked
 from robobt.league.vision import write_field, write_vision
 from robobt.league.world import LeagueWorld
 from robobt.sim.settings import REALISM
@@ -254,6 +256,23 @@ def test_the_player_survives_what_is_sent_to_its_other_ports(
         world.observe()
 
     hammer(to, seeds, amount, counts, take_in)
+
+
+@pytest.mark.parametrize("amount", AMOUNTS)
+def test_the_player_survives_what_is_sent_as_tracked_frames(endpoints: Endpoints, amount: int) -> None:
+    field = ServedField(DIVISION_B, line_up(DIVISION_B, 2))
+    seeds: list[Message] = [
+        TrackerWrapperPacket.FromString(write_tracked(field.truth(), number, 100.0 + number / 60, "one"))
+        for number in range(20)
+    ]
+    with LeagueWorld(robots=dict.fromkeys((ME, HER)), endpoints=endpoints, source="tracker") as world:
+
+        def take_in() -> None:
+            world._receive(0.0)
+            for state in world.observe().own:
+                assert all(map(math.isfinite, (state.x, state.y, state.heading, state.vx, state.vy)))
+
+        hammer(endpoints.tracker, seeds, amount, [world.counts()["tracker"]], take_in)
 
 
 def test_packets_that_ask_for_more_robots_than_there_are_cost_next_to_nothing(server: SimServer) -> None:
