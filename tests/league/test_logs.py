@@ -105,7 +105,7 @@ def test_a_log_that_is_cut_off_ends_with_its_last_whole_record(
         path.write_bytes(gzip.compress(whole[:-cut])[:-8])
     else:
         path.write_bytes(path.read_bytes()[:-cut])
-    with caplog.at_level(logging.WARNING):
+    with caplog.at_level(logging.WARNING, logger="robobt"):
         assert list(read_log(path)) == RECORDS[:2]
     assert "ends in the middle of record 2" in caplog.text
 
