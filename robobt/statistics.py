@@ -5,7 +5,7 @@ scipy is imported by the functions that need it: matches use this module too and
 
 from __future__ import annotations
 
-from math import comb, sqrt
+from math import sqrt
 from statistics import NormalDist
 from typing import Literal, NamedTuple
 
@@ -74,13 +74,13 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
     """Student's interval for the mean of independent values; without bounds for a single one.
 
     Raises:
-        ValueError: no values, or confidence out of range.
+        ValueError: no values, one that is not finite, or confidence out of range.
     """
     from scipy.special import stdtrit
 
     sample = np.asarray(values, dtype=np.float64)
-    if sample.ndim != 1 or len(sample) == 0:
-        raise ValueError("a mean needs a list of values")
+    if sample.ndim != 1 or len(sample) == 0 or not np.isfinite(sample).all():
+        raise ValueError("a mean needs a list of finite values")
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
     if len(sample) == 1:
@@ -128,7 +128,9 @@ def corrected_resampled_t_test(differences: ArrayLike, test_to_train: float) -> 
         raise ValueError("a paired test needs at least two finite differences")
     if not test_to_train >= 0.0:
         raise ValueError(f"test_to_train must not be negative: {test_to_train}")
-    mean, variance = float(sample.mean()), float(sample.var(ddof=1))
+    mean = float(sample.mean())
+    # Of equal differences the mean may be off by a rounding error, and with it the variance.
+    variance = 0.0 if (sample == sample[0]).all() else float(sample.var(ddof=1))
     spread = sqrt(variance * (1.0 / len(sample) + test_to_train))
     degrees = len(sample) - 1
     if spread > 0.0:
@@ -155,8 +157,8 @@ def mcnemar(
     Args:
         first, second: (n,) whether each was right on a trial.
         method: ``exact``, the binomial test on the trials they differ in;
-            ``mid_p``, the same less half the probability of what was seen, which is
-            less conservative; ``chi2``, the approximation with continuity correction.
+            ``mid_p``, the same less half the probability of what was seen on either side, which
+            is less conservative; ``chi2``, the approximation with continuity correction.
 
     Raises:
         ValueError: lists of different length, or an unknown method.
@@ -181,17 +183,22 @@ def mcnemar_p(
     if method not in ("exact", "mid_p", "chi2"):
         raise ValueError(f"method must be exact, mid_p or chi2, not {method!r}")
     trials = only_first + only_second
-    if trials == 0 or only_first == only_second:
+    if trials == 0 or (only_first == only_second and method != "mid_p"):
         return 1.0
     if method == "chi2":
         from scipy.special import chdtrc
 
         return float(chdtrc(1, max(0, abs(only_first - only_second) - 1) ** 2 / trials))
+    from scipy.special import bdtr, gammaln
+
     fewer = min(only_first, only_second)
-    below = sum(comb(trials, count) for count in range(fewer + 1))
-    seen = comb(trials, fewer) if method == "mid_p" else 0
-    # Whole numbers until the last step: no rounding, however many trials.
-    return float(min(1.0, (2 * below - seen) / 2**trials))
+    both_tails = min(1.0, 2.0 * float(bdtr(fewer, trials, 0.5)))
+    if method == "exact":
+        return both_tails
+    ways = gammaln(trials + 1) - gammaln(fewer + 1) - gammaln(trials - fewer + 1)
+    seen = float(np.exp(ways - trials * np.log(2.0)))
+    # A tie lies in both tails and is there only once.
+    return max(0.0, 1.0 - seen / 2.0 if only_first == only_second else both_tails - seen)
 
 
 class Fold(NamedTuple):
@@ -281,18 +288,14 @@ def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -
     Raises:
         ValueError: lists of different length or none, no bin, or values outside [0, 1].
     """
-    predicted, came = np.asarray(probabilities, dtype=np.float64), np.asarray(outcomes, dtype=np.float64)
-    if predicted.ndim != 1 or predicted.shape != came.shape or len(predicted) == 0:
-        raise ValueError("a reliability needs as many outcomes as probabilities, and at least one")
+    predicted, came = _forecasts(probabilities, outcomes)
     if bins < 1:
         raise ValueError(f"{bins} bins")
-    if not (((predicted >= 0.0) & (predicted <= 1.0)).all() and np.isin(came, (0.0, 1.0)).all()):
-        raise ValueError("probabilities lie in [0, 1] and outcomes are 0 or 1")
     places = np.minimum((predicted * bins).astype(int), bins - 1)
     return [
         ReliabilityBin(
-            k / bins,
-            (k + 1) / bins,
+            float(k / bins),
+            float((k + 1) / bins),
             int((places == k).sum()),
             float(predicted[places == k].mean()),
             float(came[places == k].mean()),
@@ -315,10 +318,25 @@ def calibration_error(probabilities: ArrayLike, outcomes: ArrayLike, bins: int =
 
 
 def log_loss(probabilities: ArrayLike, outcomes: ArrayLike) -> float:
-    """Mean negative log-likelihood of 0/1 outcomes; a certainty that fails counts as 1e-15."""
-    predicted, came = np.asarray(probabilities, dtype=np.float64), np.asarray(outcomes, dtype=np.float64)
+    """Mean negative log-likelihood of 0/1 outcomes; a certainty that fails counts as 1e-15.
+
+    Raises:
+        ValueError: as for :func:`reliability`.
+    """
+    predicted, came = _forecasts(probabilities, outcomes)
     given = np.where(came == 1.0, predicted, 1.0 - predicted)
     return float(-np.log(np.maximum(given, 1e-15)).mean())
+
+
+def _forecasts(
+    probabilities: ArrayLike, outcomes: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    predicted, came = np.asarray(probabilities, dtype=np.float64), np.asarray(outcomes, dtype=np.float64)
+    if predicted.ndim != 1 or predicted.shape != came.shape or len(predicted) == 0:
+        raise ValueError("there must be as many outcomes as probabilities, and at least one")
+    if not (((predicted >= 0.0) & (predicted <= 1.0)).all() and np.isin(came, (0.0, 1.0)).all()):
+        raise ValueError("probabilities lie in [0, 1] and outcomes are 0 or 1")
+    return predicted, came
 
 
 def _check_count(successes: int, trials: int, confidence: float) -> None:

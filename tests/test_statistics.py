@@ -129,6 +129,37 @@ def test_mcnemar_agrees_with_the_binomial_test_and_is_symmetric(one: int, other:
         assert mcnemar_p(one, other, method) == mcnemar_p(other, one, method)
 
 
+@pytest.mark.parametrize(("one", "other"), [(0, 1), (1, 1), (3, 3), (2, 5), (0, 9), (40, 40), (121, 59)])
+def test_mcnemars_mid_p_counts_half_of_what_was_seen(one: int, other: int):
+    exact = stats.binomtest(one, one + other).pvalue
+    seen = stats.binom.pmf(one, one + other, 0.5)
+    # A tie is in the middle, and both tails share it.
+    expected = 1.0 - seen / 2 if one == other else exact - seen
+    assert mcnemar_p(one, other, "mid_p") == pytest.approx(expected, rel=1e-9)
+
+
+def test_mcnemar_of_very_many_trials_is_a_matter_of_a_moment():
+    assert mcnemar_p(100_000, 101_000) == pytest.approx(2 * stats.binom.cdf(100_000, 201_000, 0.5))
+    assert mcnemar_p(100_000, 200_000) == 0.0
+    assert mcnemar_p(100_000, 200_000, "mid_p") == 0.0
+
+
+def test_equal_differences_leave_no_doubt_whatever_their_rounding_error():
+    found = corrected_resampled_t_test([0.1] * 3, 1 / 9)
+    assert (found.variance, found.t, found.p) == (0.0, np.inf, 0.0)
+
+
+@pytest.mark.parametrize(("predicted", "came"), [([], []), ([0.5, 0.5], [1]), ([np.nan], [1]), ([0.5], [2])])
+def test_a_log_loss_of_no_forecasts_is_refused(predicted: list[float], came: list[int]):
+    with pytest.raises(ValueError, match="outcomes"):
+        log_loss(predicted, came)
+
+
+def test_a_mean_of_what_is_no_number_is_refused():
+    with pytest.raises(ValueError, match="finite"):
+        mean_interval([1.0, np.nan])
+
+
 def test_mcnemar_of_published_examples():
     # statsmodels' documentation: exact p and corrected chi-square of 121 against 59.
     assert mcnemar_p(121, 59) == pytest.approx(4.4344e-06, rel=1e-3)

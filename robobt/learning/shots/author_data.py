@@ -127,8 +127,11 @@ def author_row(file: Path, number: int, columns: Columns, cells: list[str]) -> d
         )
     if math.isnan(row["distance_to_opp"]):
         row["distance_to_opp"] = math.hypot(row["opp_x"], row["opp_y"])
+    side = math.copysign(1.0, row["opp_y"]) if row["opp_y"] else 0.0
     if math.isnan(row["v_towards_ball"]):
-        row["v_towards_ball"] = -math.copysign(1.0, row["opp_y"]) * row["opp_vy"]
+        row["v_towards_ball"] = -side * row["opp_vy"]
+    elif math.isnan(row["opp_vy"]):
+        row["opp_vy"] = -side * row["v_towards_ball"]
     if not math.isnan(row["opp_x_global"]):
         row["opponents_x"], row["opponents_y"] = [row["opp_x_global"]], [row["opp_y_global"]]
     if not math.isnan(angle := row["angle_to_goal"]):

@@ -69,8 +69,14 @@ FEATURES: dict[str, Callable[[Any, Rows, Rows], Rows]] = {
 class ShotFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """A named vector of the opponent nearest to the shot, from the scene of the shot.
 
+    An entry that was not recorded (not-a-number) counts as its median over the training shots,
+    0 where none of them has it.
+
     Args:
         name: one of :data:`FEATURES`.
+
+    Attributes:
+        typical_: (F,) those medians.
     """
 
     def __init__(self, name: str = "paper") -> None:
@@ -89,13 +95,23 @@ class ShotFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
             )
         if self.name not in FEATURES:
             raise ValueError(f"no features are called {self.name!r}; there are {', '.join(FEATURES)}")
-        self.fitted_ = True
+        vectors = self._vectors(np.asarray(scenes, dtype=np.float64))
+        self.typical_ = np.array(
+            [
+                float(np.median(known)) if len(known := column[~np.isnan(column)]) else 0.0
+                for column in vectors.T
+            ]
+        )
         return self
 
     def transform(self, X: ArrayLike) -> FloatArray:  # noqa: N803
         """(n, 34) scenes to (n, F)."""
         check_is_fitted(self)
         scenes = validate_data(self, X, reset=False, ensure_all_finite=False, dtype=np.float64)
+        vectors = self._vectors(scenes)
+        return np.where(np.isnan(vectors), self.typical_, vectors)
+
+    def _vectors(self, scenes: FloatArray) -> FloatArray:
         head, block = scenes[:, :SCENE_HEAD], scenes[:, SCENE_HEAD : SCENE_HEAD + 4]
         return np.asarray(FEATURES[self.name](np, head, block), dtype=np.float64)
 

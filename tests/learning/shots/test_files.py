@@ -164,3 +164,14 @@ def test_the_real_shots_own_coordinates_give_their_shot_frame():
         assert mine[name] == pytest.approx(row[name], abs=1e-5)
     assert mine["v_towards_ball"] == pytest.approx(row["v_towards_ball"], abs=1e-5)
     assert author_inputs(train).shape == (542, 5)
+
+
+def test_of_the_goalkeepers_speed_and_its_component_either_gives_the_other(tmp_path: Path):
+    file = tmp_path / "author.csv"
+    file.write_text(
+        "distance_to_goal,opp_x,opp_y,opp_vx,opp_vy,v_towards_ball,success\n"
+        "3000,2500,-400,10,250,,YES\n3000,2500,400,10,,-250,NO\n3000,2500,0,10,250,,NO\n"
+    )
+    table = read_shots(file)
+    assert table.column("v_towards_ball").to_pylist() == [0.25, -0.25, 0.0]
+    assert table.column("opp_vy").to_pylist() == [0.25, 0.25, 0.25]

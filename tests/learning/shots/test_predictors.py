@@ -108,6 +108,22 @@ def test_the_set_network_takes_what_is_unknown_at_its_mean_but_needs_opponents()
         SetNetworkClassifier().fit(x[:, :5], y)
 
 
+def test_the_best_predictor_takes_a_speed_that_was_not_recorded_at_its_median():
+    table = made_up_table(160)
+    x, y = shot_inputs(table), goals(table)
+    fitted = make_predictor("best").fit(x, y)
+    unknown = x.copy()
+    unknown[:, SCENE_HEAD + 2 : SCENE_HEAD + 4] = np.nan
+    typical = x.copy()
+    v = -np.sign(x[:, SCENE_HEAD + 1]) * x[:, SCENE_HEAD + 3]
+    typical[:, SCENE_HEAD + 3] = -np.sign(x[:, SCENE_HEAD + 1]) * np.median(v)
+    np.testing.assert_allclose(fitted.predict_proba(unknown), fitted.predict_proba(typical), atol=1e-9)
+    # Nor need any training shot have one.
+    blind = make_predictor("best").fit(unknown, y)
+    assert np.isfinite(blind.predict_proba(x)).all()
+    assert np.mean(blind.predict(x) == y) > 0.7
+
+
 def test_how_far_a_robot_gets_is_worked_out_by_hand():
     # From rest at 4 m/s^2: 1.2 m/s after 0.3 s and 0.18 m, then steadily.
     assert reach(np, np.array(0.3), np.array(0.0), 1.2, 4.0) == pytest.approx(0.18)
