@@ -55,7 +55,10 @@ def train(
     seeds: Annotated[
         int, typer.Option("--seeds", "-n", min=1, max=1000, help="How many seeds, side by side.")
     ] = 1,
-    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed.")] = 0,
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed; by default the settings'."),
+    ] = None,
     changes: Changes = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="The run's folder; by default runs/TASK-PRESET.")
@@ -80,7 +83,8 @@ def train(
 
     settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
-    wanted = range(seed, seed + seeds)
+    first = settings.seed if seed is None else seed
+    wanted = range(first, first + seeds)
     with _LiveTable(settings.task) as live:
         try:
             results = train_seeds(settings, wanted, folder, workers or min(cores(), seeds), resume, live.show)

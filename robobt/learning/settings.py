@@ -205,6 +205,8 @@ def load_settings(task: str, preset: str = "fast", changes: Mapping[str, Any] | 
     data = {"task": task, **data, "preset": preset}
     for name, value in (changes or {}).items():
         _assign(data, name.split("."), value, name)
+    if changes:
+        source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
     if settings.task not in ENVIRONMENTS:
         raise SettingsError(

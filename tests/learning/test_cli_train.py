@@ -32,6 +32,15 @@ def test_a_run_is_trained_resumed_and_told(tmp_path):
     assert "holds a run already" in refused.output
 
 
+def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_path):
+    own = run("train", "go_to_ball", *OPTIONS, "--set", "seed=7", "--out", tmp_path / "own", "--json")
+    assert json.loads(own.stdout)["together"]["seeds"] == [7]
+    asked = run(
+        "train", "go_to_ball", *OPTIONS, "--set", "seed=7", "--seed", 0, "--out", tmp_path / "a", "--json"
+    )
+    assert json.loads(asked.stdout)["together"]["seeds"] == [0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
