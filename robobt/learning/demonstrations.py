@@ -42,6 +42,9 @@ FORMAT = "robobt-demonstrations-1"
 _ARENAS = 16
 """Side by side while recording."""
 
+_MEANINGS = ("action", "period", "reward", "contact")
+"""Settings that say what an action and a reward are; with others the critic would learn what is not so."""
+
 
 class DemonstrationsError(ValueError):
     """A file of demonstrations cannot be used; the message is one line that names it."""
@@ -231,7 +234,8 @@ def demonstrations_for(
     """The demonstrations that training settings ask for: from a file, else the script's.
 
     Raises:
-        DemonstrationsError: the file cannot be used, is of another task, or holds too few.
+        DemonstrationsError: the file cannot be used, is of another task, holds too few, or its
+            actions and rewards mean something else than those of the environment.
     """
     if file is None:
         return record(environment, episodes, "script", seed)
@@ -240,6 +244,12 @@ def demonstrations_for(
     observation = {"name": wanted.observation.name, "version": wanted.observation.version}
     if found.about.get("observation") != observation or found.action.shape[1] != wanted.action_size:
         raise DemonstrationsError(f"{file}: holds demonstrations of {found.about.get('observation')}")
+    there, here = found.about.get("environment"), environment.model_dump(mode="json")
+    for part in _MEANINGS:
+        if isinstance(there, dict) and part in there and there[part] != here.get(part):
+            raise DemonstrationsError(
+                f"{file}: was recorded with another environment.{part}: {there[part]}, here {here.get(part)}"
+            )
     if found.episodes < episodes:
         raise DemonstrationsError(f"{file}: holds {found.episodes} episodes, not {episodes}")
     return found.first(episodes)
@@ -264,4 +274,6 @@ def _matrix(column: pa.ChunkedArray) -> FloatArray:
 
 
 def _say(error: Exception) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "there is no such file"
     return " ".join(str(error.args[0] if error.args else type(error).__name__).split())

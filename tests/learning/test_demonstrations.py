@@ -134,6 +134,27 @@ def test_files_that_are_none_give_one_clear_error(recorded, tmp_path):
     with pytest.raises(DemonstrationsError, match="holds 12 episodes, not 50"):
         demonstrations_for(GoToBallSettings(), 50, str(wrong), 0)
     assert demonstrations_for(GoToBallSettings(), 5, str(wrong), 0).episodes == 5
+    with pytest.raises(DemonstrationsError, match=r"gone.parquet: .*there is no such file"):
+        read_demonstrations(tmp_path / "gone.parquet")
+
+
+@pytest.mark.parametrize(
+    ("changes", "part"),
+    [
+        ({"action": {"kind": "drive", "max_speed": 3.0, "max_turn": 1.395}}, "action"),
+        ({"period": 0.02}, "period"),
+        ({"reward": {"contact": 10.0}}, "reward"),
+        ({"contact": {"rule": "infrared"}}, "contact"),
+    ],
+)
+def test_demonstrations_whose_actions_or_rewards_mean_something_else_are_refused(
+    recorded, changes, part, tmp_path
+):
+    recorded.write(tmp_path / "d.parquet")
+    with pytest.raises(DemonstrationsError, match=rf"recorded with another environment\.{part}: .*, here "):
+        demonstrations_for(GoToBallSettings(**changes), 5, str(tmp_path / "d.parquet"), 0)
+    elsewhere = GoToBallSettings(simulator="robobulls")
+    assert demonstrations_for(elsewhere, 5, str(tmp_path / "d.parquet"), 0).episodes == 5
 
 
 def test_an_action_is_turned_into_the_command_it_stands_for_and_back():
