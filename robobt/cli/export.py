@@ -24,7 +24,8 @@ def add_to(app: typer.Typer) -> None:
 def export(
     run: Annotated[Path, typer.Argument(help="What 'robobt train' wrote: its folder, or that of one seed.")],
     name: Annotated[
-        str, typer.Option("--name", help="Name to load the model by; by default the task's with _ddpg.")
+        str,
+        typer.Option("--name", help="The model's name, and its file's; by default the task's with _ddpg."),
     ] = "",
     onnx: Annotated[
         bool, typer.Option("--onnx", help="Write an ONNX file beside the TorchScript one.")

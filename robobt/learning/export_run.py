@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,8 @@ from robobt.learning.problems import problem_of
 from robobt.learning.run_folder import RESULT, TrainResult, load_run
 from robobt.learning.settings import environment_of
 from robobt.skills.actions import ActionScaling
-from robobt.skills.model_card import Measured, ModelCard, ObservationCard, action_outputs
-from robobt.skills.model_file import Format
+from robobt.skills.model_card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
+from robobt.skills.model_file import SUFFIXES, Format, ModelError
 from robobt.statistics import mean_interval
 from robobt.world.features import GO_TO_BALL, SHOOT, ObservationSpec
 
@@ -56,8 +57,13 @@ def export_run(
 
     Raises:
         RunFolderError: the folder holds no run that has ended.
-        ModelError: the actor cannot be written as it is.
+        ModelError: the actor cannot be written as it is, or under that name.
     """
+    if name and (not re.fullmatch(MODEL_NAME, name) or name.endswith(tuple(SUFFIXES.values()))):
+        raise ModelError(
+            f"{name!r} is no name for a model: up to 64 letters, digits, dots, dashes and underscores, "
+            "without the file's suffix"
+        )
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
     environment = environment_of(settings, str(run))

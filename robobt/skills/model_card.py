@@ -14,6 +14,9 @@ from robobt.world.limits import RobotLimits
 CARD_FORMAT = 1
 """Version of the card's own fields."""
 
+MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
+"""What a model may be called, as a regular expression."""
+
 MAX_CARD_SIZE = 64 * 1024
 """A card longer than this is none [bytes]."""
 
@@ -101,7 +104,7 @@ class ModelCard(_Part):
 
     format: Literal[1] = Field(1, description="version of this card's fields")
     kind: Kind
-    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$", description="name to load it by")
+    name: str = Field(pattern=MODEL_NAME, description="name to load it by")
     skill: str = Field(min_length=1, max_length=64, description='what it is for ("GoToBall", "Shoot")')
     description: str = Field("", max_length=2000)
     observation: ObservationCard

@@ -146,7 +146,10 @@ class _TorchScript:
     """A frozen TorchScript module."""
 
     def __init__(self, file: ModelFile) -> None:
-        import torch
+        try:
+            import torch
+        except ImportError as error:
+            raise ModelError(f"needs torch to run: {_first_line(error)}") from error
 
         members = unpack_archive(file.content)
         check_code(members)
@@ -199,7 +202,10 @@ class _Onnx:
 
     def __init__(self, file: ModelFile) -> None:
         check_onnx(file.content)
-        import onnxruntime  # type: ignore[import-untyped]
+        try:
+            import onnxruntime  # type: ignore[import-untyped]
+        except ImportError as error:
+            raise ModelError(f"needs onnxruntime to run: {_first_line(error)}") from error
 
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1

@@ -17,7 +17,7 @@ from robobt.learning.run_folder import RunFolderError, load_run
 from robobt.learning.settings import load_settings
 from robobt.learning.train import train
 from robobt.skills import GoToBall, LearnedSkill, Shoot
-from robobt.skills.model_file import read_model_file
+from robobt.skills.model_file import ModelError, read_model_file
 from robobt.skills.policy import load_policy
 
 TINY = {
@@ -94,6 +94,13 @@ def test_of_several_seeds_the_best_is_taken(run: Path, tmp_path: Path) -> None:
 def test_a_folder_that_holds_no_finished_run_is_one_error(tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="not the folder of a run that has ended"):
         export_run(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["bad name", "../mine", "mine.pt", "x" * 65])
+def test_a_name_that_is_none_is_one_error(run: Path, tmp_path: Path, name: str) -> None:
+    with pytest.raises(ModelError, match="is no name for a model"):
+        export_run(run, name, tmp_path, starts=5)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_held_out_figures_carry_their_intervals() -> None:

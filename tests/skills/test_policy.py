@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 import warnings
 import zipfile
 from collections.abc import Callable
@@ -85,6 +86,15 @@ class TestBothFormats:
 
     def test_the_same_file_is_loaded_once(self, files: dict[str, Path], format_: str) -> None:
         assert load_policy(files[format_]) is load_policy(str(files[format_]))
+
+    def test_without_what_runs_it_the_error_says_so(
+        self, files: dict[str, Path], format_: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        package = {"torchscript": "torch", "onnx": "onnxruntime"}[format_]
+        monkeypatch.setattr(policy, "_LOADED", {})
+        monkeypatch.setitem(sys.modules, package, None)
+        with pytest.raises(ModelError, match=rf"{files[format_]}: needs {package} to run"):
+            load_policy(files[format_])
 
     def test_it_is_refused_for_another_skill_or_observation(
         self, files: dict[str, Path], format_: str
