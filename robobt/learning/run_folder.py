@@ -180,13 +180,17 @@ class RunFolder:
         draw_curves({name: result.judged}, title_of(result.settings), self.path / CURVES)
         text = json.dumps(result.figures, indent=2, allow_nan=False) + "\n"
         write_atomically(self.path / RESULT, text.encode())
-        for path in (self.path / CHECKPOINT, checkpoint.previous(self.path / CHECKPOINT)):
+        for path in (*self._checkpoints(), *self.path.glob(f".{CHECKPOINT}.*")):
             path.unlink(missing_ok=True)
 
     def _has_begun(self) -> bool:
         """Whether there is anything to lose: a run that failed before its first evaluation has nothing."""
         log = self.path / LOG
-        return (self.path / RESULT).exists() or (log.exists() and log.stat().st_size > 0)
+        written = any(path.exists() for path in (self.path / RESULT, *self._checkpoints()))
+        return written or (log.exists() and log.stat().st_size > 0)
+
+    def _checkpoints(self) -> tuple[Path, Path]:
+        return self.path / CHECKPOINT, checkpoint.previous(self.path / CHECKPOINT)
 
     def _take_up(self, resume: bool) -> None:
         if not resume:

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -155,6 +156,42 @@ def test_a_run_that_failed_before_its_first_evaluation_is_simply_started_again(t
     assert load_run(tmp_path).settings == result.settings
 
 
+def test_a_run_with_a_checkpoint_is_resumable_even_before_its_first_evaluation(tmp_path):
+    settings = slide_settings(evaluation__every=1920)
+    with pytest.raises(KilledError):
+        train(settings, tmp_path, problem=breaking_after(150))
+    assert (tmp_path / CHECKPOINT).exists()
+    with pytest.raises(RunFolderError, match="holds a run already; resume it"):
+        train(settings, tmp_path, problem=SLIDE)
+
+
+def test_killed_anywhere_in_writing_a_checkpoint_it_ends_with_the_same_weights(tmp_path, monkeypatch):
+    settings = slide_settings(**EVERYTHING)
+    whole = train(settings, tmp_path / "whole", problem=SLIDE)
+
+    def killed(*_: object) -> None:
+        raise KilledError
+
+    for i, (place, name) in enumerate(
+        (("os", "fsync"), ("pathlib.Path", "replace"), ("robobt.learning.checkpoint", "write_atomically"))
+    ):
+        folder = tmp_path / str(i)
+        with pytest.raises(KilledError):
+            train(settings, folder, problem=breaking_after(110))
+        with monkeypatch.context() as patched:
+            patched.setattr(f"{place}.{name}", killed)
+            # What a killed process would have left lying there.
+            patched.setattr("pathlib.Path.unlink", lambda *_, **__: None)
+            with pytest.raises(KilledError):
+                train(settings, folder, resume=True, problem=SLIDE)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            again = train(settings, folder, resume=True, problem=SLIDE)
+        assert again.figures["weights"] == whole.figures["weights"], name
+        assert not list(folder.glob("*checkpoint*")), name
+        assert not list(folder.glob(".checkpoint*")), name
+
+
 def test_a_run_that_has_ended_is_read_not_repeated(tmp_path):
     first = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
     again = train(slide_settings(steps=480), tmp_path, resume=True, problem=breaking_after(0))
@@ -230,6 +267,8 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
     changes = {
         "steps": 1280,
         "agent.hidden": [16],
+        # The first steps are in the replay at once, so that updates begin when they may.
+        "agent.n_step": 1,
         "replay.batch": 32,
         "collection.random_steps": 640,
         "collection.update_after": 128,
