@@ -201,6 +201,22 @@ def test_a_name_that_is_none_lists_those_there_are(monkeypatch: pytest.MonkeyPat
         load_policy("nobody")
 
 
+@pytest.mark.parametrize("training", [True, False])
+def test_a_scripted_network_saved_by_torch_itself_is_loaded(tmp_path: Path, training: bool) -> None:
+    layers = nn.Sequential(
+        nn.Linear(6, 8), nn.LayerNorm(8), nn.ReLU(), nn.Dropout(0.5), nn.Linear(8, 3), nn.Tanh()
+    )
+    path, card = tmp_path / "mine.pt", go_to_ball_card("mine")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scripted = torch.jit.script(layers.train(training))
+        torch.jit.save(scripted, str(path), _extra_files={"card.json": card.to_json()})
+    inputs = np.random.default_rng(1).normal(0.0, 2.0, (20, 6))
+    with torch.no_grad():
+        wanted = layers.eval()(torch.from_numpy(inputs).float()).numpy()
+    assert np.abs(load_policy(path)(inputs) - wanted).max() < 1e-6
+
+
 def sealed(folder: Path, members: dict[str, bytes]) -> Path:
     """A crafted archive whose card and seal are in order."""
     card = go_to_ball_card("crafted", payload=payload_of(members))
@@ -223,6 +239,11 @@ def members_of(folder: Path) -> dict[str, bytes]:
             b"  def forward",
             b"  def __setstate__(self, state: int) -> None:\n    pass\n  def forward",
             "__setstate__",
+        ),
+        (
+            b"  def forward",
+            b"  def __len__(self) -> int:\n    return torch.nothing()\n  def forward",
+            "__len__",
         ),
         (b"  def forward", b"  def forward(((", "damaged"),
         (b"torch.tanh", b"torch.nothing", "torch cannot load it"),
