@@ -48,6 +48,9 @@ _CARRIED = 0.2
 _FADING = 0.95
 """What is left of a misfit one detection later."""
 
+_SHORTEST, _LONGEST = 0.005, 0.05
+"""Time between two detections from which a kick's velocity is told [s]."""
+
 _SETTLING = 4
 """Detections after a kick in which the speed it gave becomes known."""
 
@@ -108,8 +111,13 @@ class BallTrack:
         """Distance of a detection at the track's time from what is expected [m]."""
         return hypot(x - self.motion.x, y - self.motion.y)
 
-    def correct(self, x: float, y: float) -> None:
-        """Use a detection captured at the track's time."""
+    def correct(self, x: float, y: float, kickable: bool = False) -> None:
+        """Use a detection captured at the track's time.
+
+        Args:
+            kickable: whether a robot was close enough to the ball before to kick it; a ball that
+                has left all of a sudden is then taken to have been kicked at the detection before.
+        """
         m = self.motion
         s = self._pp + self._r
         dx, dy = x - m.x, y - m.y
@@ -123,6 +131,10 @@ class BallTrack:
             self._sliding, self._rolling = replace(m), replace(m, rolls_at=inf)
             self._settling, self._kicked = _SETTLING, self.time - self._last_step / 2
             s = self._pp + self._r
+            if kickable and _SHORTEST <= self._last_step <= _LONGEST:
+                # Goalkeepers cannot wait for the next detection to learn how fast it goes.
+                self._pv = s / self._last_step
+                self._vv += self._pv / self._last_step
         else:
             scale = 1.0 / sqrt(s)
             self._mean_x += MEMORY * (dx * scale - self._mean_x)

@@ -120,6 +120,7 @@ class VisionFilter:
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
         self._ball_seen = 0.0
+        self._ball_camera: int | None = None
         self._hold: _Hold | None = None
         self._strangers: dict[RobotId | None, _Stranger] = {}
         self._sent: dict[RobotId, list[SentCommand]] = {}
@@ -182,7 +183,8 @@ class VisionFilter:
             self._add_robot(robot, detections, time)
         for robot in [robot for robot, track in self._robots.items() if time - track.time > _ROBOT_GONE]:
             del self._robots[robot]
-        self._add_balls([ball for ball in frame.balls if ball.confidence >= _LEAST_CONFIDENCE], time)
+        balls = [ball for ball in frame.balls if ball.confidence >= _LEAST_CONFIDENCE]
+        self._add_balls(balls, time, frame.camera)
         return True
 
     def robots(self) -> list[RobotId]:
@@ -268,7 +270,7 @@ class VisionFilter:
         elif near.heading is not None and self._familiar(robot, x, y, time, gate):
             track.restart(x, y, near.heading, time)
 
-    def _add_balls(self, balls: list[BallDetection], time: float) -> None:
+    def _add_balls(self, balls: list[BallDetection], time: float, camera: int) -> None:
         track = self._ball
         if not balls:
             return
@@ -279,22 +281,26 @@ class VisionFilter:
                 self._ball_seen = time
             return
         motions = {robot: self._robot_at(robot, time) for robot in self._robots}
+        kickable = False
         if time > track.time:
             if self._hold is not None and self._hold.robot in motions:
+                kickable = True
                 track.advance(time, True)
                 track.carried_to(_carried(self._hold, motions[self._hold.robot]), time)
             else:
-                track.advance(time, self._pushed(track.motion, motions))
+                kickable = self._pushed(track.motion, motions)
+                track.advance(time, kickable)
         nearest = min(balls, key=lambda ball: track.surprise(ball.x, ball.y))
         gate = min(_MOST_UNSEEN, _BALL_GATE + _BALL_SPEED * max(0.0, time - self._ball_seen))
         if track.surprise(nearest.x, nearest.y) <= gate:
-            track.correct(nearest.x, nearest.y)
+            # Cameras that disagree about a place would make kicks of the difference.
+            track.correct(nearest.x, nearest.y, kickable and camera == self._ball_camera)
             self._strangers.pop(None, None)
         elif self._familiar(None, nearest.x, nearest.y, time, gate):
             track.restart(nearest.x, nearest.y, time)
         else:
             return
-        self._ball_seen = max(time, self._ball_seen)
+        self._ball_seen, self._ball_camera = max(time, self._ball_seen), camera
         self._look_who_has_it(track.motion, motions)
 
     def _familiar(self, robot: RobotId | None, x: float, y: float, time: float, gate: float) -> bool:

@@ -36,8 +36,8 @@ class Motion:
     omega: float = 0.0
 
 
-_STEP = 0.02
-"""Longest step of the motion model [s]."""
+_STEP = 0.005
+"""Longest step of the motion model; a commanded velocity turns with the robot [s]."""
 
 _CALM = 0.03
 """Acceleration noise while the model fits [m/s^2]."""

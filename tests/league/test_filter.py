@@ -202,6 +202,41 @@ def test_a_kick_is_noticed_within_three_frames(watched: Watched) -> None:
     assert ball.x == pytest.approx(6.0 * 3 * PERIOD, abs=0.02)
 
 
+def test_the_speed_of_a_kick_is_known_from_the_first_sight_of_it(watched: Watched) -> None:
+    for _ in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11, 0.0)])
+    watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11 + 6.0 * PERIOD, 0.0)])
+    assert watched.frame().ball.vx == pytest.approx(6.0, abs=0.3)
+    assert watched.frame().ball.vy == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_ball_that_jumps_where_no_robot_is_has_not_been_kicked(watched: Watched) -> None:
+    for _ in range(30):
+        watched.see([(ME, -2.0, 0.0, 0.0)], [(0.11, 0.0)])
+    watched.see([(ME, -2.0, 0.0, 0.0)], [(0.16, 0.0)])
+    assert watched.frame().ball.speed < 0.1
+
+
+def test_cameras_that_disagree_about_a_ball_in_the_mouth_kick_nothing(watched: Watched) -> None:
+    for i in range(60):
+        watched.camera = i // 30
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11 + 0.02 * watched.camera, 0.0)])
+        assert watched.frame().ball.speed < 0.1
+
+
+def test_a_commanded_velocity_turns_with_the_robot(watched: Watched) -> None:
+    speed, turn = 1.0, 2.0
+    circle = speed / turn
+
+    def driven(t: float) -> tuple[float, float, float]:
+        return circle * sin(turn * t), circle * (1.0 - cos(turn * t)), wrap_angle(turn * t)
+
+    watched.filter.sent(watched.time, {ME: RobotCommand(speed, 0.0, turn)})
+    watched.see_for(1.0, driven)
+    (me,) = watched.frame(0.1).own
+    assert hypot(me.vx - speed * cos(me.heading), me.vy - speed * sin(me.heading)) < 0.015
+
+
 def test_a_kicked_ball_is_predicted_to_slide_and_then_to_roll() -> None:
     watched = Watched(noise=0.0014)
     settings = REALISTIC.ball
