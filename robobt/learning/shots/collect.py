@@ -29,7 +29,7 @@ class Collected:
     Attributes:
         shots: in the file.
         goals: among them.
-        new: shots taken by this run.
+        new: those among them that this run has taken.
         simulated: time that this run has simulated [s].
         wall: time that it took [s].
         interrupted: whether it was stopped (Ctrl-C) before the last shot.
@@ -88,6 +88,7 @@ def collect_shots(
     done = Collected()
     started = perf_counter()
     with CollectionFile(out, settings) as file:
+        before = {row["trial"] for row in file.rows}
         tally = _Tally(quotas, file.rows)
         for _ in range(tally.shots):
             if on_shot is not None:
@@ -101,7 +102,6 @@ def collect_shots(
                     done.simulated += taken.time
                     if taken.row is not None:
                         file.add(taken.row)
-                        done.new += 1
                         if on_shot is not None:
                             on_shot()
                     tally.add(taken.trial, taken.row)
@@ -119,6 +119,8 @@ def collect_shots(
                 file.finish(rows)
     done.wall = perf_counter() - started
     done.shots = len(rows) if not done.interrupted else tally.shots
+    # Workers may have taken a few more than there was room for.
+    done.new = sum(row["trial"] not in before for row in rows)
     done.goals = sum(row["success"] for row in rows)
     return done
 

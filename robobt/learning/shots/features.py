@@ -86,9 +86,9 @@ class ShotFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         """Check the input; there is nothing to learn.
 
         Raises:
-            ValueError: X is not (n, 34), or there is no such feature vector.
+            ValueError: X is not (n, 34) or holds an infinite value, or there is no such feature vector.
         """
-        scenes = validate_data(self, X, ensure_all_finite=False)
+        scenes = validate_data(self, X, ensure_all_finite="allow-nan")
         if scenes.shape[1] != SHOT_SCENE.size:
             raise ValueError(
                 f"X has {scenes.shape[1]} columns, a shot's scene has {SHOT_SCENE.size} (shot_inputs)"
@@ -107,7 +107,7 @@ class ShotFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     def transform(self, X: ArrayLike) -> FloatArray:  # noqa: N803
         """(n, 34) scenes to (n, F)."""
         check_is_fitted(self)
-        scenes = validate_data(self, X, reset=False, ensure_all_finite=False, dtype=np.float64)
+        scenes = validate_data(self, X, reset=False, ensure_all_finite="allow-nan", dtype=np.float64)
         vectors = self._vectors(scenes)
         return np.where(np.isnan(vectors), self.typical_, vectors)
 

@@ -85,6 +85,8 @@ def test_features_refuse_what_is_no_scene():
         ShotFeatures().fit(np.zeros((3, 5)))
     with pytest.raises(ValueError, match="nonsense"):
         ShotFeatures("nonsense").fit(np.zeros((3, SHOT_SCENE.size)))
+    with pytest.raises(ValueError, match="inf"):
+        ShotFeatures().fit(np.full((3, SHOT_SCENE.size), np.inf))
 
 
 @needs_real_shots
