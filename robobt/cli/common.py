@@ -21,6 +21,7 @@ from rich.markup import escape
 from rich.table import Table
 
 if TYPE_CHECKING:
+    from robobt.match.loop import WorldFactory
     from robobt.tree.registry import Registry
 
 console = Console(highlight=False)
@@ -37,6 +38,15 @@ Imports = Annotated[
     ),
 ]
 """The option of every command that knows plays or skills by name; see ``import_files``."""
+
+Where = Annotated[
+    str,
+    typer.Option(
+        "--world",
+        help="Where it is played: sim, or a field of the league like league://grsim (one worker).",
+    ),
+]
+"""The option of every command that can play elsewhere; see ``factory_of``."""
 
 RECORDING = ".robobt.jsonl.gz"
 """How the name of a recorded match ends."""
@@ -87,6 +97,18 @@ def import_files(paths: Iterable[Path] | None) -> None:
 
         for path in paths:
             import_file(path)
+
+
+def factory_of(world: str) -> WorldFactory:
+    """What makes the worlds of an address; a process told to end stops the robots of a real one first."""
+    from robobt.worlds import SIM, world_from
+
+    factory = world_from(world)
+    if world != SIM:
+        from robobt.league.signals import exit_on_signals
+
+        exit_on_signals()
+    return factory
 
 
 def unknown(name: str, registry: Registry[Any]) -> typer.BadParameter:

@@ -12,8 +12,10 @@ from robobt.cli.common import (
     MAX_SEED,
     Json,
     Progress,
+    Where,
     console,
     cores,
+    factory_of,
     one_line_errors,
     print_json,
     say,
@@ -52,6 +54,7 @@ def deployed(
             "--picture", help="Draw the goal line as judged at attack_expected's first shot (.png)."
         ),
     ] = None,
+    world: Where = "sim",
     as_json: Json = False,
 ) -> None:
     """Attack Main, AttackNN and Attack Expected against the goalkeeper at half and full speed.
@@ -66,12 +69,24 @@ def deployed(
     """
     from robobt.experiments.deployed import PLAYED, SEED, judged_goal_line
     from robobt.experiments.deployed import deployed as run
+    from robobt.worlds import SIM
 
     used = SEED if seed is None else seed
+    if world != SIM and workers not in (None, 1):
+        raise typer.BadParameter("what is played over the network has one worker", param_hint="--workers")
+    factory = factory_of(world)
+    processes = workers or (cores() if world == SIM else 1)
     with Progress("deployed", 2 * len(PLAYED) * shots) as progress:
-        result = run(shots, used, workers or cores(), goalkeeper=goalkeeper.value, progress=progress.advance)
+        result = run(
+            shots,
+            used,
+            processes,
+            goalkeeper=goalkeeper.value,
+            progress=progress.advance,
+            world=factory,
+        )
     if picture is not None:
-        judged_goal_line("half", used, picture, goalkeeper.value)
+        judged_goal_line("half", used, picture, goalkeeper.value, factory)
     if as_json:
         print_json(result)
         return

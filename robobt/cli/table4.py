@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, Progress, console, one_line_errors, print_json, say, table
+from robobt.cli.common import (
+    MAX_SEED,
+    Json,
+    Progress,
+    Where,
+    console,
+    factory_of,
+    one_line_errors,
+    print_json,
+    say,
+    table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,6 +49,7 @@ def table4(
     picture: Annotated[
         Path | None, typer.Option("--picture", help="Draw the times into this file (.png).")
     ] = None,
+    world: Where = "sim",
     as_json: Json = False,
 ) -> None:
     """Table 4: get the ball and shoot, with hand-written and learned skills in every combination.
@@ -67,6 +79,7 @@ def table4(
     _check([] if realism is None else [realism], REALISM, "--realism")
     _check(only or [], COMBINATIONS, "--only")
     combinations = tuple(only or COMBINATIONS)
+    factory = factory_of(world)
     with Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress:
         result = run(
             runs,
@@ -75,6 +88,7 @@ def table4(
             realism=realism,
             combinations=combinations,
             progress=progress.advance,
+            world=factory,
         )
     if picture is not None:
         draw_table4(result, picture)

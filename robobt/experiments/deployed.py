@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import Any
 
 from robobt.experiments.goal_map import draw_goal_line
-from robobt.match.loop import Match
+from robobt.match.loop import Match, WorldFactory
 from robobt.match.results import MatchResult
 from robobt.match.runner import run_trials, trial_seed
 from robobt.match.scenario import Scenario, load_scenario
@@ -43,6 +43,7 @@ def deployed(
     plays: Sequence[str] = PLAYED,
     goalkeeper: str = "default",
     progress: Callable[[], object] = lambda: None,
+    world: WorldFactory = sim_world,
 ) -> dict[str, Any]:
     """Play every attacker against the goalkeeper at every speed.
 
@@ -57,6 +58,7 @@ def deployed(
         goalkeeper: its style: "default" moves as fast as its robot can and covers the
             angle; "robobulls" with the paper's own pilot.
         progress: called after every trial.
+        world: where it is played; one of the league takes one worker.
 
     Returns:
         Plain data: ``shots``, ``seed``, ``goalkeeper``, and ``speeds``, by speed and play:
@@ -79,7 +81,7 @@ def deployed(
         found[speed] = {}
         for play in plays:
             scenario = deployed_scenario(speed, play, goalkeeper)
-            results = run_trials(scenario, sim_world, shots, workers, seed, on_result=played).results
+            results = run_trials(scenario, world, shots, workers, seed, on_result=played).results
             first = results if first is None else first
             found[speed][play] = _figures(results, first, PAPER.get(speed, {}).get(play))
     return {"shots": shots, "seed": seed, "goalkeeper": goalkeeper, "speeds": found}
@@ -134,14 +136,16 @@ def _mean(values: Iterable[float]) -> float | None:
     return fmean(listed) if listed else None
 
 
-def judged_goal_line(speed: str, seed: int, path: Path, goalkeeper: str = "default") -> None:
+def judged_goal_line(
+    speed: str, seed: int, path: Path, goalkeeper: str = "default", world: WorldFactory = sim_world
+) -> None:
     """Play ``attack_expected`` until its first shot and draw the goal line as judged at that moment.
 
     Raises:
         RuntimeError: it takes no shot in the first of its trials.
     """
     scenario = deployed_scenario(speed, "attack_expected", goalkeeper)
-    with Match(scenario, trial_seed(seed, 0), sim_world) as match:
+    with Match(scenario, trial_seed(seed, 0), world) as match:
         store = match.players[0].store
         while match.tick():
             if store.command.kick_speed > 0.0:

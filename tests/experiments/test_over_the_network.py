@@ -1,0 +1,64 @@
+"""The paper's plays on another world than the built-in simulator."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.experiments.deployed import deployed, deployed_scenario
+from robobt.experiments.table4 import COMBINATIONS, table4, table4_scenario
+from robobt.league.endpoints import Endpoints
+from robobt.league.serving import served_scenario
+from robobt.match.scenario import Scenario
+from robobt.worlds import world_from
+from tests.league.served import free_endpoints, served
+
+
+def address(endpoints: Endpoints, speed: float) -> str:
+    ports = ("grsim", "control", "blue", "yellow", "blue_status", "yellow_status")
+    options = [f"{name}={getattr(endpoints, name)}" for name in ports]
+    options += [f"vision={endpoints.vision.address}:{endpoints.vision.port}", f"speed={speed}"]
+    return "league://grsim?" + "&".join(options)
+
+
+def test_table_4_is_played_on_a_served_field() -> None:
+    scenario: Scenario = table4_scenario("1", COMBINATIONS["geometric, kick"])
+    endpoints = free_endpoints()
+    with served(served_scenario(scenario), endpoints, speed=2.0):
+        result = table4(
+            1,
+            combinations=("geometric, kick",),
+            trials=("1",),
+            world=world_from(address(endpoints, 2.0)),
+        )
+    row = result["trials"]["1"]["rows"]["geometric, kick"]
+    assert row["reached"]["count"] == row["shots"]["count"] == 1
+    assert row["optimum_ratio"] > 0.9
+
+
+@pytest.mark.slow
+def test_the_deployed_attackers_play_on_a_served_field() -> None:
+    endpoints = free_endpoints()
+    with served(served_scenario(deployed_scenario("full", "attack_main")), endpoints, speed=2.0):
+        result = deployed(
+            1, speeds=("full",), plays=("attack_main",), world=world_from(address(endpoints, 2.0))
+        )
+    assert result["speeds"]["full"]["attack_main"]["attempts"] == 1
+
+
+def test_over_the_network_there_is_one_worker() -> None:
+    shown = CliRunner().invoke(app, ["paper", "deployed", "-n", "1", "-w", "2", "--world", "league://grsim"])
+    assert shown.exit_code == 2
+    assert "one worker" in " ".join(shown.output.split())
+
+
+@pytest.mark.parametrize("table", ["table4", "deployed"])
+def test_a_world_that_is_none_is_one_line(table: str) -> None:
+    shown = CliRunner().invoke(app, ["paper", table, "--world", "league://elsewhere", "--json"])
+    assert shown.exit_code == 1
+    assert "league://elsewhere" in shown.output
+    with pytest.raises(json.JSONDecodeError):
+        json.loads(shown.output)
