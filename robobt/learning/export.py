@@ -18,6 +18,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from robobt.match.problems import naming
 from robobt.skills.model_card import ModelCard
 from robobt.skills.model_file import (
     MANIFEST,
@@ -184,8 +185,12 @@ def _quiet() -> Iterator[None]:
 @contextmanager
 def _written(path: Path, data: bytes) -> Iterator[Path]:
     """The file in a folder of its own; it takes its place unless something is raised."""
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-") as folder:
+    with naming(path):
+        temporary_folder = tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-")
+    with temporary_folder as folder:
         temporary = Path(folder) / path.name
-        temporary.write_bytes(data)
+        with naming(path):
+            temporary.write_bytes(data)
         yield temporary
-        os.replace(temporary, path)
+        with naming(path):
+            os.replace(temporary, path)

@@ -108,10 +108,13 @@ def _models_in(hint: object) -> list[type[BaseModel]]:
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Let an error of the system that names no file, as that of a full disk, name this one."""
+    """Let an error of the system name this file: one that names none, as that of a full disk, or a temporary.
+
+    The latter is what fails to be renamed, and names this file second.
+    """
     try:
         yield
     except OSError as error:
-        if error.filename is None:
+        if error.filename is None or error.filename2 is not None:
             error.filename = str(path)
         raise

@@ -136,6 +136,11 @@ def test_files_that_are_none_give_one_clear_error(recorded, tmp_path):
     assert demonstrations_for(GoToBallSettings(), 5, str(wrong), 0).episodes == 5
     with pytest.raises(DemonstrationsError, match=r"gone.parquet: .*there is no such file"):
         read_demonstrations(tmp_path / "gone.parquet")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(IsADirectoryError) as caught:
+        recorded.write(tmp_path / "folder")
+    # Not the temporary file's name, of which nobody knows.
+    assert caught.value.filename == str(tmp_path / "folder")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -129,6 +130,17 @@ def test_what_was_there_stays_when_an_export_fails(tmp_path: Path, monkeypatch: 
         export_model(network(seed=4), go_to_ball_card(), tmp_path, ("torchscript", "onnx"))
     assert {name: (tmp_path / name).read_bytes() for name in os.listdir(tmp_path)} == before
     assert load_policy(path).card.name == "small"
+
+
+def test_a_full_disk_is_told_with_the_files_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(OSError, match="No space left on device") as caught:
+        export_model(network(), go_to_ball_card("mine"), tmp_path)
+    assert caught.value.filename == str(tmp_path / "mine.pt")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_manifest_keeps_the_models_of_other_exports(tmp_path: Path) -> None:
