@@ -7,7 +7,7 @@ the estimate steady, and grows as soon as their deviations point in one directio
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos, hypot, sin, sqrt
 
 from robobt.world.geometry import wrap_angle
@@ -182,7 +182,8 @@ def predicted(
     Args:
         commands: oldest first; before the first, and without any, it keeps its velocity.
     """
-    state = replace(motion)
+    # By hand, as dataclasses.replace takes longer than the prediction itself.
+    state = Motion(motion.x, motion.y, motion.heading, motion.vx, motion.vy, motion.omega)
     now = start
     index = 0
     while now < end - 1e-9:
