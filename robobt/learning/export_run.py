@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from robobt.learning.evaluation import Evaluation
@@ -69,6 +70,7 @@ def export_run(
     environment = environment_of(settings, str(run))
     problem = problem_of(settings.task, environment)
     count = settings.evaluation.held_out if starts is None else starts
+    torch.set_num_threads(1)  # as in training: on networks this small, threads wait for each other
     figures = problem.judge(policy_of(result.actor), "held_out", count)
     skill, observation = _SKILLS[settings.task]
     action = getattr(environment, "action", None)
