@@ -67,8 +67,8 @@ class DDPG:
         decay = settings.weight_decay
         self._actor_descent = _Descent(list(self.actor.parameters()), settings.actor_rate, decay)
         self._critic_descent = _Descent(list(self.critic.parameters()), settings.critic_rate, decay)
-        self._online = [*self.actor.parameters(), *self.critic.parameters()]
-        self._targets = [*self.target_actor.parameters(), *self.target_critic.parameters()]
+        self._online: list[Tensor] = [*self.actor.parameters(), *self.critic.parameters()]
+        self._targets: list[Tensor] = [*self.target_actor.parameters(), *self.target_critic.parameters()]
         self._atoms = Atoms(*settings.returns, settings.atoms) if settings.atoms else None
         self._smoothed = torch.tensor(list(smoothed), dtype=torch.float32)
         self._shares = (1.0, settings.one_step_weight)
@@ -118,7 +118,7 @@ class DDPG:
         With TD3's two critics Q' is the smaller.
         """
         action = self._smooth(self.target_actor(outlook.following), rng)
-        output = self.target_critic(outlook.following, action)
+        output: Tensor = self.target_critic(outlook.following, action)
         if self._atoms is None:
             return outlook.reward[:, None] + outlook.discount[:, None] * output.amin(0)
         if len(output) > 1:
@@ -156,7 +156,7 @@ class DDPG:
         value = output[:, 0] if self._atoms is None else self._atoms.mean(output)
         # Asked for the slope alone, so that the critic gets no gradient from the actor's step.
         (slope,) = torch.autograd.grad(value.sum(), taken)
-        squared = slope.square().sum(-1)
+        squared: Tensor = slope.square().sum(-1)
         if self.settings.slope_limit is not None:
             slope = slope * (self.settings.slope_limit / squared.sqrt()).clamp(max=1.0)[:, None]
         # Adam descends; the value is to rise.
@@ -231,8 +231,8 @@ class _Descent:
         self.adam = torch.optim.Adam(weights, lr=rate, weight_decay=decay, fused=True)
         for weight in weights:
             weight.grad = torch.zeros_like(weight)
-        self._gradients = [weight.grad for weight in weights]
+        self._gradients = [weight.grad for weight in weights if weight.grad is not None]
 
     def step(self, gradients: Sequence[Tensor]) -> None:
-        torch._foreach_copy_(self._gradients, gradients)
+        torch._foreach_copy_(self._gradients, list(gradients))
         self.adam.step()

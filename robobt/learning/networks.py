@@ -114,15 +114,15 @@ def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float6
 
     def decide(observation: NDArray[np.float64]) -> NDArray[np.float64]:
         with torch.no_grad():
-            action = actor(torch.from_numpy(observation.astype(np.float32)))
-        return action.numpy().astype(np.float64)
+            action: Tensor = actor(torch.from_numpy(observation.astype(np.float32)))
+        return np.asarray(action.numpy(), dtype=np.float64)
 
     return decide
 
 
 def _linear(fan_in: int, fan_out: int, generator: torch.Generator | None) -> nn.Linear:
     """PyTorch's default layer, drawn from our generator instead of the process's."""
-    layer = nn.utils.skip_init(nn.Linear, fan_in, fan_out)
+    layer: nn.Linear = nn.utils.skip_init(nn.Linear, fan_in, fan_out)  # type: ignore[no-untyped-call]
     bound = fan_in**-0.5
     with torch.no_grad():
         layer.weight.uniform_(-bound, bound, generator=generator)

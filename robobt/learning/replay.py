@@ -105,7 +105,7 @@ class Replay:
     def gather(self, rows: NDArray[np.int64], weights: NDArray[np.float64] | None) -> Batch:
         """The given rows as a batch."""
         packed = self._view.index_select(0, torch.from_numpy(rows))
-        observation, action, *rest = packed.split(self._sizes, 1)
+        observation, action, *rest = torch.split(packed, self._sizes, 1)
         outlooks = [
             Outlook(reward[:, 0], discount[:, 0], following)
             for reward, discount, following in zip(rest[0::3], rest[1::3], rest[2::3], strict=True)
