@@ -215,7 +215,12 @@ def test_an_interrupt_keeps_what_is_finished(workers: int):
         seen.append(result)
 
     seen: list[MatchResult] = []
-    run = run_trials(scenario(), PlainWorld, 1000, workers, on_result=stop_after_two)
+    # A shell that runs the tests in the background has Ctrl-C ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        run = run_trials(scenario(), PlainWorld, 1000, workers, on_result=stop_after_two)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert run.interrupted
     assert len(run.results) == 2
 
