@@ -12,21 +12,17 @@ A ball kicked from rest then rolls from ``switch_share`` of its first speed on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import cos, hypot, pi, sin, sqrt
-from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from robobt.sim.chipmunk import call_each_body, call_step
+from robobt.world.compiled import compiled
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Columns of a command.
 VX, VY, OMEGA, KICK, ON_CONTACT, DRIBBLE = range(6)
@@ -78,16 +74,6 @@ _BACKING = -0.02
 
 _GLUE_GAP = 2e-4
 """Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
-
-
-def compiled(function: Function) -> Function:
-    """Decorator: compile on first use, and keep what was compiled where a folder can be written to."""
-    try:
-        made: Any = njit(cache=True)(function)
-    except RuntimeError:
-        # A read-only installation, run by somebody without a home: compile anew each time.
-        made = njit(function)
-    return cast(Function, made)
 
 
 @compiled

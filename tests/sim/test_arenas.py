@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
 from robobt.sim import Arenas, preset
-from robobt.sim.kernels import compiled
 from robobt.world import DIVISION_B
 
 
@@ -95,10 +92,3 @@ def test_the_parameters_of_one_arena_can_differ() -> None:
     for _ in range(20):
         arenas.step(np.zeros((2, 1, 6)))
     assert arenas.balls[1, 2] < arenas.balls[0, 2]
-
-
-def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
-    # numba finds no folder for code that is in no file, as for that of a read-only installation.
-    words: dict[str, Any] = {}
-    exec("def double(x): return 2 * x", words)
-    assert compiled(words["double"])(3) == 6

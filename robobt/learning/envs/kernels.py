@@ -10,7 +10,8 @@ from __future__ import annotations
 from math import atan2, cos, exp, hypot, isfinite, pi, sin, sqrt
 
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
-from robobt.sim.kernels import DRIBBLE, KICK, OMEGA, VX, VY, compiled
+from robobt.sim.kernels import DRIBBLE, KICK, OMEGA, VX, VY
+from robobt.world.compiled import compiled
 
 # Columns of an arena's counters.
 TICKS, HELD, KICK_TICK, PRESSED = range(4)
