@@ -1,0 +1,213 @@
+"""What decides a match, once: lines, goals, defence areas, touches and possession.
+
+Referee, end conditions, training rewards, statistics and tests call the functions
+here. Those that take single numbers are compiled, so that the kernels of training
+and simulation can call them too. Lengths are metres, coordinates those of the world
+(blue defends -x) unless a function says otherwise.
+
+Source: RoboCup SSL rules, chapters "Scoring Goals", "Ball Leaves The Field" and
+"Offenses"; distances that involve a robot count from its hull.
+"""
+
+from __future__ import annotations
+
+from math import copysign, cos, hypot, pi, radians, sin
+
+from robobt.world.compiled import compiled
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.geometry import Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
+
+IN_PLAY_DISTANCE = 0.05
+"""The ball is in play once it has moved this far from a restart's spot. Source: SSL rules [m]."""
+
+PUSH_DISTANCE = 2.0 * IN_PLAY_DISTANCE
+"""A kicker that never lets go of the ball touches it twice once it has pushed it this far [m].
+
+The rules allow a kicker to stay in contact until the ball is in play; the second
+half is tolerance, because the ball is seen once a tick.
+"""
+
+CARRY_DISTANCE = 1.0
+"""A robot may carry the ball no farther than this, as the crow flies. Source: SSL rules [m]."""
+
+_FRONT = 0.075
+"""Distance of the flat front from the robot's centre [m]."""
+
+_TOUCH_GAP = 0.005
+"""A ball this close to the hull touches it: contact is seen once a tick [m]."""
+
+HELD_GAP = 0.02
+"""A ball closer to the hull than this is held. Source: RoboBulls' code and Sumatra's referee [m]."""
+
+KEPT_GAP = 0.06
+"""Who had the ball still has it up to this gap. Source: Sumatra's autoreferee [m]."""
+
+MOUTH_SECTOR = radians(45.0)
+"""A robot has a ball that lies within this angle of its heading [rad]."""
+
+ALL_AROUND = pi
+"""The sector of a goalkeeper, which holds the ball on any side of its hull [rad]."""
+
+_ALONG = 1.0
+"""Difference of velocities up to which the ball moves along [m/s]; a turning robot swings it."""
+
+
+def own_side(team: Team) -> float:
+    """Return the sign of x at the goal that ``team`` defends."""
+    return -1.0 if team is Team.BLUE else 1.0
+
+
+# Lines and goals.
+
+
+@compiled
+def is_out(x: float, y: float, half_length: float, half_width: float) -> bool:
+    """Return whether a ball at (x, y) is behind a line as a whole."""
+    return abs(x) > half_length + BALL_RADIUS or abs(y) > half_width + BALL_RADIUS
+
+
+@compiled
+def leaving(
+    x0: float, y0: float, x1: float, y1: float, half_length: float, half_width: float
+) -> tuple[float, float, bool]:
+    """Find where a ball that went straight from (x0, y0) to (x1, y1) left the field.
+
+    The ball has left once it is over a line as a whole, so the lines are taken one
+    ball radius further out. Of two lines crossed in one step the first counts.
+
+    Returns:
+        The point, (x1, y1) where the ball was out already, and whether it left over a goal line.
+    """
+    edge_x, edge_y = half_length + BALL_RADIUS, half_width + BALL_RADIUS
+    share, goal_line = 1.0, abs(x1) > edge_x
+    if abs(x1) > edge_x >= abs(x0):
+        share = (copysign(edge_x, x1) - x0) / (x1 - x0)
+    if abs(y1) > edge_y >= abs(y0):
+        touch_share = (copysign(edge_y, y1) - y0) / (y1 - y0)
+        if not goal_line or touch_share < share:
+            share, goal_line = touch_share, False
+    return x0 + share * (x1 - x0), y0 + share * (y1 - y0), goal_line
+
+
+@compiled
+def goal_side(
+    x0: float, y0: float, x1: float, y1: float, half_length: float, half_width: float, half_goal: float
+) -> int:
+    """Return the sign of x at the goal that a ball going from (x0, y0) to (x1, y1) enters; 0 for none.
+
+    A goal is scored when the ball leaves the field over a goal line between the posts.
+    Their inner sides stand at ``half_goal``; a ball is inside them by its radius or
+    outside them by its radius and more, so its centre decides. A ball that was out
+    before scores no goal.
+    """
+    if abs(x1) <= half_length + BALL_RADIUS or is_out(x0, y0, half_length, half_width):
+        return 0
+    _, y, goal_line = leaving(x0, y0, x1, y1, half_length, half_width)
+    if not goal_line or abs(y) > half_goal:
+        return 0
+    return 1 if x1 > 0.0 else -1
+
+
+def ball_out(field: FieldGeometry, ball: Point) -> bool:
+    """Return whether the ball is behind one of the field's lines as a whole."""
+    return is_out(ball[0], ball[1], field.half_length, field.half_width)
+
+
+def exit_point(field: FieldGeometry, before: Point, after: Point) -> tuple[Point, bool]:
+    """Return where the ball left the field, and whether over a goal line; see :func:`leaving`."""
+    x, y, goal_line = leaving(*before, *after, field.half_length, field.half_width)
+    return (x, y), goal_line
+
+
+def scorer(field: FieldGeometry, before: Point, after: Point) -> Team | None:
+    """Return the team that scores as the ball goes from ``before`` to ``after``; see :func:`goal_side`."""
+    side = goal_side(*before, *after, field.half_length, field.half_width, field.goal_width / 2)
+    return None if side == 0 else Team.BLUE if side > 0 else Team.YELLOW
+
+
+# Defence areas.
+
+
+@compiled
+def in_area(
+    x: float, y: float, half_length: float, depth: float, width: float, tolerance: float = 0.0
+) -> bool:
+    """Return whether (x, y) lies in the defence area at +x, grown by ``tolerance`` on front and sides."""
+    return x >= half_length - depth - tolerance and abs(y) <= width / 2 + tolerance
+
+
+def in_defense_area(field: FieldGeometry, defender: Team, x: float, y: float, tolerance: float = 0.0) -> bool:
+    """Return whether (x, y) lies in ``defender``'s defence area; see :func:`in_area`."""
+    return in_area(
+        own_side(defender) * x, y, field.half_length, field.defense_depth, field.defense_width, tolerance
+    )
+
+
+# Touches and possession.
+
+
+def hull_gap(robot: RobotState, ball: BallState) -> float:
+    """Return the gap between the robot's round hull and the ball [m]; below 0 where it lies in the mouth."""
+    return hypot(robot.x - ball.x, robot.y - ball.y) - ROBOT_RADIUS - BALL_RADIUS
+
+
+def touches(robot: RobotState, ball: BallState) -> bool:
+    """Return whether the ball lies in the robot's mouth or against its hull."""
+    if robot.ball_contact:
+        return True
+    dx, dy = ball.x - robot.x, ball.y - robot.y
+    reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
+    if dx * dx + dy * dy > reach * reach:
+        return False
+    ahead = cos(robot.heading) * dx + sin(robot.heading) * dy
+    return ahead <= _FRONT + BALL_RADIUS + _TOUCH_GAP
+
+
+def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -> bool:
+    """Return whether the robot has the ball: its sensor sees it, or it lies before the mouth.
+
+    The sensor may be silent for a tick while the ball bounces on the dribbler, so a
+    ball within ``sector`` of the heading and within :data:`HELD_GAP` of the hull counts too.
+
+    Args:
+        robot: who may have it.
+        ball: in the same view.
+        sector: on which side of the robot, :data:`MOUTH_SECTOR` or :data:`ALL_AROUND` [rad].
+    """
+    if robot.ball_contact:
+        return True
+    dx, dy = ball.x - robot.x, ball.y - robot.y
+    if dx > _REACH or dx < -_REACH or dy > _REACH or dy < -_REACH:
+        return False
+    gap = hypot(dx, dy)
+    if gap >= _REACH:
+        return False
+    return sector >= pi or cos(robot.heading) * dx + sin(robot.heading) * dy > cos(sector) * gap
+
+
+def carries(robot: RobotState, ball: BallState) -> bool:
+    """Return whether the robot has the ball and it moves along: neither kicked nor bouncing off."""
+    return has_ball(robot, ball) and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < _ALONG
+
+
+def keeps_ball(robot: RobotState, ball: BallState) -> bool:
+    """Return whether a robot that had the ball has not lost it yet: it is within :data:`KEPT_GAP`."""
+    return hull_gap(robot, ball) <= KEPT_GAP
+
+
+def owner(frame: Frame) -> RobotId | None:
+    """Return the robot that has the ball; the nearest of several, None when nobody has it."""
+    best: RobotId | None = None
+    nearest = 2.0 * _REACH
+    for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
+        for robot in robots:
+            if has_ball(robot, frame.ball):
+                gap = hypot(frame.ball.x - robot.x, frame.ball.y - robot.y)
+                if gap < nearest:
+                    best, nearest = RobotId(team, robot.id), gap
+    return best
+
+
+_REACH = ROBOT_RADIUS + BALL_RADIUS + HELD_GAP
