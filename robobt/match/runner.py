@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-import logging
-import multiprocessing
-import os
-import pickle
-import signal
-import threading
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
-from multiprocessing.context import SpawnProcess
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,9 +16,7 @@ from robobt.match.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
 from robobt.plays.python_files import import_file, imported_files
-
-MAX_WORKERS = 256
-"""Most worker processes of a run."""
+from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 
 class RunError(RuntimeError):
@@ -113,8 +102,11 @@ def run_trials(
                     if on_result is not None:
                         on_result(result)
         todo = [trial for trial in range(trials) if trial not in results]
-        many = min(workers, len(todo))
-        for result in job.play_all(todo) if many <= 1 else _play_over_workers(job, todo, many):
+        work: Work[int, object, MatchResult] = Work(
+            job.play, f"{scenario.source}: trial", RunError, (ScenarioError, OSError)
+        )
+        setup = partial(_import_files, imported_files())
+        for result in run_tasks(work, todo, min(workers, len(todo)), setup=setup):
             results[result.trial] = result
             if file is not None:
                 file.add(result)
@@ -143,132 +135,11 @@ class _Job:
     record: Mapping[int, Path]
     plays: tuple[Play, ...]
 
-    def play(self, trial: int) -> MatchResult:
-        try:
-            return play_match(
-                self.scenario,
-                trial_seed(self.seed, trial),
-                self.world_factory,
-                self.record.get(trial),
-                trial,
-            )
-        except (ScenarioError, OSError):
-            raise
-        except Exception as error:
-            name = self.scenario.source
-            raise RunError(f"{name}: trial {trial}: {type(error).__name__}: {error}") from error
-
-    def play_all(self, trials: list[int]) -> Iterator[MatchResult]:
-        for trial in trials:
-            yield self.play(trial)
+    def play(self, trial: int, _report: object) -> MatchResult:
+        seed = trial_seed(self.seed, trial)
+        return play_match(self.scenario, seed, self.world_factory, self.record.get(trial), trial)
 
 
-@dataclass(slots=True)
-class _Worker:
-    process: SpawnProcess
-    connection: Connection
-    trial: int
-
-
-def _play_over_workers(job: _Job, trials: list[int], count: int) -> Iterator[MatchResult]:
-    """Results in the order in which they finish."""
-    try:
-        packed = pickle.dumps(job)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise RunError(f"the match cannot be sent to worker processes: {error}") from error
-    waiting = deque(trials)
-    with _ignoring_interrupts():
-        workers = [_start(packed, waiting.popleft()) for _ in range(count)]
-    try:
-        while workers:
-            ready = wait([worker.connection for worker in workers])
-            for worker in [worker for worker in workers if worker.connection in ready]:
-                answer = _receive(worker)
-                if isinstance(answer, Exception):
-                    raise answer
-                if waiting:
-                    worker.trial = waiting.popleft()
-                    worker.connection.send(worker.trial)
-                else:
-                    worker.connection.send(None)
-                    workers.remove(worker)
-                    worker.process.join()
-                yield answer
-    finally:
-        for worker in workers:
-            worker.process.terminate()
-        for worker in workers:
-            worker.process.join()
-
-
-def _start(job: bytes, trial: int) -> _Worker:
-    # Spawned, not forked: forking a process whose threads hold locks (torch, numba) can hang.
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(imported_files(), job, theirs, trial), daemon=True)
-    process.start()
-    theirs.close()
-    return _Worker(process, ours, trial)
-
-
-def _receive(worker: _Worker) -> MatchResult | Exception:
-    try:
-        answer: MatchResult | Exception = worker.connection.recv()
-    except (EOFError, OSError):
-        worker.process.join()
-        return RunError(
-            f"a worker process died in trial {worker.trial} (exit code {worker.process.exitcode})"
-        )
-    return answer
-
-
-def _work(files: tuple[Path, ...], packed: bytes, connection: Connection, trial: int | None) -> None:
-    """A worker process: play what is asked for until told to stop."""
-    threading.Thread(target=_leave_with_the_run, daemon=True).start()
-    # One core a worker; numeric libraries that start threads of their own would take the others'.
-    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(variable, "1")
-    # What trees raise is counted in the results; a line on stderr each tick helps nobody.
-    logging.getLogger("robobt").setLevel(logging.ERROR)
-    answer: MatchResult | Exception
-    try:
-        # First, for the job may name what these files define.
-        for file in files:
-            import_file(file)
-        job: _Job = pickle.loads(packed)
-    except Exception as error:
-        what = "does not know what this one does; plays and worlds for it are defined in modules or files"
-        connection.send(RunError(f"a worker process {what}: {type(error).__name__}: {error}"))
-        return
-    while trial is not None:
-        try:
-            answer = job.play(trial)
-        except Exception as error:
-            answer = error
-        try:
-            connection.send(answer)
-            trial = connection.recv()
-        except (EOFError, OSError):
-            # The run is over without us.
-            return
-
-
-def _leave_with_the_run() -> None:
-    """End this process as soon as the one that started it has; one that is killed tells nobody."""
-    run = multiprocessing.parent_process()
-    if run is not None:
-        run.join()
-        os._exit(1)
-
-
-@contextmanager
-def _ignoring_interrupts() -> Iterator[None]:
-    """Processes started in here never see Ctrl-C; the run that started them ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+def _import_files(paths: tuple[Path, ...]) -> None:
+    for path in paths:
+        import_file(path)

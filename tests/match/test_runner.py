@@ -141,7 +141,7 @@ class TestFailures:
 
 
 def test_a_worker_that_dies_is_named_with_its_trial():
-    with pytest.raises(RunError, match=r"a worker process died in trial \d \(exit code 3\)"):
+    with pytest.raises(RunError, match=r"test\.yaml: trial \d: its worker process died \(exit code 3\)"):
         run_trials(scenario(), DyingWorld, 2, workers=2)
 
 

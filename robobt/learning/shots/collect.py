@@ -12,6 +12,7 @@ from robobt.learning.shots.collect_file import CollectionFile
 from robobt.learning.shots.collect_paper import PARTS, TEST, TRAIN, splits
 from robobt.learning.shots.collect_plan import CollectionSettings
 from robobt.learning.shots.collect_workers import CollectionError, play_trials, streams
+from robobt.workers import MAX_WORKERS
 
 PAPER_COUNT = TRAIN + TEST
 """Shots of the paper's protocol."""
@@ -81,8 +82,8 @@ def collect_shots(
         raise ValueError(f"the paper's protocol is {PAPER_COUNT} shots of both scenarios at one opponent")
     if not 1 <= count <= MAX_COUNT:
         raise ValueError(f"count must be 1 to {MAX_COUNT}, not {count}")
-    if not 1 <= workers <= 256:
-        raise ValueError(f"workers must be 1 to 256, not {workers}")
+    if not 1 <= workers <= MAX_WORKERS:
+        raise ValueError(f"workers must be 1 to {MAX_WORKERS}, not {workers}")
     quotas = [part.shots for part in PARTS] if paper else [count]
     assert len(quotas) == streams(settings)
     done = Collected()
@@ -108,7 +109,7 @@ def collect_shots(
             except KeyboardInterrupt:
                 done.interrupted = True
             finally:
-                results.close()  # type: ignore[attr-defined]
+                results.close()
             rows = tally.chosen()
             if not done.interrupted:
                 if paper:

@@ -1,0 +1,75 @@
+import os
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from robobt.workers import Work, run_tasks
+
+
+class SquareError(Exception):
+    pass
+
+
+def _square(task: int, report: Callable[[str], None]) -> int:
+    if task < 0:
+        raise ValueError("negative")
+    if task == 13:
+        raise LookupError("unlucky")
+    if task == 99:
+        os._exit(7)
+    report(f"{task} squared")
+    return task * task
+
+
+SQUARES = Work(_square, "square of", SquareError, passed=(LookupError,))
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_task_gives_one_result_and_its_reports(workers: int):
+    reports: list[str] = []
+    assert sorted(run_tasks(SQUARES, range(5), workers, ahead=2, on_report=reports.append)) == [
+        0,
+        1,
+        4,
+        9,
+        16,
+    ]
+    assert sorted(reports) == [f"{task} squared" for task in range(5)]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_task_that_raises_is_named(workers: int):
+    with pytest.raises(SquareError, match=r"^square of -1: ValueError: negative"):
+        list(run_tasks(SQUARES, [-1, -1], workers))
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_some_exceptions_are_raised_as_they_are(workers: int):
+    with pytest.raises(LookupError, match="^unlucky"):
+        list(run_tasks(SQUARES, [13, 13], workers))
+
+
+def test_the_traceback_of_a_worker_comes_with_its_exception():
+    with pytest.raises(SquareError) as caught:
+        list(run_tasks(SQUARES, [-1], 2))
+    assert 'raise ValueError("negative")' in caught.value.__notes__[0]
+
+
+def test_a_worker_that_dies_is_named_with_the_task_it_died_in():
+    with pytest.raises(SquareError, match=r"^square of 99: its worker process died \(exit code 7\)$"):
+        list(run_tasks(SQUARES, [99, 1], 2, ahead=2))
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_tasks_are_asked_for_only_while_there_is_room(workers: int):
+    asked: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for task in range(100):
+            asked.append(task)
+            yield task
+
+    results = run_tasks(SQUARES, tasks(), workers)
+    next(results)
+    results.close()
+    assert len(asked) <= 2 * workers
