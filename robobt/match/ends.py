@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import StrEnum
-from math import ceil, hypot
+from math import ceil
 
-from robobt.match.rules import between_posts, exit_point, left_over_goal_line, left_over_touch_line
 from robobt.match.scenario import Scenario
 from robobt.world.game import GameState, Stage, Team
 from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
-
-_HELD_GAP = 0.02
-"""A ball this close to the hull is the goalkeeper's. Source: Sumatra's referee [m]."""
+from robobt.world.rules import ALL_AROUND, ball_out, has_ball, scorer
+from robobt.world.state import Frame, RobotId
 
 _REST_SPEED = 0.05
 """A ball slower than this lies still [m/s]."""
@@ -72,15 +69,15 @@ class EndJudge:
             kicked: who kicked it since the frame before.
         """
         self._ticks += 1
-        scorer = self._scorer(truth, game)
-        if scorer is not None and self._goal_ends:
-            return Outcome.GOAL_BLUE if scorer is Team.BLUE else Outcome.GOAL_YELLOW
+        goal_by = self._goal_by(truth, game)
+        if goal_by is not None and self._goal_ends:
+            return Outcome.GOAL_BLUE if goal_by is Team.BLUE else Outcome.GOAL_YELLOW
         limit = self._ends.score_limit
         if limit is not None and max(self.scores.values()) >= limit:
             return Outcome.SCORE
         if game.stage is Stage.POST_GAME:
             return Outcome.FULL_TIME
-        if self._was_out and self._out_ends and scorer is None:
+        if self._was_out and self._out_ends and goal_by is None:
             return Outcome.OUT
         if _lasted(self._since_held(truth), self._ends.held_by_goalkeeper, truth.time):
             return Outcome.SAVED
@@ -90,34 +87,28 @@ class EndJudge:
             return Outcome.REST
         return Outcome.TIME if self._ticks >= self._last_tick else None
 
-    def _scorer(self, truth: Frame, game: GameState) -> Team | None:
-        """Who has scored since the frame before."""
+    def _goal_by(self, truth: Frame, game: GameState) -> Team | None:
+        """Return who has scored since the frame before."""
         before = self._ball_before or truth.ball.position
         self._ball_before = truth.ball.position
-        was_out = self._was_out
-        x, y = truth.ball.position
-        over_goal_line = left_over_goal_line(truth.field, x)
-        self._was_out = over_goal_line or left_over_touch_line(truth.field, y)
+        self._was_out = ball_out(truth.field, truth.ball.position)
         if self._referee:
-            told = {Team.BLUE: game.blue_score, Team.YELLOW: game.yellow_score}
-            scorers = [team for team in Team if told[team] > self.scores[team]]
-            self.scores = told
+            score = {Team.BLUE: game.blue_score, Team.YELLOW: game.yellow_score}
+            scorers = [team for team in Team if score[team] > self.scores[team]]
+            self.scores = score
             return scorers[0] if scorers else None
-        if not over_goal_line or was_out:
-            return None
-        crossing = exit_point(truth.field, before, truth.ball.position)
-        over_touch_line = abs(crossing[0]) < truth.field.half_length + BALL_RADIUS - 1e-9
-        if over_touch_line or not between_posts(truth.field, crossing[1]):
-            return None
-        scorer = Team.BLUE if x > 0.0 else Team.YELLOW
-        self.scores[scorer] += 1
-        return scorer
+        team = scorer(truth.field, before, truth.ball.position)
+        if team is not None:
+            self.scores[team] += 1
+        return team
 
     def _since_held(self, truth: Frame) -> float | None:
         held = False
         for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
             for robot in robots:
-                held = held or (RobotId(team, robot.id) in self._keepers and _has_ball(robot, truth))
+                held = held or (
+                    RobotId(team, robot.id) in self._keepers and has_ball(robot, truth.ball, ALL_AROUND)
+                )
         if not held:
             self._held_since = None
         elif self._held_since is None:
@@ -130,11 +121,6 @@ class EndJudge:
         elif self._rest_since is None:
             self._rest_since = truth.time
         return self._rest_since
-
-
-def _has_ball(robot: RobotState, truth: Frame) -> bool:
-    reach = ROBOT_RADIUS + BALL_RADIUS + _HELD_GAP
-    return robot.ball_contact or hypot(robot.x - truth.ball.x, robot.y - truth.ball.y) <= reach
 
 
 def _lasted(since: float | None, duration: float | None, now: float) -> bool:

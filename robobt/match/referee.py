@@ -13,22 +13,21 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from robobt.match.rules import (
-    between_posts,
-    corner_spot,
-    exit_point,
-    free_kick_spot,
-    goal_kick_spot,
-    in_defense_area,
-    left_over_goal_line,
-    left_over_touch_line,
-    own_side,
-    penalty_mark,
-)
+from robobt.match.restarts import corner_spot, free_kick_spot, goal_kick_spot, penalty_mark
 from robobt.match.touches import Touches
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import (
+    CARRY_DISTANCE,
+    IN_PLAY_DISTANCE,
+    PUSH_FACTOR,
+    ball_out,
+    exit_point,
+    in_defense_area,
+    own_side,
+    scorer,
+)
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
 
 
@@ -51,12 +50,14 @@ class RefereeSettings(BaseModel):
     )
     kick_timeout: float = Field(10.0, gt=0, le=60, description="a restart not taken by then is over [s]")
     in_play_distance: float = Field(
-        0.05, gt=0, le=0.5, description="the ball is in play after moving this far [m]"
+        IN_PLAY_DISTANCE, gt=0, le=0.5, description="the ball is in play after moving this far [m]"
     )
     double_touch: bool = Field(True, description="the kicker may not touch the ball twice")
     defense_areas: bool = Field(True, description="who may touch the ball in the defence areas")
     aimless_kick: bool = Field(True, description="no kick from the own half over the far goal line")
-    max_dribble: float | None = Field(1.0, gt=0, le=50, description="longest way with the ball [m]")
+    max_dribble: float | None = Field(
+        CARRY_DISTANCE, gt=0, le=50, description="longest way with the ball [m]"
+    )
     max_ball_speed: float | None = Field(6.5, gt=0, le=50, description="fastest kick [m/s]")
     crash_speed: float | None = Field(1.5, gt=0, le=20, description="closing speed of a crash [m/s]")
     keeper_hold_time: float | None = Field(
@@ -158,9 +159,6 @@ _FOUL_MEMORY = 2.0
 
 _EQUAL_SPEEDS = 0.3
 """Both robots are at fault in a crash when their speeds differ by less than this [m/s]."""
-
-_CARRY_SLACK = 2.0
-"""A kicker that never lets go commits a double touch at this many in-play distances."""
 
 _SPEED_SLACK = 0.02
 """Measuring tolerance of speeds [m/s]."""
@@ -307,7 +305,7 @@ class Referee:
         ball = frame.ball
         self._check_crashes(frame)
         self._check_ball_speed(frame)
-        if left_over_goal_line(self.field, ball.x) or left_over_touch_line(self.field, ball.y):
+        if ball_out(self.field, ball.position):
             self._ball_left(frame)
         elif not (
             self._check_areas(frame)
@@ -405,8 +403,8 @@ class Referee:
 
     def _ball_left(self, frame: Frame) -> None:
         ball, field, last = frame.ball, self.field, self._touches.last
-        x, y = exit_point(field, self._ball_before, ball.position)
-        if abs(x) < field.half_length + BALL_RADIUS - 1e-9:
+        (x, y), over_goal_line = exit_point(field, self._ball_before, ball.position)
+        if not over_goal_line:
             self._note(frame, EventKind.BALL_OUT, last.team if last else None, last)
             if last is None:
                 self._stop(frame, _Resumption(free_kick_spot(field, x, y)))
@@ -415,7 +413,7 @@ class Referee:
             return
         defender = Team.BLUE if x < 0.0 else Team.YELLOW
         attacker = defender.other
-        if between_posts(field, y):
+        if scorer(field, self._ball_before, ball.position) is attacker:
             if frame.time - self._fouls.get(attacker, -_FOUL_MEMORY - 1.0) <= _FOUL_MEMORY:
                 self._note(frame, EventKind.INVALID_GOAL, attacker, last)
                 self._kick_in(frame, defender, goal_kick_spot(field, defender, y))
@@ -479,7 +477,7 @@ class Referee:
             self._kicker_left = True
         elif (
             self._kicker_left
-            or distance(frame.ball.position, self._next.spot) > _CARRY_SLACK * self.settings.in_play_distance
+            or distance(frame.ball.position, self._next.spot) > PUSH_FACTOR * self.settings.in_play_distance
         ):
             self._note(frame, EventKind.DOUBLE_TOUCH, kicker.team, kicker)
             self._free_kick(frame, kicker.team.other, *frame.ball.position)

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from math import hypot
-
-from robobt.match.rules import touches
 from robobt.world.geometry import Point, distance
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
-
-_LOST_GAP = 0.06
-"""Who had the ball still has it up to this gap. Source: Sumatra's autoreferee [m]."""
+from robobt.world.rules import keeps_ball, touches
+from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
 class Touches:
@@ -52,14 +47,12 @@ class Touches:
             self.where = ball.position
         if told is not None:
             self.last = told
-        self._follow_carrier(ball.position, carrier)
+        self._follow_carrier(ball, carrier)
 
-    def _follow_carrier(self, ball: Point, carrier: RobotState | None) -> None:
-        if carrier is not None and self.last == self.carrier:
-            gap = hypot(carrier.x - ball[0], carrier.y - ball[1]) - ROBOT_RADIUS - BALL_RADIUS
-            if gap <= _LOST_GAP:
-                self.carried = distance(self._carry_start, ball)
-                return
+    def _follow_carrier(self, ball: BallState, carrier: RobotState | None) -> None:
+        if carrier is not None and self.last == self.carrier and keeps_ball(carrier, ball):
+            self.carried = distance(self._carry_start, ball.position)
+            return
         self.carrier = self.last if self.last in self.now else None
-        self._carry_start = ball
+        self._carry_start = ball.position
         self.carried = 0.0

@@ -22,11 +22,11 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, Robo
 IN_PLAY_DISTANCE = 0.05
 """The ball is in play once it has moved this far from a restart's spot. Source: SSL rules [m]."""
 
-PUSH_DISTANCE = 2.0 * IN_PLAY_DISTANCE
-"""A kicker that never lets go of the ball touches it twice once it has pushed it this far [m].
+PUSH_FACTOR = 2.0
+"""A kicker that never lets go of the ball touches it twice after this many in-play distances.
 
-The rules allow a kicker to stay in contact until the ball is in play; the second
-half is tolerance, because the ball is seen once a tick.
+The rules let the kicker stay in contact until the ball is in play; the second
+distance is tolerance, because the ball is seen once a tick.
 """
 
 CARRY_DISTANCE = 1.0

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
-
 import pytest
 
 from robobt.match.referee import EventKind, Referee, RefereeSettings
-from robobt.match.rules import exit_point, free_kick_spot, penalty_mark, touches
+from robobt.match.restarts import penalty_mark
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
@@ -236,26 +234,6 @@ def test_a_touch_on_the_way_makes_a_long_kick_no_aimless_one(story: Story) -> No
     story.ours(1, -2.11, 1.0).touch(1).roll(-2.0, 1.0).touch(2).roll(2.0, 1.0)
     story.roll(GOAL_LINE - 0.05, 1.0).roll(GOAL_LINE + 0.05, 1.0)
     assert story.kinds == [EventKind.BALL_OUT]
-
-
-def test_the_way_out_ends_at_the_line_crossed_first() -> None:
-    edge = TOUCH_LINE + BALL_RADIUS
-    assert exit_point(FIELD, (4.0, 2.9), (4.6, 3.4))[1] == pytest.approx(edge)
-    assert exit_point(FIELD, (4.4, 0.0), (4.6, 0.2))[0] == pytest.approx(GOAL_LINE + BALL_RADIUS)
-
-
-@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
-@pytest.mark.parametrize("x_share", [-1.1, -0.95, -0.6, 0.0, 0.8, 1.0])
-@pytest.mark.parametrize("y_share", [-1.1, -0.5, 0.0, 0.1, 0.9, 1.0])
-def test_a_free_kick_is_off_the_lines_and_the_defence_areas(
-    field: FieldGeometry, x_share: float, y_share: float
-) -> None:
-    x, y = free_kick_spot(field, x_share * field.half_length, y_share * field.half_width)
-    assert abs(x) <= field.half_length - 0.2 + 1e-9
-    assert abs(y) <= field.half_width - 0.2 + 1e-9
-    beyond_front = field.half_length - field.defense_depth - abs(x)
-    beyond_side = abs(y) - field.defense_width / 2
-    assert max(beyond_front, beyond_side) >= 1.0 - 1e-9
 
 
 @pytest.mark.parametrize(("field", "to_goal"), [(DIVISION_A, 8.0), (DIVISION_B, 6.0)], ids=["a", "b"])
@@ -710,42 +688,7 @@ def test_a_frame_from_yellows_side_is_refused() -> None:
 # Contact.
 
 
-@pytest.mark.parametrize("bearing", [0.0, 1.0, 2.0, 3.0])
-def test_contact_ends_a_few_millimetres_off_the_hull(bearing: float) -> None:
-    robot = RobotState(1, 0.0, 0.0, heading=-bearing)
-    hull = 0.075 if bearing == 0.0 else ROBOT_RADIUS
-    assert touches(robot, BallState(hull + BALL_RADIUS + 0.002, 0.0))
-    assert not touches(robot, BallState(hull + BALL_RADIUS + 0.01, 0.0))
-
-
-def test_a_ball_before_the_flat_front_is_measured_from_the_flat() -> None:
-    robot = RobotState(1, 0.0, 0.0)
-    ball = BallState(0.108, 0.0)
-    assert hypot(ball.x, ball.y) < ROBOT_RADIUS + BALL_RADIUS
-    assert not touches(robot, ball)
-
-
-@pytest.mark.parametrize("heading", [0.0, 1.5708, -1.5708, 3.1416])
-def test_the_flat_front_turns_with_the_robot(heading: float) -> None:
-    robot = RobotState(1, 0.0, 0.0, heading=heading)
-    front = BallState(0.108 * cos(heading), 0.108 * sin(heading))
-    back = BallState(-0.108 * cos(heading), -0.108 * sin(heading))
-    assert not touches(robot, front)
-    assert touches(robot, back)
-
-
-def test_a_ball_well_aside_is_not_touched() -> None:
-    assert not touches(RobotState(1, 0.0, 0.0), BallState(0.05, 0.15))
-
-
 def test_where_the_world_says_nothing_contact_tells_who_touched_last(us: Team) -> None:
     story = Story(us).tick().ours(4, 1.0, TOUCH_LINE - 0.1 - 0.11, heading=-1.5708)
     story.roll(1.0, TOUCH_LINE - 0.1).roll(1.0, TOUCH_LINE + 0.05)
     assert story.events == [(EventKind.BALL_OUT, us)]
-
-
-def test_on_a_narrow_field_a_free_kick_moves_out_before_the_area() -> None:
-    narrow = FieldGeometry(**{**DIVISION_B.model_dump(), "width": 3.8})
-    x, y = free_kick_spot(narrow, -3.9, 0.9)
-    assert abs(y) <= narrow.half_width - 0.2
-    assert x == pytest.approx(-(narrow.half_length - narrow.defense_depth - 1.0))

@@ -11,7 +11,6 @@ import pytest
 from robobt.match import load_scenario
 from robobt.match.loop import Match
 from robobt.match.referee import RefereeSettings
-from robobt.match.rules import touches
 from robobt.plays import defender, field_player, keeper
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner
@@ -26,6 +25,7 @@ from robobt.world import (
     RobotState,
     Team,
 )
+from robobt.world.rules import touches
 from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, stop_before
