@@ -45,7 +45,7 @@ def test_a_task_that_raises_is_named(workers: int):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_some_exceptions_are_raised_as_they_are(workers: int):
-    with pytest.raises(LookupError, match="^unlucky"):
+    with pytest.raises(LookupError, match=r"^unlucky"):
         list(run_tasks(SQUARES, [13, 13], workers))
 
 
