@@ -25,7 +25,7 @@ lint: $(INSTALLED)
 
 install: $(INSTALLED)
 
-$(INSTALLED): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/league/proto/*.proto)
+$(INSTALLED): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/league/wire/proto/*.proto)
 	@test -n "$(PYTHON)" || { echo "robobt needs Python 3.11, 3.12 or 3.13: install one, or name it with make PYTHON=..."; exit 1; }
 	@echo "Setting up .venv; the first time takes a few minutes."
 	$(PYTHON) -m venv .venv

@@ -1,7 +1,7 @@
-"""Build hook: compiles the league's messages (``robobt/league/proto/*.proto``).
+"""Build hook: compiles the league's messages (``robobt/league/wire/proto/*.proto``).
 
 What is made is a set of descriptors, which the package loads into a pool of its
-own (``robobt/league/messages.py``): it fits any version of the protobuf runtime,
+own (``robobt/league/wire/messages.py``): it fits any version of the protobuf runtime,
 and other packages that define messages of the same names do not get in its way.
 Beside it lie type stubs for editors and type checkers. Run as a script it does
 the same in place.
@@ -14,7 +14,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-_FOLDER = Path("robobt/league/proto")
+_FOLDER = Path("robobt/league/wire/proto")
 _DESCRIPTORS = _FOLDER / "messages.desc"
 
 

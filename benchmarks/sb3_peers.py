@@ -27,13 +27,13 @@ from stable_baselines3.common.noise import NormalActionNoise
 from torch import nn
 
 import robobt
-from robobt.learning.checkpoint import write_atomically
-from robobt.learning.evaluation import Policy
-from robobt.learning.export import export_model
-from robobt.learning.export_run import held_out
-from robobt.learning.problems import Problem, problem_of
-from robobt.learning.settings import environment_of, load_settings
-from robobt.skills.model_card import ModelCard, ObservationCard, action_outputs
+from robobt.learning.training.checkpoint import write_atomically
+from robobt.learning.training.evaluation import Policy
+from robobt.learning.training.export_run import held_out
+from robobt.learning.training.problems import Problem, problem_of
+from robobt.learning.training.settings import environment_of, load_settings
+from robobt.models.card import ModelCard, ObservationCard, action_outputs
+from robobt.models.export import export_model
 from robobt.world.features import GO_TO_BALL, SHOOT
 
 ALGORITHMS = {"ddpg": stable_baselines3.DDPG, "td3": stable_baselines3.TD3}

@@ -9,7 +9,7 @@ Plays the bundled scenario with each shot rater and prints goals with their
 import sys
 
 from robobt.match import load_scenario, run_trials, summarise
-from robobt.skills.raters import RATERS
+from robobt.skills.aim.raters import RATERS
 from robobt.worlds import sim_world
 
 

@@ -10,10 +10,10 @@ A skill takes its parameters in the constructor, names in ``reads`` and
 from math import atan2, cos, pi, sin
 
 from robobt.match import Scenario, play_match
+from robobt.motion.pilot import drive
 from robobt.plays import PLAYS
 from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot
 from robobt.skills.base import Skill, skill
-from robobt.skills.pilot import drive
 from robobt.skills.store import Store
 from robobt.tree import Behaviour, Sequence, Status, TreeRunner
 from robobt.world import DIVISION_B, BallState, Frame, RobotState

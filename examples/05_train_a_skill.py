@@ -11,9 +11,9 @@ import shutil
 import sys
 from pathlib import Path
 
-from robobt.learning.export_run import export_run
-from robobt.learning.settings import load_settings
-from robobt.learning.train import train
+from robobt.learning.training.export_run import export_run
+from robobt.learning.training.settings import load_settings
+from robobt.learning.training.train import train
 from robobt.match import load_scenario, run_trials, summarise
 from robobt.worlds import sim_world
 

@@ -9,9 +9,9 @@ asks the shipped predictor beside one that does not.
 
 import sys
 
-from robobt.learning.shots import goals, make_predictor, read_shots, shot_inputs
-from robobt.learning.shots.collect import CollectionSettings, collect_shots
 from robobt.match import load_scenario, run_trials, summarise
+from robobt.shots import goals, make_predictor, read_shots, shot_inputs
+from robobt.shots.collect.collect import CollectionSettings, collect_shots
 from robobt.statistics import wilson_interval
 from robobt.worlds import sim_world
 

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from robobt.match.loop import WorldFactory
 from robobt.match.problems import first_problem, message_of
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld
 from robobt.world.protocol import World
@@ -57,7 +57,7 @@ def world_from(address: str) -> WorldFactory:
     if address == SIM:
         return sim_world
     if address.lower().endswith((".log", ".log.gz")) and "://" not in address:
-        from robobt.league.log_world import LogFactory
+        from robobt.league.log.world import LogFactory
 
         return LogFactory(address)
     from robobt.league.factory import LeagueFactory  # protobuf and sockets, for those who play over a network

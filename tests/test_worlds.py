@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robobt.match import ScenarioError
-from robobt.match.scenario import scenario_from
+from robobt.match.scenario.scenario import scenario_from
 from robobt.sim import preset
 from robobt.world import World
 from robobt.worlds import sim_world

@@ -80,8 +80,8 @@ def shots(
     Keys of --json: out, shots, goals, success_rate, new, simulated_s, wall_s,
     real_time_factor, interrupted.
     """
-    from robobt.learning.shots.collect import PAPER_COUNT, collect_shots
-    from robobt.learning.shots.collect_plan import CollectionSettings
+    from robobt.shots.collect.collect import PAPER_COUNT, collect_shots
+    from robobt.shots.collect.plan import CollectionSettings
 
     settings = CollectionSettings(
         scenario=scenario.value, protocol=protocol.value, opponents=opponents, seed=seed

@@ -11,7 +11,7 @@ from rich.markup import escape
 from robobt.cli.common import Json, console, errors, one_line_errors, print_json, say, table, warn
 
 if TYPE_CHECKING:
-    from robobt.skills.model_file import ModelFile
+    from robobt.models.file import ModelFile
 
 
 def add_to(app: typer.Typer) -> None:
@@ -42,8 +42,8 @@ def export(
 
     Keys of --json: files, a list as 'robobt models --json' prints it.
     """
-    from robobt.learning.export_run import export_run
-    from robobt.skills.model_file import read_model_file
+    from robobt.learning.training.export_run import export_run
+    from robobt.models.file import read_model_file
 
     with errors.status(f"exporting {escape(str(run))}"):
         files = export_run(run, name, out, ("torchscript", "onnx") if onnx else ("torchscript",))
@@ -75,8 +75,8 @@ def models(
     the manifest beside it lists it) and card; problems: a line for each file that is no
     intact model.
     """
+    from robobt.models.file import ModelError, find_model, list_models, read_model_file
     from robobt.resources import models_folder
-    from robobt.skills.model_file import ModelError, find_model, list_models, read_model_file
 
     if name is not None:
         paths = [find_model(name)]
@@ -106,7 +106,7 @@ def models(
 
 
 def _data(file: ModelFile) -> dict[str, Any]:
-    from robobt.skills.model_file import read_manifest
+    from robobt.models.file import read_manifest
 
     return {
         "file": str(file.path),

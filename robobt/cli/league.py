@@ -11,7 +11,7 @@ import typer
 from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
 
 if TYPE_CHECKING:
-    from robobt.league.server import SimServer
+    from robobt.league.serve.server import SimServer
 
 
 def add_to(app: typer.Typer) -> None:
@@ -90,11 +90,11 @@ def serve(
 
     Keys of --json: frames (sent), simulated_s, packets: for each port what became of them.
     """
-    from robobt.league.endpoints import Endpoints, parse_endpoint
-    from robobt.league.serving import serve as serve_field
-    from robobt.league.serving import served_line_up, served_scenario
+    from robobt.league.serve.serving import serve as serve_field
+    from robobt.league.serve.serving import served_line_up, served_scenario
+    from robobt.league.wire.endpoints import Endpoints, parse_endpoint
     from robobt.match import load_scenario
-    from robobt.match.referee import RefereeSettings
+    from robobt.match.referee.referee import RefereeSettings
     from robobt.world import FIELDS
 
     rules = RefereeSettings() if referee else None
@@ -168,9 +168,9 @@ def log_packets(
 
     Keys of --json: vision, tracker, referee: packets written.
     """
-    from robobt.league.endpoints import Endpoints, parse_endpoint
-    from robobt.league.log_recorder import log_field
-    from robobt.league.logs import is_log
+    from robobt.league.log.files import is_log
+    from robobt.league.log.recorder import log_field
+    from robobt.league.wire.endpoints import Endpoints, parse_endpoint
 
     if not is_log(out):
         raise typer.BadParameter(f"takes a name that ends in .log or .log.gz, not '{out}'", param_hint="OUT")

@@ -83,7 +83,7 @@ def raters(
     for robobt's own and imported files'); problems: what is wrong with other
     packages' raters.
     """
-    from robobt.skills.raters import RATERS
+    from robobt.skills.aim.raters import RATERS
     from robobt.tree.parameters import Parameter
 
     import_files(imports)
@@ -112,7 +112,7 @@ def policies(
     Keys of --json: policies, a list with name, description, parameters (none)
     and package (null); problems (none).
     """
-    from robobt.skills.go_to_ball import POLICIES
+    from robobt.skills.ball.go_to_ball import POLICIES
 
     import_files(imports)
     _list("policies", POLICIES, name, as_json, lambda policy: _Listed(_doc(policy), []))

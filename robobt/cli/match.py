@@ -154,7 +154,7 @@ def match(
     sim_world(loaded)
     factory = world_from(world)
     if publish:
-        from robobt.league.publishing import PublishingFactory
+        from robobt.league.serve.publishing import PublishingFactory
 
         factory = PublishingFactory(factory)
     if world != SIM or publish:
@@ -198,7 +198,7 @@ def match(
             raise typer.Exit(130)
         written = replay if any(result.trial == recorded for result in run.results) else None
         if page and written is not None:
-            from robobt.match.replay_html import write_html
+            from robobt.match.recording.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
     summary = summarise(run.results, loaded.seed if seed is None else seed)
@@ -219,7 +219,7 @@ def match(
 
 def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]) -> Scenario:
     """The scenario as the command line wants it."""
-    from robobt.match.substituted import substituted
+    from robobt.match.scenario.substitution import substituted
 
     rules = []
     for text in substitute:

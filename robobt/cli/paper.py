@@ -130,7 +130,7 @@ def table3(
     from robobt.experiments.reliability_diagram import draw_reliability
     from robobt.experiments.shot_sets import load_shot_sets
     from robobt.experiments.table3 import table3 as run
-    from robobt.learning.shots.predictors import PREDICTORS
+    from robobt.shots.predict.predictors import PREDICTORS
 
     torch.set_num_threads(1)
     for name in model or ():

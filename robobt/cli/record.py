@@ -41,8 +41,8 @@ def export(
     ] = None,
 ) -> None:
     """Write what a robot's tree did in a form that other tools read."""
-    from robobt.match.btlog import write_btlog
     from robobt.match.recording import load_recording
+    from robobt.match.recording.btlog import write_btlog
 
     if not btlog:
         raise typer.BadParameter("say which form to write; there is --btlog")
@@ -62,9 +62,9 @@ def case(
     robot: _Robot = None,
     imports: Imports = None,
 ) -> None:
-    """Save a tick as a test case: what a robot's tree did then, for check_case of robobt.match.cases."""
-    from robobt.match.cases import save_case
+    """Save a tick as a test case: what a robot's tree did then, to be checked by a test."""
     from robobt.match.recording import load_recording
+    from robobt.match.regression_cases import save_case
 
     import_files(imports)
     loaded = load_recording(recording)

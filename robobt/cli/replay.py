@@ -31,7 +31,7 @@ def replay(
 ) -> None:
     """Make a recorded match a page that opens in any browser and needs no network."""
     from robobt.match.recording import load_recording
-    from robobt.match.replay_html import write_html
+    from robobt.match.recording.replay_html import write_html
 
     if recording.name.lower().endswith((".log", ".log.gz")):
         say(f"Replay: {_replay_log(recording, html)}")
@@ -46,8 +46,8 @@ def replay(
 
 def _replay_log(log: Path, html: Path | None) -> Path:
     """The page of a league log."""
-    from robobt.league.log_world import record_log
-    from robobt.match.replay_html import write_html
+    from robobt.league.log.world import record_log
+    from robobt.match.recording.replay_html import write_html
 
     stem = log.name.removesuffix(".gz").removesuffix(".log")
     page = log.with_name(f"{stem}{PAGE}") if html is None else html

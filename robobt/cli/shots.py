@@ -46,8 +46,8 @@ def train(
     import pyarrow as pa
     import torch
 
-    from robobt.learning.shots.files import read_shots
-    from robobt.learning.shots.shipped import train_shipped
+    from robobt.shots.data.files import read_shots
+    from robobt.shots.predict.shipped import train_shipped
 
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from rich.live import Live
     from rich.table import Table
 
-    from robobt.learning.run_folder import TrainResult
-    from robobt.learning.train import Progress as Standing
+    from robobt.learning.training.run_folder import TrainResult
+    from robobt.learning.training.train import Progress as Standing
 
 Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")]
 Changes = Annotated[
@@ -78,8 +78,8 @@ def train(
     environment steps to 99 % and to what counts as learned; success, mean_time,
     time_ratio, steps, cpu_s, evaluation_cpu_s and wall_s with median, low, high).
     """
-    from robobt.learning.seeds import figures_of, train_seeds
-    from robobt.learning.settings import load_settings
+    from robobt.learning.training.seeds import figures_of, train_seeds
+    from robobt.learning.training.settings import load_settings
 
     settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
@@ -117,9 +117,9 @@ def demonstrations(
 
     Keys of --json: task, file, episodes, steps, success (share), mean_time [s].
     """
-    from robobt.learning.demonstrations import record
-    from robobt.learning.settings import environment_of, load_settings
-    from robobt.learning.teachers import TEACHERS
+    from robobt.learning.training.demonstrations import record
+    from robobt.learning.training.settings import environment_of, load_settings
+    from robobt.learning.training.teachers import TEACHERS
 
     if by not in TEACHERS:
         raise typer.BadParameter(f"must be {' or '.join(TEACHERS)}, not {by!r}", param_hint="--by")

@@ -166,7 +166,7 @@ def _wiring(root: Behaviour) -> list[str]:
 
 
 def _findings(root: Behaviour) -> list[dict[str, str]]:
-    from robobt.tree.aids import lint_tree
+    from robobt.tree.devtools import lint_tree
 
     return [{"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)]
 

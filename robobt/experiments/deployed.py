@@ -10,12 +10,12 @@ from typing import Any
 
 from robobt.experiments.goal_map import draw_goal_line
 from robobt.match.loop import Match, WorldFactory
-from robobt.match.results import MatchResult
+from robobt.match.results.results import MatchResult
 from robobt.match.runner import run_trials, trial_seed
-from robobt.match.scenario import Scenario, load_scenario
-from robobt.skills.raters.expected_goal import ExpectedGoal
-from robobt.skills.raters.goal_line import goal_candidates
-from robobt.skills.raters.nn_filtered import NNFiltered
+from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.aim.raters.goal_line import goal_candidates
+from robobt.skills.aim.raters.nn_filtered import NNFiltered
 from robobt.statistics import clopper_pearson_interval, mcnemar, wilson_interval
 from robobt.worlds import sim_world
 

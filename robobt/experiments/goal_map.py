@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from robobt.match.placing import HELD_DISTANCE
-from robobt.skills.raters.expected_goal import ExpectedGoal
-from robobt.skills.raters.goal_line import goal_candidates
+from robobt.match.scenario.placing import HELD_DISTANCE
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.geometry import FloatArray, Point, direction
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from robobt.learning.shots.author_data import author_weights
-from robobt.learning.shots.files import read_shots
-from robobt.learning.shots.inputs import goals
-from robobt.learning.shots.problems import ShotDataError
 from robobt.resources import models_folder
+from robobt.shots.data.author_data import author_weights
+from robobt.shots.data.files import read_shots
+from robobt.shots.data.inputs import goals
+from robobt.shots.data.problems import ShotDataError
 from robobt.statistics import stratified_hold_out
 
 AUTHOR_WEIGHTS = "author_predictor.json"
@@ -28,7 +28,7 @@ class ShotSets:
     """Shots to learn from and shots to test on.
 
     Attributes:
-        train, test: in the table of :mod:`robobt.learning.shots.schema`.
+        train, test: in the table of :mod:`robobt.shots.data.schema`.
         author: the published predictor where it lies beside the shots.
         source: where they come from, for whoever reads the result.
     """

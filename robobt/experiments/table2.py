@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from robobt.experiments.shot_sets import ShotSets
-from robobt.learning.shots.inputs import goals, shot_inputs
-from robobt.learning.shots.predictors import make_predictor
-from robobt.learning.shots.validation import accuracies, predict_folds
+from robobt.shots.data.inputs import goals, shot_inputs
+from robobt.shots.predict.predictors import make_predictor
+from robobt.shots.predict.validation import accuracies, predict_folds
 from robobt.statistics import PairedTest, corrected_resampled_t_test, mean_interval, repeated_stratified_folds
 from robobt.world.geometry import FloatArray
 

@@ -11,14 +11,14 @@ import torch
 from numpy.typing import NDArray
 
 from robobt.experiments.shot_sets import ShotSets
-from robobt.learning.shots.author_data import author_inputs
-from robobt.learning.shots.inputs import goals, shot_inputs
-from robobt.learning.shots.network_classifier import NetworkClassifier
-from robobt.learning.shots.networks import network_from_keras
-from robobt.learning.shots.predictors import PREDICTORS, make_predictor
-from robobt.learning.shots.problems import ShotDataError
-from robobt.learning.shots.subsample import Subsampled
-from robobt.learning.shots.validation import judge, judge_repeats, predict_folds
+from robobt.shots.data.author_data import author_inputs
+from robobt.shots.data.inputs import goals, shot_inputs
+from robobt.shots.data.problems import ShotDataError
+from robobt.shots.predict.network_classifier import NetworkClassifier
+from robobt.shots.predict.networks import network_from_keras
+from robobt.shots.predict.predictors import PREDICTORS, make_predictor
+from robobt.shots.predict.subsample import Subsampled
+from robobt.shots.predict.validation import judge, judge_repeats, predict_folds
 from robobt.statistics import (
     log_loss,
     mcnemar,

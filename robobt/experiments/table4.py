@@ -11,8 +11,8 @@ from typing import Any
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.runner import trial_seed
-from robobt.match.scenario import Scenario, load_scenario
-from robobt.skills.go_to_ball import HANDOVER_DISTANCE
+from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
 from robobt.statistics import corrected_resampled_t_test, mean_interval, wilson_interval
 from robobt.world.state import Frame
 from robobt.worlds import sim_world
@@ -230,7 +230,7 @@ def _optimum(scenario: Scenario, name: str, attempts: Sequence[Attempt]) -> dict
     if COMBINATIONS[name].get("policy") == "ddpg":
         fastest = min(fastest, _model_speed())
     elif "style" in COMBINATIONS[name]:
-        from robobt.skills.pilot import ROBOBULLS_LIMITS
+        from robobt.motion.pilot import ROBOBULLS_LIMITS
 
         limits, fastest = ROBOBULLS_LIMITS, ROBOBULLS_LIMITS.max_speed
     strongest = max(limits.acceleration, limits.lateral_acceleration)
@@ -241,8 +241,8 @@ def _optimum(scenario: Scenario, name: str, attempts: Sequence[Attempt]) -> dict
 
 
 def _model_speed() -> float:
-    from robobt.skills.go_to_ball import SHIPPED
-    from robobt.skills.policy import load_policy
+    from robobt.models.policy import load_policy
+    from robobt.skills.ball.go_to_ball import SHIPPED
 
     action = load_policy(SHIPPED["ddpg"], skill="GoToBall").card.action
     assert action is not None

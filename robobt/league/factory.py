@@ -7,10 +7,10 @@ from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import ValidationError
 
-from robobt.league.endpoints import Endpoints, parse_endpoint
+from robobt.league.wire.endpoints import Endpoints, parse_endpoint
 from robobt.league.world import Connection, LeagueWorld
 from robobt.match.problems import first_problem, message_of
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import PRESETS, SimSettings, settings_from
 
 SCHEME = "league://"

@@ -12,16 +12,16 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from robobt.league.clocks import CameraClocks
-from robobt.league.commands import BallTeleport, Teleport, bounded
-from robobt.league.endpoints import Endpoints
-from robobt.league.filter import VisionFilter
-from robobt.league.gamecontroller import RefereeFollower
-from robobt.league.links import GrSimLink, Link, NoLink, ProtocolLink
+from robobt.league.estimate.clocks import CameraClocks
+from robobt.league.estimate.filter import VisionFilter
 from robobt.league.pacing import Pace
-from robobt.league.sockets import LOOPBACK, PacketCounts, Receiver
-from robobt.league.tracker import read_tracked
-from robobt.league.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
+from robobt.league.wire.commands import BallTeleport, Teleport, bounded
+from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.links import GrSimLink, Link, NoLink, ProtocolLink
+from robobt.league.wire.sockets import LOOPBACK, PacketCounts, Receiver
+from robobt.league.wire.tracker import read_tracked
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_B, FieldGeometry

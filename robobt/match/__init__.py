@@ -2,9 +2,9 @@
 
 from robobt.match.ends import Outcome
 from robobt.match.loop import Match, WorldFactory, play_match
-from robobt.match.results import MatchResult, RobotResult, Summary, summarise
+from robobt.match.results.results import MatchResult, RobotResult, Summary, summarise
 from robobt.match.runner import Run, RunError, run_trials
-from robobt.match.scenario import Scenario, ScenarioError, load_scenario
+from robobt.match.scenario.scenario import Scenario, ScenarioError, load_scenario
 
 __all__ = [
     "Match",

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 from robobt.match.loop import Match, WorldFactory
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 
 _BLOCK = 1.0
 """Simulated time that each of the matches plays in turn, so that all see the same machine [s]."""

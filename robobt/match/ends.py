@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from enum import StrEnum
 from math import ceil
 
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.world.game import GameState, Stage, Team
 from robobt.world.geometry import Point
 from robobt.world.rules import ALL_AROUND, ball_out, has_ball, scorer

@@ -12,12 +12,12 @@ from typing import Self
 import numpy as np
 
 from robobt.match.ends import EndJudge, Outcome
-from robobt.match.measures import Measures, Trace
 from robobt.match.problems import one_line
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
-from robobt.match.referee import Referee, RefereeEvent
-from robobt.match.results import MatchResult, RobotResult
-from robobt.match.scenario import Scenario
+from robobt.match.referee.referee import Referee, RefereeEvent
+from robobt.match.results.measures import Measures, Trace
+from robobt.match.results.results import MatchResult, RobotResult
+from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeError, TreeRunner, node_path
 from robobt.tree.parameters import say_value

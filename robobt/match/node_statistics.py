@@ -6,9 +6,9 @@ from pathlib import Path
 
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.runner import trial_seed
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import is_play_file
-from robobt.tree.aids import NodeStatistics
+from robobt.tree.devtools import NodeStatistics
 from robobt.world.state import RobotId
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from robobt.match.loop import WorldFactory, play_match
-from robobt.match.results import MatchResult
-from robobt.match.results_file import ResultsFile
-from robobt.match.scenario import MAX_TRIALS, Scenario, ScenarioError
+from robobt.match.results.file import ResultsFile
+from robobt.match.results.results import MatchResult
+from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
 from robobt.plays.python_files import import_file, imported_files

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from robobt.tree.files import plain_yaml
+from robobt.tree.interop import plain_yaml
 
 MAX_BYTES = 64 * 1024
 """Largest file that is read; the shipped scenarios have some 3 kB."""

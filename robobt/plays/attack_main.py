@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Literal
 
+from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.plays.base import PLAYS
-from robobt.skills.best_field_position import BestFieldPosition
-from robobt.skills.dribble_to import DribbleTo
-from robobt.skills.go_to_ball import GoToBall
-from robobt.skills.has_ball import HasBall
-from robobt.skills.kick_to_target import KickToTarget
-from robobt.skills.pass_is_steady import PassIsSteady
-from robobt.skills.pick_up_ball import PickUpBall
-from robobt.skills.pilot import ROBOBULLS_LIMITS
-from robobt.skills.select_pass import SelectPass
-from robobt.skills.select_shot import SelectShot
-from robobt.skills.shot_is_steady import ShotIsSteady
+from robobt.skills.aim.pass_is_steady import PassIsSteady
+from robobt.skills.aim.select_pass import SelectPass
+from robobt.skills.aim.select_shot import SelectShot
+from robobt.skills.aim.shot_is_steady import ShotIsSteady
+from robobt.skills.ball.dribble_to import DribbleTo
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.pick_up_ball import PickUpBall
+from robobt.skills.conditions.has_ball import HasBall
+from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess, Selector, Sequence
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from robobt.plays.base import PLAYS
-from robobt.skills.face_ball import FaceBall
+from robobt.skills.ball.face_ball import FaceBall
+from robobt.skills.ball.intercept import Intercept
 from robobt.skills.go_to_pose import GoToPose
-from robobt.skills.intercept import Intercept
-from robobt.skills.mate_aims_at_me import MateAimsAtMe
-from robobt.skills.pass_is_coming import PassIsComing
-from robobt.skills.select_support_position import SelectSupportPosition
+from robobt.skills.team.mate_aims_at_me import MateAimsAtMe
+from robobt.skills.team.pass_is_coming import PassIsComing
+from robobt.skills.team.select_support_position import SelectSupportPosition
 from robobt.tree import Behaviour, Selector, Sequence
 
 

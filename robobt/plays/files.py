@@ -7,11 +7,11 @@ from pathlib import Path
 
 from robobt.plays.base import PLAYS, Play
 from robobt.skills import SKILLS
-from robobt.skills.raters import RATERS, ShotRater
-from robobt.skills.referee_switch import RefereeSwitch
+from robobt.skills.aim.raters import RATERS, ShotRater
+from robobt.skills.restarts.referee_switch import RefereeSwitch
 from robobt.skills.store import Store
 from robobt.tree import Behaviour
-from robobt.tree.files import (
+from robobt.tree.interop import (
     FILE_ENDINGS,
     FilePlay,
     Vocabulary,

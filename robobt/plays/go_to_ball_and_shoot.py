@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Literal
 
 from robobt.plays.base import PLAYS
-from robobt.skills.go_to_ball import GoToBall
-from robobt.skills.has_ball import HasBall
-from robobt.skills.kick_to_target import KickToTarget
-from robobt.skills.pick_up_ball import PickUpBall
-from robobt.skills.select_shot import SelectShot
-from robobt.skills.shoot import Shoot
+from robobt.skills.aim.select_shot import SelectShot
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.pick_up_ball import PickUpBall
+from robobt.skills.ball.shoot import Shoot
+from robobt.skills.conditions.has_ball import HasBall
 from robobt.tree import Behaviour, Selector, Sequence
 
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from typing import Literal
 
+from robobt.motion.pace import check_factor
+from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.plays.base import PLAYS
-from robobt.skills.aim_upfield import AimUpfield
-from robobt.skills.ball_aimed_at_goal import BallAimedAtGoal
-from robobt.skills.ball_at_defense_edge import BallAtDefenseEdge
-from robobt.skills.ball_rests_in_defense import BallRestsInDefense
-from robobt.skills.block_shot import BlockShot
-from robobt.skills.cover_angle import CoverAngle
-from robobt.skills.cover_near_post import CoverNearPost
-from robobt.skills.fetch_ball import FetchBall
-from robobt.skills.kick_to_target import KickToTarget
-from robobt.skills.pace import check_factor
-from robobt.skills.pilot import ROBOBULLS_LIMITS
-from robobt.skills.return_to_goal import ReturnToGoal
-from robobt.skills.select_clearance import SelectClearance
-from robobt.skills.shot_coming import ShotComing
+from robobt.skills.aim.aim_upfield import AimUpfield
+from robobt.skills.aim.select_clearance import SelectClearance
+from robobt.skills.ball.fetch_ball import FetchBall
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.conditions.ball_aimed_at_goal import BallAimedAtGoal
+from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge
+from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
+from robobt.skills.defence.block_shot import BlockShot
+from robobt.skills.defence.cover_angle import CoverAngle
+from robobt.skills.defence.cover_near_post import CoverNearPost
+from robobt.skills.defence.return_to_goal import ReturnToGoal
+from robobt.skills.defence.shot_coming import ShotComing
 from robobt.tree import Behaviour, Selector, Sequence
 from robobt.world.limits import RobotLimits
 

@@ -10,8 +10,8 @@ from types import ModuleType
 
 from robobt.plays.base import PLAYS
 from robobt.skills import SKILLS
-from robobt.skills.go_to_ball import POLICIES
-from robobt.skills.raters import RATERS
+from robobt.skills.aim.raters import RATERS
+from robobt.skills.ball.go_to_ball import POLICIES
 
 _imported: dict[Path, ModuleType] = {}
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from robobt.plays.base import PLAYS
-from robobt.skills.aim_at_goal_point import AimAtGoalPoint
-from robobt.skills.dribble_to import DribbleTo
-from robobt.skills.kick_to_target import KickToTarget
+from robobt.skills.aim.aim_at_goal_point import AimAtGoalPoint
+from robobt.skills.ball.dribble_to import DribbleTo
+from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.tree import Behaviour, FailureIsSuccess, Sequence
 
 

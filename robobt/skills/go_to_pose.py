@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import hypot, radians
 from typing import ClassVar
 
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import allowed_target, travel
 from robobt.skills.base import Skill, skill
-from robobt.skills.pace import Pace
-from robobt.skills.path_planner import allowed_target, travel
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
 from robobt.world.limits import RobotLimits

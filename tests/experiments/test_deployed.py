@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.experiments.deployed import PLAYED, deployed, deployed_scenario, judged_goal_line
 from robobt.experiments.goal_map import draw_goal_map, goal_map
-from robobt.match.scenario import load_scenario
+from robobt.match.scenario.scenario import load_scenario
 from robobt.worlds import sim_world
 
 PNG = b"\x89PNG"

@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.experiments.deployed import deployed, deployed_scenario
 from robobt.experiments.table4 import COMBINATIONS, table4, table4_scenario
-from robobt.league.endpoints import Endpoints
-from robobt.league.serving import served_scenario
-from robobt.match.scenario import Scenario
+from robobt.league.serve.serving import served_scenario
+from robobt.league.wire.endpoints import Endpoints
+from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import world_from
 from tests.league.served import free_endpoints, served
 

@@ -9,10 +9,10 @@ from robobt.experiments.reliability_diagram import draw_reliability
 from robobt.experiments.shot_sets import load_shot_sets
 from robobt.experiments.table2 import table2
 from robobt.experiments.table3 import author_outputs, table3
-from robobt.learning.shots.files import write_shots
-from robobt.learning.shots.problems import ShotDataError
-from tests.learning.shots.made_up import made_up_table
-from tests.learning.shots.real_data import REAL_SHOTS, needs_real_shots
+from robobt.shots.data.files import write_shots
+from robobt.shots.data.problems import ShotDataError
+from tests.shots.made_up import made_up_table
+from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 
 @pytest.fixture

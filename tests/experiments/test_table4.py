@@ -14,7 +14,7 @@ from robobt.experiments.table4_picture import draw_table4
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.match import load_scenario
 from robobt.match.runner import trial_seed
-from robobt.skills.policy import load_policy
+from robobt.models.policy import load_policy
 
 QUICK = ("robobulls", "geometric, kick")
 LEARNED = COMBINATIONS["ddpg, ddpg"]

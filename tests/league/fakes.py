@@ -12,16 +12,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import cos, hypot, inf, radians, sin
 
-from robobt.league.endpoints import Endpoints
-from robobt.league.messages import (
+from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.messages import (
     RobotControl,
     RobotControlResponse,
     SimulatorCommand,
     SSL_WrapperPacket,
     grSim_Packet,
 )
-from robobt.league.sockets import Receiver, Sender
-from robobt.league.vision import write_field
+from robobt.league.wire.sockets import Receiver, Sender
+from robobt.league.wire.vision import write_field
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.state import RobotId

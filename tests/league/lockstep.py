@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from robobt.league.server import SimServer
+from robobt.league.serve.server import SimServer
 from robobt.league.world import LeagueWorld
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from google.protobuf.descriptor import FieldDescriptor
 
-from robobt.league.messages import Message
+from robobt.league.wire.messages import Message
 
 _FLOATS = (
     math.nan,

@@ -7,9 +7,9 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from robobt.league.endpoints import VISION_GROUP, Endpoint, Endpoints
-from robobt.league.served_field import ServedField
-from robobt.league.server import SimServer
+from robobt.league.serve.served_field import ServedField
+from robobt.league.serve.server import SimServer
+from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
 
 
 def free_endpoints(group: str = VISION_GROUP) -> Endpoints:

@@ -11,11 +11,19 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from robobt.league.cameras import Cameras
-from robobt.league.commands import BallTeleport, Teleport, write_grsim, write_grsim_placement, write_teleport
-from robobt.league.endpoints import Endpoints
-from robobt.league.gamecontroller import RefereePublisher
-from robobt.league.messages import (
+from robobt.league.serve.cameras import Cameras
+from robobt.league.serve.served_field import ServedField, line_up
+from robobt.league.serve.server import SimServer
+from robobt.league.wire.commands import (
+    BallTeleport,
+    Teleport,
+    write_grsim,
+    write_grsim_placement,
+    write_teleport,
+)
+from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.messages import (
     Message,
     RealismConfigErForce,
     Referee,
@@ -26,11 +34,9 @@ from robobt.league.messages import (
     TrackerWrapperPacket,
     grSim_Packet,
 )
-from robobt.league.served_field import ServedField, line_up
-from robobt.league.server import SimServer
-from robobt.league.sockets import PacketCounts
-from robobt.league.tracker import write_tracked
-from robobt.league.vision import write_field, write_vision
+from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.tracker import write_tracked
+from robobt.league.wire.vision import write_field, write_vision
 from robobt.league.world import LeagueWorld
 from robobt.sim.settings import REALISM
 from robobt.world.command import RobotCommand

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.league.endpoints import Endpoints
-from robobt.league.server import SimServer
-from robobt.league.serving import served_scenario
+from robobt.league.serve.server import SimServer
+from robobt.league.serve.serving import served_scenario
+from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
 from robobt.match.loop import play_match
-from robobt.match.results import MatchResult
+from robobt.match.results.results import MatchResult
 from robobt.match.runner import trial_seed
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.sim import settings_from
 from robobt.statistics import wilson_interval
 from robobt.worlds import sim_world

@@ -6,7 +6,7 @@ from math import degrees, pi
 
 import pytest
 
-from robobt.league.endpoints import Endpoints
+from robobt.league.wire.endpoints import Endpoints
 from robobt.league.world import LeagueWorld
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_A

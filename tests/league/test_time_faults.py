@@ -7,10 +7,10 @@ from math import inf, nan
 
 import pytest
 
-from robobt.league.clocks import CameraClocks
-from robobt.league.filter import VisionFilter
-from robobt.league.sockets import PacketCounts
-from robobt.league.vision import BallDetection, CameraFrame, RobotDetection, read_vision, write_vision
+from robobt.league.estimate.clocks import CameraClocks
+from robobt.league.estimate.filter import VisionFilter
+from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, read_vision, write_vision
 from robobt.league.world import LeagueWorld
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team

@@ -7,10 +7,10 @@ from math import nan, pi
 
 import pytest
 
-from robobt.league.commands import Teleport
-from robobt.league.endpoints import Endpoints
 from robobt.league.factory import AddressError, LeagueFactory, parse_address
-from robobt.league.served_field import ServedField, line_up
+from robobt.league.serve.served_field import ServedField, line_up
+from robobt.league.wire.commands import Teleport
+from robobt.league.wire.endpoints import Endpoints
 from robobt.league.world import LeagueError, LeagueWorld
 from robobt.match import load_scenario, run_trials
 from robobt.sim.settings import REALISM, SimSettings, preset

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from robobt.learning.ddpg import DDPG
+from robobt.learning.agents.ddpg import DDPG
+from robobt.learning.agents.nstep import Transitions
+from robobt.learning.agents.replay import Replay
 from robobt.learning.envs import StepResult
-from robobt.learning.evaluation import Evaluation
-from robobt.learning.nstep import Transitions
-from robobt.learning.problems import Problem, split_seed
-from robobt.learning.replay import Replay
-from robobt.learning.settings import AgentSettings, TrainSettings
+from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.problems import Problem, split_seed
+from robobt.learning.training.settings import AgentSettings, TrainSettings
 
 torch.set_num_threads(1)
 

@@ -5,7 +5,7 @@ import pytest
 
 from robobt.match import Match, MatchResult, play_match
 from robobt.match.recording import load_recording
-from robobt.match.scenario import Scenario, scenario_from
+from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.world import RobotCommand, RobotId, Team
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data

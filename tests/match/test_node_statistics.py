@@ -8,7 +8,7 @@ import pytest
 
 from robobt.match import ScenarioError, run_trials
 from robobt.match.node_statistics import node_statistics
-from robobt.match.scenario import scenario_from
+from robobt.match.scenario.scenario import scenario_from
 from robobt.world import RobotId, Team
 from tests.match.scripted import PlainWorld, data
 

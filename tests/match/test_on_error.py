@@ -10,7 +10,7 @@ import pytest
 from robobt.match import RunError, Scenario, ScenarioError, run_trials
 from robobt.match.loop import Match
 from robobt.match.recording import load_recording
-from robobt.match.scenario import scenario_from
+from robobt.match.scenario.scenario import scenario_from
 from robobt.tree import TreeError
 from tests.match.scripted import PlainWorld, data
 

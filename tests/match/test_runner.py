@@ -13,9 +13,9 @@ import pytest
 
 from robobt.match import MatchResult, Run, RunError, ScenarioError, run_trials
 from robobt.match.recording import load_recording
-from robobt.match.results_file import ResultsFileError
+from robobt.match.results.file import ResultsFileError
 from robobt.match.runner import trial_seed
-from robobt.match.scenario import Scenario, scenario_from
+from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.plays import PLAYS
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, Scripted, data

@@ -2,7 +2,7 @@ import pytest
 
 from robobt.experiments.deployed import deployed_scenario
 from robobt.match import run_trials, summarise
-from robobt.match.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import sim_world
 from tests.simulation import Trial, ball_in_their_goal, blue, eventually
 

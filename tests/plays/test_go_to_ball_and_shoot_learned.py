@@ -12,9 +12,9 @@ from robobt.plays import go_to_ball_and_shoot
 from robobt.plays.files import VOCABULARY, load_play, play_files
 from robobt.skills import GoToBall, KickToTarget, Shoot
 from robobt.tree import preorder
-from robobt.tree.files import tree_differences
+from robobt.tree.interop import tree_differences
+from tests.models.made_models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
 from tests.simulation import Trial, always, ball_in_their_goal, blue, eventually, inside_the_field
-from tests.skills.models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
 
 Kick = Literal["kick_to_target", "geometric", "ddpg"]
 SHOTS: tuple[Kick, ...] = ("kick_to_target", "geometric", "ddpg")
@@ -26,7 +26,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:  # type: ignore[m
     write_model(folder, Straight(), go_to_ball_card("go_to_ball_ddpg"))
     write_model(folder, Aimed(), shoot_card("shoot_ddpg"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("robobt.skills.model_file.models_folder", lambda: folder)
+        patch.setattr("robobt.models.file.models_folder", lambda: folder)
         yield folder
 
 

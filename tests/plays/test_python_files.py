@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 
 from robobt.match import run_trials
-from robobt.match.scenario import scenario_from
+from robobt.match.scenario.scenario import scenario_from
 from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import PythonFileError, import_file, imported_files
 from robobt.skills import SKILLS
-from robobt.skills.go_to_ball import POLICIES
-from robobt.skills.raters import RATERS
+from robobt.skills.aim.raters import RATERS
+from robobt.skills.ball.go_to_ball import POLICIES
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
 

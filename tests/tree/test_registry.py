@@ -12,7 +12,7 @@ import pytest
 
 from robobt.plays import PLAYS
 from robobt.skills import SKILLS
-from robobt.skills.raters import RATERS
+from robobt.skills.aim.raters import RATERS
 from robobt.tree import Registry
 
 Install = Callable[[str, dict[str, str], dict[str, str]], None]

@@ -27,7 +27,7 @@ from py_trees.decorators import (
 from py_trees.decorators import Timeout as StockTimeout
 from py_trees.visitors import VisitorBase
 
-from robobt.skills.referee_switch import RefereeSwitch
+from robobt.skills.restarts.referee_switch import RefereeSwitch
 from robobt.tree import (
     Behaviour,
     FailureIsSuccess,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from robobt.tree import Leaf, Registry, Status
-from robobt.tree.files import Entry, Vocabulary
+from robobt.tree.interop import Entry, Vocabulary
 
 LEAVES: Registry[type[Leaf[Any]]] = Registry("leaf")
 

@@ -40,7 +40,7 @@ def bench_filter(
     robot_heading, robot_velocity, robot_turn, ball_position, ball_velocity (SI)
     and missing_robots (share).
     """
-    from robobt.league.filter_bench import bench_filter as measure
+    from robobt.league.bench_filter import bench_filter as measure
     from robobt.match import load_scenario
 
     loaded = load_scenario(scenario)
@@ -96,7 +96,7 @@ def bench_league(
     stop_commanded_s and stop_at_rest_s (from the kill until the server has all
     robots under the command to stand still, and they stand).
     """
-    from robobt.league.bench import bench_league as measure
+    from robobt.league.bench_network import bench_league as measure
     from robobt.match import load_scenario
 
     if simulator not in ("grsim", "protocol"):

@@ -28,7 +28,7 @@ def bench_policy(
     skill_to_module_ratio (the same of the model's own skill) and the
     microseconds that they come from. CPU time, medians.
     """
-    from robobt.skills.policy_bench import bench_policy as measure
+    from robobt.skills.bench import bench_policy as measure
 
     with errors.status("measuring policies"):
         figures = measure(model)

@@ -37,15 +37,15 @@ def bench_shots(
     cross_validation_plain_s (processor time), accuracy and accuracy_plain (mean, in
     percent), networks.
     """
-    from robobt.learning.shots.bench import bench_cross_validation, made_up_shots
-    from robobt.learning.shots.bench_goal_line import bench_goal_line
+    from robobt.shots.bench import bench_cross_validation, made_up_shots
+    from robobt.shots.bench_goal_line import bench_goal_line
 
     if data is None:
         inputs, labels = made_up_shots()
     else:
         from robobt.experiments.shot_sets import load_shot_sets
-        from robobt.learning.shots.author_data import author_inputs
-        from robobt.learning.shots.inputs import goals
+        from robobt.shots.data.author_data import author_inputs
+        from robobt.shots.data.inputs import goals
 
         train = load_shot_sets(data).train
         inputs, labels = author_inputs(train), goals(train)

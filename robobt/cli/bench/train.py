@@ -39,7 +39,7 @@ def bench_train(
     Keys of --json: task, and variants: a setting's name -> the same as "together"
     of robobt train --json.
     """
-    from robobt.learning.compare import compare, rows_of
+    from robobt.learning.training.compare import compare, rows_of
 
     given = parse_assignments(changes or [], "--set")
     folder = out or Path("runs") / f"compare-{task}"

@@ -15,9 +15,9 @@ from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.starts import START_COLUMNS, StartPool
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
+from robobt.models.actions import ActionScaling
 from robobt.sim.arenas import Arenas
 from robobt.sim.kernels import COMMAND
-from robobt.skills.actions import ActionScaling
 from robobt.world.features import ObservationSpec
 
 

@@ -133,7 +133,7 @@ class GoToBallEnv(_SingleEnv):
     | 4 | the robot's velocity to the left | m/s | top speed + 0.5, either way |
     | 5 | its turning rate, counter-clockwise | rad/s | top rate + what a wall may add |
 
-    **Action**, float32, :data:`robobt.skills.actions.GO_TO_BALL_ACTION`:
+    **Action**, float32, :data:`robobt.models.actions.GO_TO_BALL_ACTION`:
 
     | entry | meaning | of 1 | range |
     | --- | --- | --- | --- |
@@ -200,7 +200,7 @@ class ShootTowardsGoalEnv(_SingleEnv):
     | 6, 7 | sine and cosine of the angle from the heading to the left post | 1 | [-1, 1] |
     | 8, 9 | the same of the right post | 1 | [-1, 1] |
 
-    **Action**, float32, :data:`robobt.skills.actions.SHOOT_ACTION`:
+    **Action**, float32, :data:`robobt.models.actions.SHOOT_ACTION`:
 
     | entry | meaning | of 1 | range |
     | --- | --- | --- | --- |

@@ -1,7 +1,7 @@
 """One tick of the environments over all arenas, compiled.
 
 What an observation holds is defined in :mod:`robobt.world.features`, what an
-action means in :mod:`robobt.skills.actions`: the functions here are the same
+action means in :mod:`robobt.models.actions`: the functions here are the same
 formulas, fused with the rewards, and tests hold them to those definitions.
 """
 

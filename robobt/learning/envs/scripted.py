@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robobt.learning.envs.task import FloatArray
-from robobt.skills.actions import SHOOT_ACTION, ActionScaling
+from robobt.models.actions import SHOOT_ACTION, ActionScaling
 
 _TURN_GAIN = 8.0
 _GENTLE_TURN = 4.0

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION, ActionScaling
 from robobt.sim.settings import SimSettings, preset, settings_from
-from robobt.skills.actions import GO_TO_BALL_ACTION, SHOOT_ACTION, ActionScaling
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.limits import RobotLimits
 

@@ -1,0 +1,1 @@
+"""From detections to states: filters and clocks."""

@@ -1,0 +1,213 @@
+"""The game controller's messages: followed into a game state, and published from one.
+
+Source of the states: RoboCup SSL rules, chapter "Referee commands".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from robobt.league.wire.messages import Referee as RefereeMessage
+from robobt.league.wire.sockets import PacketCounts, decode
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.geometry import Point, distance
+from robobt.world.state import Frame
+
+_MM = 1000.0
+
+_FAR = 30.0
+"""No place on a field lies further from its centre [m]."""
+
+_IN_PLAY_DISTANCE = 0.05
+"""The ball is in play after moving this far [m]."""
+
+_KICK_TIMEOUT = 10.0
+"""A restart that is not taken by then is over [s]."""
+
+# What the league no longer sends, but logs still hold.
+_OUTDATED = {
+    10: RefereeCommand.DIRECT_FREE_YELLOW,
+    11: RefereeCommand.DIRECT_FREE_BLUE,
+    14: RefereeCommand.STOP,
+    15: RefereeCommand.STOP,
+}
+
+_RESTARTS: Mapping[RefereeCommand, tuple[Restart, Team]] = {
+    RefereeCommand.PREPARE_KICKOFF_YELLOW: (Restart.KICKOFF, Team.YELLOW),
+    RefereeCommand.PREPARE_KICKOFF_BLUE: (Restart.KICKOFF, Team.BLUE),
+    RefereeCommand.PREPARE_PENALTY_YELLOW: (Restart.PENALTY, Team.YELLOW),
+    RefereeCommand.PREPARE_PENALTY_BLUE: (Restart.PENALTY, Team.BLUE),
+    RefereeCommand.DIRECT_FREE_YELLOW: (Restart.FREE_KICK, Team.YELLOW),
+    RefereeCommand.DIRECT_FREE_BLUE: (Restart.FREE_KICK, Team.BLUE),
+    RefereeCommand.BALL_PLACEMENT_YELLOW: (Restart.BALL_PLACEMENT, Team.YELLOW),
+    RefereeCommand.BALL_PLACEMENT_BLUE: (Restart.BALL_PLACEMENT, Team.BLUE),
+}
+
+_AT_ONCE = frozenset({Restart.FREE_KICK, Restart.BALL_PLACEMENT})
+"""Restarts that may be taken without a NORMAL_START."""
+
+
+class RefereeFollower:
+    """Follows a game controller: its packets say the command, the ball when play goes on.
+
+    Attributes:
+        game: the state as of now, in the coordinates of the packets. HALT before the first.
+        blue_on_positive_half: which side the packets say blue defends; None while they do not.
+        counts: what became of the packets.
+    """
+
+    def __init__(self) -> None:
+        self.game = GameState(
+            RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_touch=False, placement=None
+        )
+        self.blue_on_positive_half: bool | None = None
+        self.counts = PacketCounts()
+        self._counter: tuple[int, int] | None = None
+        self._ball_from: Point | None = None
+        self._since: float | None = None
+
+    def read(self, data: bytes) -> bool:
+        """Take in a packet; False, counted, for one that is none or cannot be true."""
+        message = decode(RefereeMessage, data, self.counts)
+        if message is None:
+            return False
+        placement: Point | None = None
+        if message.HasField("designated_position"):
+            spot = message.designated_position
+            placement = (spot.x / _MM, spot.y / _MM)
+            # Not finite compares as false.
+            if not (abs(placement[0]) <= _FAR and abs(placement[1]) <= _FAR):
+                self.counts.implausible += 1
+                return False
+        self.counts.accepted += 1
+        number = int(message.command)
+        command = _OUTDATED.get(number) or RefereeCommand(number)
+        if message.HasField("blue_team_on_positive_half"):
+            self.blue_on_positive_half = message.blue_team_on_positive_half
+        upcoming = RefereeCommand.HALT
+        if message.HasField("next_command"):
+            following = int(message.next_command)
+            upcoming = _OUTDATED.get(following) or RefereeCommand(following)
+        # A controller that was started anew counts from 0 again, but not at the same moment.
+        counter = (message.command_counter, message.command_timestamp)
+        if counter != self._counter:
+            self._counter = counter
+            self._follow(command, upcoming, placement)
+        elif self.game.command is RefereeCommand.STOP or self.game.restart is Restart.BALL_PLACEMENT:
+            self.game = replace(self.game, placement=placement or self.game.placement)
+        self.game = replace(
+            self.game,
+            stage=Stage(int(message.stage)),
+            blue_score=message.blue.score,
+            yellow_score=message.yellow.score,
+        )
+        return True
+
+    def watch(self, frame: Frame) -> GameState:
+        """Look at the ball: a restart is over when it has moved, or has lain too long.
+
+        Args:
+            frame: what is on the field, in the coordinates of the packets.
+        """
+        game = self.game
+        if game.restart is None or game.restart is Restart.BALL_PLACEMENT or not game.may_touch:
+            return game
+        if self._since is None:
+            self._ball_from, self._since = frame.ball.position, frame.time
+            if game.placement is None:
+                self.game = game = replace(game, placement=frame.ball.position)
+        assert self._ball_from is not None
+        moved = distance(frame.ball.position, self._ball_from) > _IN_PLAY_DISTANCE
+        # A penalty kick is its kicker's until the controller ends it.
+        patience = game.restart is not Restart.PENALTY and frame.time - self._since > _KICK_TIMEOUT
+        if moved or patience:
+            self.game = replace(game, restart=None, restart_team=None, placement=None)
+        return self.game
+
+    def _follow(self, command: RefereeCommand, upcoming: RefereeCommand, placement: Point | None) -> None:
+        before = self.game
+        self._ball_from = self._since = None
+        restart, team = _RESTARTS.get(command, (None, None))
+        may_touch = restart in _AT_ONCE
+        if command is RefereeCommand.NORMAL_START and not before.may_touch:
+            # The kick that was prepared may be taken now.
+            restart, team, placement = before.restart, before.restart_team, before.placement
+            may_touch = True
+        elif command in (RefereeCommand.FORCE_START, RefereeCommand.NORMAL_START):
+            may_touch, placement = True, None
+        elif command is RefereeCommand.STOP:
+            restart, team = _RESTARTS.get(upcoming, (None, None))
+        elif restart is Restart.KICKOFF:
+            placement = (0.0, 0.0)
+        if before.command is RefereeCommand.STOP and restart is not None and placement is None:
+            placement = before.placement
+        self.game = replace(
+            before,
+            command=command,
+            restart=restart,
+            restart_team=team,
+            may_touch=may_touch,
+            placement=placement,
+        )
+
+
+class RefereePublisher:
+    """Says a game state in the game controller's message.
+
+    Args:
+        names: of the teams.
+        keepers: numbers of their goalkeepers.
+        source: who speaks.
+    """
+
+    def __init__(
+        self,
+        names: Mapping[Team, str] | None = None,
+        keepers: Mapping[Team, int] | None = None,
+        source: str = "robobt",
+    ) -> None:
+        self._names = names or {team: team.value for team in Team}
+        self._keepers = keepers or {}
+        self._source = source
+        self._said: tuple[RefereeCommand, Restart | None, Team | None] | None = None
+        self._counter = 0
+        self._command_time = 0
+
+    def write(self, game: GameState, time: float) -> bytes:
+        """The packet for a state in world coordinates (blue defends -x).
+
+        Args:
+            time: of the state, Unix time or the simulation's [s].
+        """
+        now = max(0, round(time * 1e6))
+        said = (game.command, game.restart if game.stopped else None, game.restart_team)
+        if self._said is None or said[0] is not self._said[0] or (game.stopped and said != self._said):
+            self._counter += self._said is not None
+            self._command_time = now
+        self._said = said
+        message = RefereeMessage(
+            source_identifier=self._source,
+            packet_timestamp=now,
+            stage=game.stage.name,
+            command=game.command.name,
+            command_counter=self._counter,
+            command_timestamp=self._command_time,
+            blue_team_on_positive_half=False,
+        )
+        for team, info, score in (
+            (Team.YELLOW, message.yellow, game.yellow_score),
+            (Team.BLUE, message.blue, game.blue_score),
+        ):
+            info.name = self._names[team]
+            info.score = score
+            info.red_cards = info.yellow_cards = info.timeouts = info.timeout_time = 0
+            info.goalkeeper = self._keepers.get(team, 0)
+        if game.placement is not None:
+            message.designated_position.x = game.placement[0] * _MM
+            message.designated_position.y = game.placement[1] * _MM
+        if game.stopped and game.restart is not None:
+            for command, following in _RESTARTS.items():
+                if following == (game.restart, game.restart_team):
+                    message.next_command = RefereeMessage.Command.Value(command.name)
+        return bytes(message.SerializeToString())

@@ -1,0 +1,1 @@
+"""Training runs: the loop, its settings, its folder, its evaluation."""

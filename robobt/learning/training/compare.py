@@ -1,0 +1,129 @@
+"""Each switch on the fast preset, one at a time, and the paper's setting beside them, on one budget."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from robobt.learning.training.checkpoint import write_atomically
+from robobt.learning.training.seeds import OnProgress, together, train_seeds
+from robobt.learning.training.settings import SWITCHES, SettingsError, TrainSettings, load_settings
+from robobt.match.yaml_reader import read_yaml
+
+PAPER = "paper"
+"""The name of the plain Spinning Up setting in a comparison."""
+
+
+def variants(task: str, changes: Mapping[str, Any] | None = None) -> dict[str, TrainSettings]:
+    """Settings by name: the fast preset, it with one switch changed each, and the paper's.
+
+    They have the fast preset's budget of steps and stop when its bar is met, but
+    for the paper's, which has its own.
+
+    Args:
+        changes: to all of them, by dotted name.
+
+    Raises:
+        SettingsError: no such task, or the changes are wrong.
+    """
+    switches = read_yaml(SWITCHES).get(task)
+    if switches is None:
+        raise SettingsError(f"{SWITCHES}: has no switches of {task!r}")
+    found = {name: load_settings(task, "fast", {**own, **(changes or {})}) for name, own in switches.items()}
+    paper = {key: value for key, value in (changes or {}).items() if not key.startswith("collection.")}
+    return {**found, PAPER: load_settings(task, "paper", paper)}
+
+
+def compare(
+    task: str,
+    out: str | Path,
+    seeds: Sequence[int],
+    only: Sequence[str] = (),
+    changes: Mapping[str, Any] | None = None,
+    workers: int = 1,
+    on_variant: Callable[[str], None] | None = None,
+    on_progress: OnProgress | None = None,
+) -> dict[str, Any]:
+    """Train every variant with every seed; what is in ``out`` already is kept or taken up again.
+
+    ``comparison.json`` and ``comparison.md`` are written anew after each variant.
+
+    Args:
+        task: what is learned.
+        out: a folder; each variant gets one in it.
+        seeds: of each variant.
+        only: names of variants; all of them without.
+        changes: to every variant's settings, by dotted name.
+        workers: processes.
+        on_variant: called with the name of the variant that comes next.
+        on_progress: see :func:`robobt.learning.training.seeds.train_seeds`.
+
+    Returns:
+        :func:`robobt.learning.training.seeds.together` by name.
+
+    Raises:
+        SettingsError: an unknown name.
+    """
+    out = Path(out)
+    found = variants(task, changes)
+    for name in only:
+        if name not in found:
+            raise SettingsError(f"no variant is called {name!r}; there are {', '.join(found)}")
+    told: dict[str, Any] = {}
+    for name, settings in found.items():
+        if only and name not in only:
+            continue
+        if on_variant is not None:
+            on_variant(name)
+        folder = out / re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+        told[name] = together(train_seeds(settings, seeds, folder, workers, True, on_progress))
+        text = json.dumps({"task": task, "variants": told}, indent=2, allow_nan=False) + "\n"
+        write_atomically(out / "comparison.json", text.encode())
+        write_atomically(out / "comparison.md", table_of(told).encode())
+    return told
+
+
+def rows_of(told: Mapping[str, Any]) -> list[list[str]]:
+    """A comparison as rows of text, the first of them the heads."""
+    rows = [
+        [
+            "setting",
+            "CPU s to 99 %",
+            "steps to the bar",
+            "CPU s to the bar",
+            "seeds at the bar",
+            "held-out success",
+            "time",
+        ]
+    ]
+    for name, figures in told.items():
+        to_99, to_bar = figures["to_99"], figures["to_bar"]
+        time = figures["time_ratio"] or figures["mean_time"]
+        rows.append(
+            [
+                name,
+                _say(to_99["cpu_s"], "{:.1f}"),
+                _say(to_bar["steps"], "{:,.0f}"),
+                _say(to_bar["cpu_s"], "{:.1f}"),
+                f"{to_bar['reached']} of {len(figures['seeds'])}",
+                _say(figures["success"], "{:.1%}"),
+                _say(time, "{:.3f}"),
+            ]
+        )
+    return rows
+
+
+def table_of(told: Mapping[str, Any]) -> str:
+    """A comparison as a Markdown table: medians, and ranges where seeds differ."""
+    head, *rows = ["| " + " | ".join(row) + " |" for row in rows_of(told)]
+    return "\n".join([head, "|" + " --- |" * len(rows_of(told)[0]), *rows]) + "\n"
+
+
+def _say(spread: Mapping[str, float] | None, form: str) -> str:
+    if spread is None:
+        return "-"
+    low, middle, high = [form.format(spread[key]) for key in ("low", "median", "high")]
+    return middle if low == high else f"{middle} ({low} to {high})"

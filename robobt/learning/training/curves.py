@@ -1,0 +1,51 @@
+"""Learning curves as a picture."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from robobt.learning.training.checkpoint import write_atomically
+from robobt.learning.training.run_folder import Judged
+
+
+def draw_curves(runs: Mapping[str, Sequence[Judged]], title: str, path: str | Path) -> None:
+    """Write a PNG: success and time of every run over environment steps and over CPU time.
+
+    Args:
+        runs: evaluations on the validation starts by the run's name.
+        title: above the picture.
+        path: the file.
+    """
+    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(2, 2, sharey="row", sharex="col")
+    relative = any(judged.time_ratio is not None for run in runs.values() for judged in run)
+    for name, run in runs.items():
+        steps = [judged.steps for judged in run]
+        cpu = [judged.cpu_s for judged in run]
+        success = [100.0 * judged.success for judged in run]
+        times = [judged.time_ratio if relative else judged.mean_time for judged in run]
+        shown = [float("nan") if value is None else value for value in times]
+        for column, x in enumerate((steps, cpu)):
+            axes[0, column].plot(x, success, marker=".", label=name)
+            axes[1, column].plot(x, shown, marker=".", label=name)
+    axes[0, 0].set_ylabel("success [%]")
+    axes[0, 0].set_ylim(-2.0, 102.0)
+    axes[1, 0].set_ylabel("time over the optimum" if relative else "time [s]")
+    if relative:
+        axes[1, 0].set_ylim(0.98, 1.3)
+    axes[1, 0].set_xlabel("environment steps")
+    axes[1, 1].set_xlabel("CPU time [s]")
+    for axis in axes.flat:
+        axis.grid(alpha=0.3)
+    if runs:
+        axes[0, 1].legend(loc="lower right", fontsize="small")
+    figure.suptitle(title)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=120)
+    write_atomically(Path(path), buffer.getvalue())

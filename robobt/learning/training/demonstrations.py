@@ -1,0 +1,279 @@
+"""Demonstrations: a teacher's transitions, in a Parquet file that anything can read.
+
+One row a control step, in the order of episodes and ticks:
+
+| column | type | what |
+| --- | --- | --- |
+| ``episode``, ``tick`` | int32 | from 0 |
+| ``observation`` | list of float64 | raw, SI units, as :mod:`robobt.world.features` defines it |
+| ``next_observation`` | the same | what the step led to, the episode's own last one at its end |
+| ``action`` | list of float64 | in [-1, 1] |
+| ``reward`` | float64 | of the step |
+| ``terminated``, ``truncated``, ``success`` | bool | how the episode ended with this step, if it did |
+
+The schema's metadata holds, under ``robobt``, JSON: ``format``, ``task``,
+``observation`` (name and version), ``environment`` (all its settings),
+``teacher``, ``seed`` and ``robobt`` (the version that wrote it).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from robobt import __version__
+from robobt.learning.agents.nstep import NStep, Transitions
+from robobt.learning.envs import GoToBallSettings, GoToBallTask, ShootSettings, ShootTask, TaskSettings
+from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.learning.training.teachers import TEACHERS
+from robobt.match.problems import naming
+
+FORMAT = "robobt-demonstrations-1"
+
+_ARENAS = 16
+"""Side by side while recording."""
+
+_MEANINGS = ("action", "period", "reward", "contact")
+"""Settings that say what an action and a reward are; with others the critic would learn what is not so."""
+
+
+class DemonstrationsError(ValueError):
+    """A file of demonstrations cannot be used; the message is one line that names it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Demonstrations:
+    """Whole episodes, one step a row.
+
+    Attributes:
+        episode: (m,) rising.
+        observation, action, reward, following: (m, ...) of each step.
+        terminated, truncated, success: (m,) how its episode ended with it.
+        about: where they come from; the file's metadata.
+    """
+
+    episode: NDArray[np.int64]
+    observation: FloatArray
+    action: FloatArray
+    reward: FloatArray
+    following: FloatArray
+    terminated: BoolArray
+    truncated: BoolArray
+    success: BoolArray
+    about: dict[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.episode)
+
+    @property
+    def episodes(self) -> int:
+        """How many episodes there are."""
+        return int((self.terminated | self.truncated).sum())
+
+    def first(self, episodes: int) -> Demonstrations:
+        """The first so many episodes."""
+        rows = np.searchsorted(self.episode, np.unique(self.episode)[:episodes][-1], side="right")
+        parts = {item.name: getattr(self, item.name)[:rows] for item in fields(self) if item.name != "about"}
+        return Demonstrations(**parts, about=self.about)
+
+    def transitions(self, horizons: Sequence[int], gamma: float) -> Iterator[tuple[Transitions, ...]]:
+        """What a replay takes, as :class:`~robobt.learning.agents.nstep.NStep` makes it."""
+        returns = NStep(horizons, gamma, 1, self.observation.shape[1], self.action.shape[1])
+        for i in range(len(self)):
+            row = slice(i, i + 1)
+            yield from returns.add(
+                self.observation[row],
+                self.action[row],
+                self.reward[row],
+                self.following[row],
+                self.terminated[row],
+                self.truncated[row],
+            )
+
+    def write(self, path: str | Path) -> None:
+        """Write the file; one that is there is replaced once the new one is whole."""
+        path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        ticks = np.arange(len(self)) - np.searchsorted(self.episode, self.episode)
+        columns = {
+            "episode": pa.array(self.episode.astype(np.int32)),
+            "tick": pa.array(ticks.astype(np.int32)),
+            "observation": _lists(self.observation),
+            "action": _lists(self.action),
+            "reward": pa.array(self.reward),
+            "next_observation": _lists(self.following),
+            "terminated": pa.array(self.terminated),
+            "truncated": pa.array(self.truncated),
+            "success": pa.array(self.success),
+        }
+        table = pa.table(columns).replace_schema_metadata({"robobt": json.dumps(self.about)})
+        temporary = path.with_name(f".{path.name}.{os.getpid()}")
+        try:
+            with naming(path):
+                pq.write_table(table, temporary)
+                temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def read_demonstrations(path: str | Path) -> Demonstrations:
+    """Demonstrations from their file.
+
+    Raises:
+        DemonstrationsError: it cannot be read, or holds something else.
+    """
+    try:
+        table = pq.read_table(path)
+        about = json.loads((table.schema.metadata or {})[b"robobt"])
+    except (OSError, ValueError, KeyError) as error:
+        raise DemonstrationsError(f"{path}: no demonstrations can be read: {_say(error)}") from error
+    if not isinstance(about, dict) or about.get("format") != FORMAT:
+        raise DemonstrationsError(f"{path}: not a file of demonstrations")
+    try:
+        return Demonstrations(
+            table["episode"].to_numpy().astype(np.int64),
+            _matrix(table["observation"]),
+            _matrix(table["action"]),
+            table["reward"].to_numpy(),
+            _matrix(table["next_observation"]),
+            table["terminated"].to_numpy(),
+            table["truncated"].to_numpy(),
+            table["success"].to_numpy(),
+            about,
+        )
+    except (KeyError, ValueError) as error:
+        raise DemonstrationsError(f"{path}: {_say(error)}") from error
+
+
+def record(
+    environment: TaskSettings,
+    episodes: int,
+    teacher: str = "skill",
+    seed: int = 0,
+    on_episode: Callable[[int], None] | None = None,
+) -> Demonstrations:
+    """Let a teacher play.
+
+    Args:
+        environment: where; its type tells the task.
+        episodes: how many, each from a start of its own.
+        teacher: "skill", the hand-written one, or "script".
+        seed: of the starts, the noise and the randomisation.
+        on_episode: called with the number of episodes that have ended.
+
+    Raises:
+        ValueError: no such teacher, or no episodes.
+    """
+    if teacher not in TEACHERS:
+        raise ValueError(f"no teacher is called {teacher!r}; there are {', '.join(TEACHERS)}")
+    if episodes < 1:
+        raise ValueError(f"episodes must be at least 1, not {episodes}")
+    task = _task(environment, min(episodes, _ARENAS))
+    teaching = TEACHERS[teacher](task)
+    starts = task.sample_starts(seed, episodes)
+    observation = task.reset_to(starts, seed)
+    teaching.begin(np.arange(task.n))
+    running: list[list[tuple[Any, ...]]] = [[] for _ in range(task.n)]
+    ended: dict[int, list[tuple[Any, ...]]] = {}
+    while len(ended) < episodes:
+        # A direction of length 1 may have been rounded past it.
+        action = np.clip(teaching.act(observation), -1.0, 1.0)
+        step = task.step(action)
+        for arena in range(task.n):
+            running[arena].append(
+                (
+                    observation[arena],
+                    action[arena],
+                    step.reward[arena],
+                    step.final_observation[arena],
+                    step.terminated[arena],
+                    step.truncated[arena],
+                    step.success[arena],
+                )
+            )
+        which = np.flatnonzero(step.terminated | step.truncated)
+        if task.ended is not None:
+            for arena, start in zip(which.tolist(), task.ended.start.tolist(), strict=True):
+                rows, running[arena] = running[arena], []
+                if start >= 0:
+                    ended[start] = rows
+            teaching.begin(which)
+            if on_episode is not None:
+                on_episode(len(ended))
+        observation = step.observation
+    flat = [row for start in range(episodes) for row in ended[start]]
+    numbers = [start for start in range(episodes) for _ in ended[start]]
+    columns = [np.array(column) for column in zip(*flat, strict=True)]
+    about = {
+        "format": FORMAT,
+        "task": task.observation.name,
+        "observation": {"name": task.observation.name, "version": task.observation.version},
+        "environment": environment.model_dump(mode="json"),
+        "teacher": teacher,
+        "seed": seed,
+        "robobt": __version__,
+    }
+    observations, actions, rewards, following, terminated, truncated, success = columns
+    return Demonstrations(
+        np.array(numbers), observations, actions, rewards, following, terminated, truncated, success, about
+    )
+
+
+def demonstrations_for(
+    environment: TaskSettings, episodes: int, file: str | None, seed: int
+) -> Demonstrations:
+    """The demonstrations that training settings ask for: from a file, else the script's.
+
+    Raises:
+        DemonstrationsError: the file cannot be used, is of another task, holds too few, or its
+            actions and rewards mean something else than those of the environment.
+    """
+    if file is None:
+        return record(environment, episodes, "script", seed)
+    found = read_demonstrations(file)
+    wanted = _task(environment, 1)
+    observation = {"name": wanted.observation.name, "version": wanted.observation.version}
+    if found.about.get("observation") != observation or found.action.shape[1] != wanted.action_size:
+        raise DemonstrationsError(f"{file}: holds demonstrations of {found.about.get('observation')}")
+    there, here = found.about.get("environment"), environment.model_dump(mode="json")
+    for part in _MEANINGS:
+        if isinstance(there, dict) and part in there and there[part] != here.get(part):
+            raise DemonstrationsError(
+                f"{file}: was recorded with another environment.{part}: {there[part]}, here {here.get(part)}"
+            )
+    if found.episodes < episodes:
+        raise DemonstrationsError(f"{file}: holds {found.episodes} episodes, not {episodes}")
+    return found.first(episodes)
+
+
+def _task(environment: TaskSettings, n: int) -> GoToBallTask | ShootTask:
+    if isinstance(environment, GoToBallSettings):
+        return GoToBallTask(environment, n)
+    if isinstance(environment, ShootSettings):
+        return ShootTask(environment, n)
+    raise TypeError(f"{type(environment).__name__} is no environment of a task")
+
+
+def _lists(rows: FloatArray) -> pa.Array:
+    return pa.FixedSizeListArray.from_arrays(pa.array(rows.ravel()), rows.shape[1])
+
+
+def _matrix(column: pa.ChunkedArray) -> FloatArray:
+    flat = column.combine_chunks()
+    values: FloatArray = flat.flatten().to_numpy(zero_copy_only=False).astype(np.float64)
+    return values.reshape(len(column), -1)
+
+
+def _say(error: Exception) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "there is no such file"
+    return " ".join(str(error.args[0] if error.args else type(error).__name__).split())

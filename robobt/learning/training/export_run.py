@@ -1,0 +1,149 @@
+"""A finished training run as a model file, with all that is known of it on the card."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from robobt.learning.agents.networks import policy_of
+from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.problems import problem_of
+from robobt.learning.training.run_folder import RESULT, TrainResult, load_run
+from robobt.learning.training.settings import environment_of
+from robobt.models.actions import ActionScaling
+from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
+from robobt.models.export import export_model
+from robobt.models.file import SUFFIXES, Format, ModelError
+from robobt.statistics import mean_interval
+from robobt.world.features import GO_TO_BALL, SHOOT, ObservationSpec
+
+_Floats = NDArray[np.float64]
+
+_SKILLS: dict[str, tuple[str, ObservationSpec]] = {
+    "go_to_ball": ("GoToBall", GO_TO_BALL),
+    "shoot": ("Shoot", SHOOT),
+}
+"""Skill and observation of each task."""
+
+
+def export_run(
+    run: str | Path,
+    name: str = "",
+    folder: str | Path = "models",
+    formats: Sequence[Format] = ("torchscript",),
+    starts: int | None = None,
+) -> tuple[Path, ...]:
+    """Write the best actor of a finished run as model files and enter them in the folder's manifest.
+
+    The actor is judged once more on the held-out starts; these figures, with their
+    intervals, are what the card says.
+
+    Args:
+        run: the folder of the run, or of several seeds of one, of which the best is taken: by
+            the starts that chose its actor, not by those that tell.
+        name: of the model; the task's with ``_ddpg`` when empty.
+        folder: where to.
+        formats: "torchscript", "onnx" or both.
+        starts: held-out starts to judge on; None for as many as the run was set to.
+
+    Returns:
+        The files.
+
+    Raises:
+        RunFolderError: the folder holds no run that has ended.
+        ModelError: the actor cannot be written as it is, or under that name.
+    """
+    if name and (not re.fullmatch(MODEL_NAME, name) or name.endswith(tuple(SUFFIXES.values()))):
+        raise ModelError(
+            f"{name!r} is no name for a model: up to 64 letters, digits, dots, dashes and underscores, "
+            "without the file's suffix"
+        )
+    result = load_run(_best_seed(Path(run)))
+    settings = result.settings
+    environment = environment_of(settings, str(run))
+    problem = problem_of(settings.task, environment)
+    count = settings.evaluation.held_out if starts is None else starts
+    torch.set_num_threads(1)  # as in training: on networks this small, threads wait for each other
+    figures = problem.judge(policy_of(result.actor), "held_out", count)
+    skill, observation = _SKILLS[settings.task]
+    action = getattr(environment, "action", None)
+    assert isinstance(action, ActionScaling)
+    card = ModelCard(
+        kind="policy",
+        name=name or f"{settings.task}_ddpg",
+        skill=skill,
+        description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
+        observation=ObservationCard.of(observation),
+        outputs=action_outputs(action),
+        action=action,
+        period=environment.period,
+        limits=environment.robot_limits,
+        environment=settings.environment,
+        training=_training(result),
+        seed=settings.seed,
+        held_out=held_out(figures),
+        code_version=str(result.figures.get("robobt", "")),
+        created_by="robobt export",
+    )
+    return export_model(result.actor, card, Path(folder), formats)
+
+
+def _best_seed(folder: Path) -> Path:
+    """The folder of the best seed where ``folder`` holds several, else ``folder`` itself."""
+    try:
+        seed = json.loads((folder / RESULT).read_text(encoding="utf-8"))["best_seed"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return folder
+    return folder / f"seed_{seed}"
+
+
+def held_out(figures: Evaluation) -> dict[str, Measured]:
+    """What a card says of an evaluation: share of successes, mean time [s], its ratio to the optimum."""
+    rate = figures.interval
+    count = len(figures.success)
+    told = {
+        "success": Measured(value=figures.rate, low=rate.low, high=rate.high, n=count, interval="95 % Wilson")
+    }
+    timed = figures.success & np.isfinite(figures.times)
+    if timed.any():
+        told["time"] = _mean(figures.times[timed], "s")
+    known = timed & (figures.optimum > 0.0)
+    if known.any():
+        told["time_ratio"] = _ratio(figures.times[known], figures.optimum[known])
+    return told
+
+
+def _mean(values: _Floats, unit: str) -> Measured:
+    low, high = mean_interval(values) if len(values) > 1 else (None, None)
+    return Measured(
+        value=float(values.mean()),
+        low=low,
+        high=high,
+        n=len(values),
+        unit=unit,
+        interval="95 % Student, mean",
+    )
+
+
+def _ratio(times: _Floats, optima: _Floats) -> Measured:
+    """Mean time over mean optimum; the interval is that of the mean of times less their share of it."""
+    ratio = float(times.sum() / optima.sum())
+    low: float | None = None
+    high: float | None = None
+    if len(times) > 1:
+        off = mean_interval(times - ratio * optima)
+        low, high = ratio + off.low / float(optima.mean()), ratio + off.high / float(optima.mean())
+    return Measured(value=ratio, low=low, high=high, n=len(times), interval="95 % Student, ratio of means")
+
+
+def _training(result: TrainResult) -> dict[str, Any]:
+    settings = result.settings.model_dump(mode="json", exclude={"environment", "seed"})
+    figures = {key: value for key, value in result.figures.items() if key not in ("held_out", "task", "seed")}
+    return {"settings": settings, "figures": figures}

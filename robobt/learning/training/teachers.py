@@ -1,0 +1,165 @@
+"""What already knows how to do a task: the hand-written skills, and scripts as simple as can be.
+
+A teacher decides the actions of one task's arenas. The scripts see what a
+learned policy sees; the skills see the field, as they do in a match.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from robobt.learning.envs import GoToBallTask, ShootTask
+from robobt.learning.envs.task import FloatArray, IntArray
+from robobt.models.actions import ActionScaling
+from robobt.skills import GoToBall, KickToTarget
+from robobt.skills.base import Skill
+from robobt.skills.store import Store
+from robobt.tree.runner import TreeRunner
+from robobt.world.command import RobotCommand
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BallState, Frame, RobotState
+
+_AIM_GAIN = 6.0
+"""Turning rate for each radian off the aim [1/s]."""
+
+_INSIDE = 0.6
+"""Share of the goal mouth, around its middle, at which the script kicks."""
+
+_CAREFUL = 0.9
+"""Share of what the dribbler can hold that a script turns with."""
+
+
+class Teacher(Protocol):
+    """Decides the actions of every arena of a task."""
+
+    def begin(self, which: IntArray) -> None:
+        """Episodes of these arenas start."""
+
+    def act(self, observation: FloatArray) -> FloatArray:
+        """(n, observation) -> (n, action) in [-1, 1]."""
+
+
+class StraightDrive:
+    """Drives straight at the ball at full speed and turns to it: the shortest time there is."""
+
+    def __init__(self, task: GoToBallTask) -> None:
+        self._turn = _AIM_GAIN / task.action.max_turn
+
+    def begin(self, which: IntArray) -> None:
+        """Nothing to forget."""
+
+    def act(self, observation: FloatArray) -> FloatArray:
+        """See :class:`Teacher`."""
+        sin, cos = observation[:, 0], observation[:, 1]
+        turn = np.clip(self._turn * np.arctan2(sin, cos), -1.0, 1.0)
+        return np.column_stack((cos, sin, turn))
+
+
+class TurnAndKick:
+    """Turns to the middle of the goal and kicks when the ball will leave well between the posts."""
+
+    def __init__(self, task: ShootTask) -> None:
+        self._scaling = task.action
+        dribbler = task.settings.simulator.dribbler
+        # A ball at distance L that is turned with at w needs a pull of w^2 L to stay.
+        self._pull = np.inf if dribbler.kind == "glue" else _CAREFUL * dribbler.pull
+
+    def begin(self, which: IntArray) -> None:
+        """Nothing to forget."""
+
+    def act(self, observation: FloatArray) -> FloatArray:
+        """See :class:`Teacher`."""
+        ball_x, ball_y, _, sideways = observation[:, :4].T
+        upper = np.arctan2(observation[:, 6], observation[:, 7])
+        lower = np.arctan2(observation[:, 8], observation[:, 9])
+        half = (np.mod(upper - lower + np.pi, 2 * np.pi) - np.pi) / 2
+        middle = np.arctan2(np.sin(lower + half), np.cos(lower + half))
+        leaving = np.arctan2(sideways, self._scaling.kick_speed)
+        off = np.arctan2(np.sin(middle - leaving), np.cos(middle - leaving))
+        most = np.minimum(self._scaling.max_turn, np.sqrt(self._pull / np.hypot(ball_x, ball_y)))
+        omega = np.clip(_AIM_GAIN * off, -most, most)
+        kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
+        return np.column_stack((omega / self._scaling.max_turn, kick))
+
+
+class SkillTeacher:
+    """A hand-written skill in every arena, ticked on the true state of the field.
+
+    Args:
+        task: whose arenas.
+        make: a new skill for an episode.
+    """
+
+    def __init__(self, task: GoToBallTask | ShootTask, make: Callable[[], Skill]) -> None:
+        self._task = task
+        self._make = make
+        self._limits = _within(task.settings.robot_limits, task.action)
+        self._runners: dict[int, tuple[TreeRunner, Store]] = {}
+        self._ticks = np.zeros(task.n, dtype=np.int64)
+
+    def begin(self, which: IntArray) -> None:
+        """A new skill for each of these arenas."""
+        for arena in which.tolist():
+            self._ticks[arena] = 0
+            frame = self._frame(arena)
+            store = Store(frame, frame.own[0])
+            self._runners[arena] = (TreeRunner(self._make(), store, on_error="raise"), store)
+
+    def act(self, observation: FloatArray) -> FloatArray:
+        """See :class:`Teacher`."""
+        actions = np.zeros((len(observation), self._task.action_size))
+        for arena, (runner, store) in self._runners.items():
+            store.frame = self._frame(arena)
+            store.me = store.frame.own[0]
+            store.command = RobotCommand()
+            runner.tick()
+            actions[arena] = action_of(store.command, self._task.action)
+        self._ticks += 1
+        return actions
+
+    def _frame(self, arena: int) -> Frame:
+        arenas, settings = self._task.arenas, self._task.settings
+        robot, ball = arenas.robots[arena, 0].tolist(), arenas.balls[arena].tolist()
+        contact = bool(arenas.contact[arena, 0])
+        x, y, heading, vx, vy, omega = robot
+        me = RobotState(0, x, y, heading, vx, vy, omega, contact, self._limits)
+        time = float(self._ticks[arena]) * settings.period
+        return Frame(time, settings.field, BallState(*ball), (me,), period=settings.period)
+
+
+def script(task: GoToBallTask | ShootTask) -> Teacher:
+    """The script that does this task."""
+    return TurnAndKick(task) if isinstance(task, ShootTask) else StraightDrive(task)
+
+
+def skill(task: GoToBallTask | ShootTask) -> Teacher:
+    """The hand-written skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
+    if isinstance(task, GoToBallTask):
+        return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
+    goal, speed = task.settings.field.their_goal, task.action.kick_speed
+    return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
+
+
+TEACHERS: dict[str, Callable[[GoToBallTask | ShootTask], Teacher]] = {"skill": skill, "script": script}
+"""Teachers by name."""
+
+
+def action_of(command: RobotCommand, scaling: ActionScaling) -> FloatArray:
+    """The action in [-1, 1] that comes closest to a command; what it cannot say is left out."""
+    if scaling.kind == "drive":
+        forward, left = command.vx / scaling.max_speed, command.vy / scaling.max_speed
+        norm = max(1.0, float(np.hypot(forward, left)))
+        raw = [forward / norm, left / norm, command.omega / scaling.max_turn]
+    else:
+        raw = [command.omega / scaling.max_turn, 1.0 if command.kick_speed > 0.0 else -1.0]
+    action: FloatArray = np.clip(np.array(raw), -1.0, 1.0)
+    return action
+
+
+def _within(limits: RobotLimits, action: ActionScaling) -> RobotLimits:
+    """The robot's limits less what actions cannot ask for."""
+    fastest = min(limits.max_speed, action.max_speed) if action.kind == "drive" else limits.max_speed
+    return limits.model_copy(update={"max_speed": fastest, "max_turn": min(limits.max_turn, action.max_turn)})

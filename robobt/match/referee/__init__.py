@@ -1,0 +1,1 @@
+"""The referee and the end conditions of a trial."""

@@ -1,0 +1,1 @@
+"""Results of trials and what they add up to."""

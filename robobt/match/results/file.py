@@ -1,0 +1,130 @@
+"""Results on disk: a line a trial, appended as they finish, so that a run can be taken up again.
+
+The first line says what was played; the others are :meth:`MatchResult.to_json`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TextIO
+
+from robobt import __version__
+from robobt.match.problems import naming
+from robobt.match.results.results import MatchResult
+from robobt.match.scenario.scenario import Scenario
+from robobt.plays.files import is_play_file
+
+FORMAT = "robobt-results"
+
+
+class ResultsFileError(ValueError):
+    """A results file cannot be continued; the message is one line that names it."""
+
+
+class ResultsFile:
+    """A results file that is open for appending. A context manager.
+
+    A file that exists is continued when it holds the same scenario, seed and
+    version; a last line that was cut short is dropped.
+
+    Args:
+        path: the file, by custom ``*.jsonl``.
+        scenario: what is played.
+        seed: the run's seed.
+
+    Attributes:
+        done: results the file held already, by trial.
+
+    Raises:
+        ResultsFileError: the file holds something else.
+        OSError: it cannot be read or written.
+    """
+
+    def __init__(self, path: str | Path, scenario: Scenario, seed: int) -> None:
+        self.path = Path(path)
+        self.done: dict[int, MatchResult] = {}
+        head = {
+            "format": FORMAT,
+            "scenario": scenario.name,
+            "digest": _digest(scenario),
+            "seed": seed,
+            "robobt": __version__,
+        }
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        # A pipe or a device is read for ever.
+        if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
+            raise ResultsFileError(f"{self.path}: not an ordinary file, so it holds nothing to go on from")
+        kept = self._read(head) if self.path.exists() else 0
+        if kept:
+            with self.path.open("r+b") as file:
+                file.truncate(kept)
+        self._file: TextIO = self.path.open("a" if kept else "w", encoding="utf-8")
+        if not kept:
+            try:
+                self._write(head)
+            except OSError:
+                self.__exit__(None, None, None)
+                raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with naming(self.path):
+            self._file.close()
+
+    def add(self, result: MatchResult) -> None:
+        """Append a result; it is on disk when this returns."""
+        self._write(result.to_json())
+
+    def _write(self, line: dict[str, Any]) -> None:
+        with naming(self.path):
+            self._file.write(json.dumps(line, separators=(",", ":")) + "\n")
+            self._file.flush()
+
+    def _read(self, head: dict[str, Any]) -> int:
+        """Take in what the file holds; the length of it that is sound, in bytes."""
+        kept = 0
+        for number, line in enumerate(self.path.read_bytes().splitlines(keepends=True), start=1):
+            try:
+                data = json.loads(line) if line.endswith(b"\n") else None
+            except ValueError:
+                data = None
+            if number == 1:
+                self._check_head(data, head)
+            elif data is None:
+                break
+            else:
+                try:
+                    result = MatchResult.from_json(data)
+                except ValueError as error:
+                    raise ResultsFileError(f"{self.path}: line {number}: {error}") from error
+                self.done[result.trial] = result
+            kept += len(line)
+        return kept
+
+    def _check_head(self, found: object, head: dict[str, Any]) -> None:
+        if not isinstance(found, dict) or found.get("format") != FORMAT:
+            raise ResultsFileError(f"{self.path}: not a file of results; give another name")
+        for key, value in head.items():
+            if found.get(key) != value:
+                what = "another version of the scenario" if key == "digest" else f"{key} {found.get(key)!r}"
+                raise ResultsFileError(f"{self.path}: holds results of {what}; give another name")
+
+
+def _digest(scenario: Scenario) -> str:
+    """Equal for scenarios that play the same; how often and with which seed is not part of it."""
+    text = scenario.model_dump_json(exclude={"trials", "seed", "description", "on_error"})
+    digest = hashlib.blake2b(text.encode(), digest_size=16)
+    for _, setup in scenario.robots:
+        # Their words, not only their names: whoever edits a tree plays another match.
+        if is_play_file(setup.play):
+            digest.update(Path(setup.play).read_bytes())
+        if isinstance(setup.substitute, str):
+            digest.update(Path(setup.substitute).read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""Scenario files: who plays what where, until when."""

@@ -1,0 +1,1 @@
+"""Policies and predictors at run time: card, file format, checks, loading, export."""

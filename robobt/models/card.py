@@ -1,0 +1,197 @@
+"""What a model file says about itself: enough to know what it may be used for, and to trust it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from robobt.models.actions import ActionScaling
+from robobt.world.features import OBSERVATIONS, ObservationSpec
+from robobt.world.limits import RobotLimits
+
+CARD_FORMAT = 1
+"""Version of the card's own fields."""
+
+MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
+"""What a model may be called, as a regular expression."""
+
+MAX_CARD_SIZE = 64 * 1024
+"""A card longer than this is none [bytes]."""
+
+Kind = Literal["policy", "shot_predictor"]
+
+
+class ModelCardError(ValueError):
+    """A card that is none: one line that names the field."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class ObservationCard(_Part):
+    """What the model's input means.
+
+    Either one of :data:`robobt.world.features.OBSERVATIONS`, with the version it
+    had in training, or any other vector by the names of its entries.
+    """
+
+    name: str = Field(min_length=1, max_length=64, description="name of the observation")
+    version: int = Field(ge=1, description="version it was trained with")
+    size: int = Field(ge=1, le=4096, description="length of the vector")
+    features: tuple[str, ...] = Field((), description="its entries in order, with their units")
+
+    @classmethod
+    def of(cls, spec: ObservationSpec) -> ObservationCard:
+        """The observation as it is defined now."""
+        entries = tuple([f"{name} [{unit}]" for name, unit in spec.entries])
+        return cls(name=spec.name, version=spec.version, size=spec.size, features=entries)
+
+    @model_validator(mode="after")
+    def _sized(self) -> Self:
+        if self.features and len(self.features) != self.size:
+            raise ValueError(f"size is {self.size}, but features names {len(self.features)} entries")
+        if not self.features and self.name not in OBSERVATIONS:
+            raise ValueError(f"there is no observation {self.name!r}, so features has to name its entries")
+        return self
+
+    def problem(self) -> str | None:
+        """Why this is not the observation of that name as it is defined now; None if it is.
+
+        A name that :data:`~robobt.world.features.OBSERVATIONS` does not have is
+        somebody else's to check.
+        """
+        spec = OBSERVATIONS.get(self.name)
+        if spec is None or self == ObservationCard.of(spec):
+            return None
+        if self.version != spec.version:
+            return f"observation {self.name!r} is version {self.version}, here it is version {spec.version}"
+        if self.size != spec.size:
+            return f"observation {self.name!r} has {self.size} entries, here it has {spec.size}"
+        if self.features:
+            return f"the entries of observation {self.name!r} are not those it has here"
+        return None
+
+
+class OutputEntry(_Part):
+    """One entry of the model's output."""
+
+    name: str = Field(min_length=1, max_length=64)
+    unit: str = Field("1", max_length=16, description="unit once multiplied by scale")
+    scale: float = Field(1.0, description="what an output of 1 stands for, in that unit")
+
+
+class Measured(_Part):
+    """A figure with its interval, as measured on data or starts that training never saw."""
+
+    value: float
+    low: float | None = Field(None, description="lower end of the interval")
+    high: float | None = Field(None, description="upper end of the interval")
+    n: int = Field(ge=0, description="of how many trials or samples")
+    unit: str = Field("1", max_length=16)
+    interval: str = Field("", max_length=64, description='what the interval is ("95 % Wilson")')
+
+
+class ModelCard(_Part):
+    """The card inside every model file.
+
+    A *policy* maps an observation to an action in [-1, 1], which ``action``
+    scales to a command. A *shot_predictor* maps a row of features to a
+    probability.
+    """
+
+    format: Literal[1] = Field(1, description="version of this card's fields")
+    kind: Kind
+    name: str = Field(pattern=MODEL_NAME, description="name to load it by")
+    skill: str = Field(min_length=1, max_length=64, description='what it is for ("GoToBall", "Shoot")')
+    description: str = Field("", max_length=2000)
+    observation: ObservationCard
+    outputs: tuple[OutputEntry, ...] = Field(min_length=1, max_length=64)
+    action: ActionScaling | None = Field(None, description="how a policy's output becomes a command")
+    period: float | None = Field(None, gt=0, le=1, description="control period in training [s]")
+    limits: RobotLimits | None = Field(None, description="limits of the robot it was trained on")
+    environment: dict[str, Any] = Field({}, description="settings of the environment, or of the data")
+    training: dict[str, Any] = Field({}, description="settings of the learner")
+    seed: int | None = Field(None, description="what training's randomness followed from")
+    held_out: dict[str, Measured] = Field({}, description="results that training never saw, by name")
+    code_version: str = Field("", max_length=128, description="version of the code that trained it")
+    created_by: str = Field("", max_length=256, description="what wrote it")
+    payload: str = Field(
+        "",
+        pattern=r"^([0-9a-f]{64})?$",
+        description="SHA-256 of everything in the file but the card; export fills it in",
+    )
+
+    @field_validator("environment", "training")
+    @classmethod
+    def _plain(cls, value: dict[str, Any]) -> dict[str, Any]:
+        try:
+            plain = json.loads(json.dumps(value, allow_nan=False))
+        except (TypeError, ValueError, RecursionError) as error:
+            raise ValueError(f"is no plain data: {error}") from error
+        assert isinstance(plain, dict)
+        return plain
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if self.kind == "policy":
+            if self.action is None:
+                raise ValueError("a policy needs action, which says how its output becomes a command")
+            if self.period is None:
+                raise ValueError("a policy needs period, the control period it was trained with")
+            names = tuple([entry.name for entry in self.outputs])
+            if names != self.action.entries:
+                wanted = ", ".join(self.action.entries)
+                raise ValueError(f"outputs are {', '.join(names)}; a {self.action.kind} action is {wanted}")
+        elif self.action is not None:
+            raise ValueError("only a policy has an action")
+        return self
+
+    @property
+    def output_range(self) -> tuple[float, float]:
+        """Least and most that the model may answer: [-1, 1] for a policy, [0, 1] for a probability."""
+        return (-1.0, 1.0) if self.kind == "policy" else (0.0, 1.0)
+
+    def to_json(self) -> str:
+        """The card as it is put into files: the same text for the same card."""
+        return json.dumps(self.model_dump(mode="json"), indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+
+def action_outputs(action: ActionScaling) -> tuple[OutputEntry, ...]:
+    """The outputs of a policy with that action, with their units and scales."""
+    scales = {
+        "vx": ("m/s", action.max_speed),
+        "vy": ("m/s", action.max_speed),
+        "omega": ("rad/s", action.max_turn),
+        "kick": ("m/s", action.kick_speed),
+    }
+    return tuple(
+        [OutputEntry(name=name, unit=scales[name][0], scale=scales[name][1]) for name in action.entries]
+    )
+
+
+def read_card(text: str | bytes) -> ModelCard:
+    """A card from the text in a file.
+
+    Raises:
+        ModelCardError: it is none; the message names the field.
+    """
+    if len(text) > MAX_CARD_SIZE:
+        raise ModelCardError(f"its card is longer than {MAX_CARD_SIZE} bytes")
+    try:
+        return ModelCard.model_validate_json(text)
+    except ValidationError as error:
+        raise ModelCardError(f"its card: {_say(error)}") from error
+
+
+def _say(error: ValidationError) -> str:
+    problems = error.errors(include_url=False, include_input=False)
+    problem = problems[0]
+    place = ".".join([str(part) for part in problem["loc"]])
+    cause = problem.get("ctx", {}).get("error")
+    message = str(cause) if isinstance(cause, Exception) else problem["msg"]
+    words = " ".join(f"{place}: {message}".split() if place else message.split())
+    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+    return words[:300] + more

@@ -1,0 +1,196 @@
+"""Write a trained network as a model file that :func:`robobt.models.policy.load_policy` loads."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import os
+import re
+import tempfile
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from hashlib import sha256
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from robobt.match.problems import naming
+from robobt.models.card import ModelCard
+from robobt.models.file import (
+    MANIFEST,
+    SUFFIXES,
+    Format,
+    ModelError,
+    manifest_text,
+    pack_archive,
+    pack_onnx,
+    payload_of,
+    read_manifest,
+    unpack_archive,
+)
+
+MAX_EXPORT_SIZE = 2**20
+"""A skill's network is small; a file longer than this is a mistake [bytes]."""
+
+TOLERANCE = 1e-6
+"""How far a TorchScript file may be off the network it was made from, on any output."""
+
+_SAMPLES = 1000
+_MANGLED = re.compile(rb"\.___torch_mangle_\d+")
+
+
+def export_model(
+    module: nn.Module, card: ModelCard, folder: Path, formats: Sequence[Format] = ("torchscript",)
+) -> tuple[Path, ...]:
+    """Write ``module`` as ``NAME.pt`` or ``NAME.onnx``, NAME being the card's, and enter it in the manifest.
+
+    The module takes float32 (batch, ``card.observation.size``), the raw
+    observation in SI units, and answers (batch, ``len(card.outputs)``): actions in
+    [-1, 1], or probabilities. Each file is loaded again before it takes its place,
+    and its answers to 1000 random inputs are compared with the module's: to 1e-6, in
+    ONNX also to twice what the order of summation makes out in single precision. The
+    same module and card give the same file.
+
+    Args:
+        module: put into evaluation mode for a copy; itself it stays as it was.
+        card: all but ``payload``, which is filled in here.
+        folder: where to; made when it is not there.
+        formats: "torchscript", "onnx" or both.
+
+    Returns:
+        The files, in the order of ``formats``.
+
+    Raises:
+        ModelError: the module does not fit its card, answers what it must not, is larger
+            than 1 MB, or cannot be written so that its answers stay the same.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    listed = read_manifest(folder)
+    module = _copy(module)
+    files = [folder / f"{card.name}{SUFFIXES[format_]}" for format_ in formats]
+    # All or nothing: no file takes its place before all have been compared.
+    with ExitStack() as stack:
+        for format_, path in zip(formats, files, strict=True):
+            try:
+                data = _torchscript(module, card) if format_ == "torchscript" else _onnx(module, card)
+            except (RuntimeError, TypeError) as error:
+                reason = next(iter(str(error).strip().splitlines()), type(error).__name__)
+                raise ModelError(f"{path}: torch cannot export the network: {reason}") from error
+            if len(data) > MAX_EXPORT_SIZE:
+                raise ModelError(f"{path}: would be {len(data)} bytes, more than {MAX_EXPORT_SIZE}")
+            _compare(module, card, format_, stack.enter_context(_written(path, data)), path)
+            listed[path.name] = sha256(data).hexdigest()
+        stack.enter_context(_written(folder / MANIFEST, manifest_text(listed).encode()))
+    return tuple(files)
+
+
+def _copy(module: nn.Module) -> nn.Module:
+    if not isinstance(module, torch.jit.ScriptModule):
+        return copy.deepcopy(module).cpu().eval()
+    # A deep copy of these has tensors that torch warns of.
+    buffer = BytesIO()
+    with _quiet():
+        torch.jit.save(module, buffer)
+        buffer.seek(0)
+        loaded: nn.Module = torch.jit.load(buffer, map_location="cpu")  # type: ignore[no-untyped-call]
+    return loaded.eval()
+
+
+def _torchscript(module: nn.Module, card: ModelCard) -> bytes:
+    buffer = BytesIO()
+    with _quiet():
+        scripted = module if isinstance(module, torch.jit.ScriptModule) else _traced(module, card)
+        torch.jit.save(torch.jit.freeze(scripted), buffer)
+    members = unpack_archive(buffer.getvalue())
+    # Torch numbers what it traces by what else the process has traced.
+    if len([name for name in members if name.startswith("code/")]) == 1:
+        members = {
+            re.sub(r"/___torch_mangle_\d+", "", name): _MANGLED.sub(b"", content)
+            if name.endswith((".py", ".pkl"))
+            else content
+            for name, content in members.items()
+        }
+    return pack_archive(members, card.model_copy(update={"payload": payload_of(members)}).to_json())
+
+
+def _traced(module: nn.Module, card: ModelCard) -> torch.jit.ScriptModule:
+    example = torch.from_numpy(_inputs(card, 2))
+    traced = torch.jit.trace(module, example, check_trace=False)  # type: ignore[no-untyped-call]
+    assert isinstance(traced, torch.jit.ScriptModule)
+    return traced
+
+
+def _onnx(module: nn.Module, card: ModelCard) -> bytes:
+    import onnx
+
+    buffer = BytesIO()
+    options: dict[str, object] = {
+        "input_names": ["observation"],
+        "output_names": ["output"],
+        "dynamic_axes": {"observation": {0: "batch"}, "output": {0: "batch"}},
+        "opset_version": 17,
+    }
+    # The exporter that is torch's default from 2.9 on needs a package of its own.
+    if "dynamo" in inspect.signature(torch.onnx.export).parameters:
+        options["dynamo"] = False
+    with _quiet():
+        torch.onnx.export(module, (torch.from_numpy(_inputs(card, 2)),), buffer, **options)  # type: ignore[arg-type]
+    model = onnx.load_from_string(buffer.getvalue())
+    del model.metadata_props[:]
+    for node in model.graph.node:
+        node.doc_string = ""
+        del node.metadata_props[:]
+    content = model.SerializeToString(deterministic=True)
+    text = card.model_copy(update={"payload": sha256(content).hexdigest()}).to_json()
+    return pack_onnx(content, text)
+
+
+def _compare(module: nn.Module, card: ModelCard, format_: Format, written: Path, path: Path) -> None:
+    from robobt.models.policy import load_policy
+
+    try:
+        policy = load_policy(written)
+    except ModelError as error:
+        raise ModelError(str(error).replace(str(written), str(path))) from error
+    inputs = torch.from_numpy(_inputs(card, _SAMPLES))
+    with torch.no_grad():
+        wanted: Tensor = module(inputs)
+        one_by_one = torch.cat([module(row[None]) for row in inputs])
+    allowed = TOLERANCE
+    if format_ != "torchscript":
+        # Another runtime adds up in another order, as torch itself does for one row and for many.
+        allowed = max(allowed, 2.0 * float((wanted - one_by_one).abs().max()))
+    off = float(np.abs(policy(inputs.numpy()) - wanted.numpy()).max())
+    if not off <= allowed:
+        raise ModelError(f"{path}: the file's answers are {off:.2g} off those of the network")
+
+
+def _inputs(card: ModelCard, count: int) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
+    return np.random.default_rng(0).normal(0.0, 2.0, (count, card.observation.size)).astype(np.float32)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """TorchScript is deprecated upstream; whoever exports a model cannot do anything about it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
+@contextmanager
+def _written(path: Path, data: bytes) -> Iterator[Path]:
+    """The file in a folder of its own; it takes its place unless something is raised."""
+    with naming(path):
+        temporary_folder = tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-")
+    with temporary_folder as folder:
+        temporary = Path(folder) / path.name
+        with naming(path):
+            temporary.write_bytes(data)
+        yield temporary
+        with naming(path):
+            os.replace(temporary, path)

@@ -1,0 +1,333 @@
+"""Model files, read and checked as bytes before anything that could run them sees them.
+
+A model file is a TorchScript archive or an ONNX file that carries its
+:class:`~robobt.models.card.ModelCard`. The last 64 bytes of either, an
+archive's comment or a piece of ONNX's metadata, are the SHA-256 of all before them,
+and the card carries that of the network: a file that was cut or altered anywhere
+is refused here, without torch or onnxruntime. An archive that torch itself wrote,
+with a card among its extra files, has no such seal; its members' CRCs have to do.
+"""
+
+from __future__ import annotations
+
+import re
+import stat
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from io import BytesIO
+from pathlib import Path
+from typing import Literal
+
+from robobt.models.card import ModelCard, ModelCardError, read_card
+from robobt.resources import models_folder
+
+Format = Literal["torchscript", "onnx"]
+
+SUFFIXES: dict[Format, str] = {"torchscript": ".pt", "onnx": ".onnx"}
+"""How the names of model files end, the preferred format first."""
+
+MANIFEST = "manifest"
+"""The file beside models that lists their checksums, as ``sha256sum`` writes it."""
+
+MAX_MODEL_SIZE = 16 * 2**20
+"""A file longer than this is not read, and an archive that holds more is not unpacked [bytes]."""
+
+CARD = "card.json"
+"""Under this name the card is in the file."""
+
+_SEAL = 64
+_MAX_MEMBERS = 1000
+_MAX_FIELDS = 10_000
+_ZIP = b"PK\x03\x04"
+_CARD_MEMBER = f"extra/{CARD}"
+_METADATA = 14
+"""Field ``metadata_props`` of ONNX's ModelProto."""
+
+
+class ModelError(ValueError):
+    """A model that cannot be used: one line that names the file."""
+
+
+class UnknownModelError(ModelError):
+    """No shipped model has that name."""
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """A model file whose card and checksums are in order.
+
+    Attributes:
+        path: where it was read.
+        format: what can run it.
+        sha256: of the whole file.
+        size: of the whole file [bytes].
+        card: what it says about itself.
+        content: without the card: what torch or onnxruntime is given. A TorchScript archive is
+            packed anew from what has been checked, so that nothing else of the file gets there.
+    """
+
+    path: Path
+    format: Format
+    sha256: str
+    size: int
+    card: ModelCard
+    content: bytes
+
+
+def read_model_file(path: str | Path) -> ModelFile:
+    """Read a model file and check everything that can be checked without running it.
+
+    Raises:
+        ModelError: it is missing, too large, no model file, cut, altered, without a card, with a
+            card that is none, or not the file that the manifest beside it lists.
+    """
+    path = Path(path)
+    data = _read(path)
+    checksum = sha256(data).hexdigest()
+    listed = read_manifest(path.parent).get(path.name)
+    if listed is not None and listed != checksum:
+        raise ModelError(f"{path}: its checksum is not the one that {path.parent / MANIFEST} lists")
+    sealed = data[-_SEAL:] == _seal_of(data[:-_SEAL])
+    try:
+        if data.startswith(_ZIP):
+            kind: Format = "torchscript"
+            members = unpack_archive(data)
+            text = members.pop(_CARD_MEMBER, None)
+            digest, content = payload_of(members), pack_archive(members)
+        elif sealed:
+            kind = "onnx"
+            content, text = _split_onnx(data)
+            digest = sha256(content).hexdigest()
+        else:
+            raise ModelError("is no model file, or cut short or altered")
+        if text is None:
+            raise ModelError("there is no model card in it; robobt export writes files with one")
+        card = read_card(text)
+        if not sealed and (card.payload or kind == "onnx"):
+            raise ModelError("has been altered since it was exported")
+        if sealed and card.payload != digest:
+            raise ModelError("its content is not what its card was written for")
+    except (ModelError, ModelCardError) as error:
+        raise ModelError(f"{path}: {error}") from error
+    return ModelFile(path, kind, checksum, len(data), card, content)
+
+
+def find_model(name_or_path: str | Path) -> Path:
+    """The file of a model: a path, or the name of a shipped one.
+
+    Raises:
+        UnknownModelError: no shipped model has that name.
+    """
+    text = str(name_or_path)
+    if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
+        return Path(name_or_path)
+    folder = models_folder()
+    for suffix in SUFFIXES.values():
+        path = folder / f"{text}{suffix}"
+        if path.is_file():
+            return path
+    there = ", ".join(sorted({path.stem for path in list_models(folder)})) or "none"
+    raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+
+
+def list_models(folder: Path) -> list[Path]:
+    """The model files of a folder, in the order of their names."""
+    return sorted([path for path in folder.glob("*") if path.suffix in _ENDINGS and path.is_file()])
+
+
+def read_manifest(folder: Path) -> dict[str, str]:
+    """SHA-256 by file name, as listed in a folder; empty where there is no manifest.
+
+    Raises:
+        ModelError: a line of it is no checksum with a file's name.
+    """
+    path = folder / MANIFEST
+    try:
+        if not path.is_file():
+            return {}
+        lines = path.read_text("utf-8").splitlines()
+    except (OSError, ValueError) as error:
+        raise ModelError(f"{path}: {error}") from error
+    listed: dict[str, str] = {}
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        match = _LISTED.fullmatch(line)
+        if match is None:
+            raise ModelError(f"{path}, line {number}: is no SHA-256 followed by the name of a file")
+        listed[match[2]] = match[1]
+    return listed
+
+
+def manifest_text(listed: Mapping[str, str]) -> str:
+    """The manifest that lists these files; ``sha256sum -c manifest`` checks them."""
+    return "".join([f"{listed[name]}  {name}\n" for name in sorted(listed)])
+
+
+def payload_of(members: Mapping[str, bytes]) -> str:
+    """SHA-256 of an archive's members, whatever their order [hex]."""
+    digest = sha256()
+    for name in sorted(members):
+        for part in (name.encode(), members[name]):
+            digest.update(len(part).to_bytes(8, "big"))
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def pack_archive(members: Mapping[str, bytes], card: str | None = None) -> bytes:
+    """An archive as torch reads it, the same bytes for the same members.
+
+    Args:
+        card: makes it a model file: the card is put in and the whole is sealed.
+    """
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
+        for name in sorted(members):
+            archive.writestr(zipfile.ZipInfo(f"model/{name}"), members[name])
+        if card is not None:
+            archive.writestr(zipfile.ZipInfo(f"model/{_CARD_MEMBER}"), card)
+            archive.comment = bytes(_SEAL)
+    data = buffer.getvalue()
+    return data if card is None else data[:-_SEAL] + _seal_of(data[:-_SEAL])
+
+
+def unpack_archive(data: bytes) -> dict[str, bytes]:
+    """The members of an archive that torch wrote, without the folder that holds them.
+
+    Left out is what only serves debugging: where the network's source lay, for one.
+
+    Raises:
+        ModelError: it is no such archive, damaged, or unpacks to too much.
+    """
+    try:
+        with zipfile.ZipFile(BytesIO(data)) as archive:
+            entries = archive.infolist()
+            if len(entries) > _MAX_MEMBERS or sum([entry.file_size for entry in entries]) > MAX_MODEL_SIZE:
+                raise ModelError("holds more than a model does")
+            # Reading a member to its end compares its CRC.
+            found = [(entry.filename, archive.read(entry)) for entry in entries]
+    except ModelError:
+        raise
+    except Exception as error:
+        # zipfile answers damage with a dozen kinds of exceptions, struct's and zlib's among them.
+        # Some quote the file itself.
+        raise ModelError(f"is no intact archive ({type(error).__name__}: {str(error)[:80]})") from error
+    roots = {name.partition("/")[0] for name, _ in found}
+    members = {name.partition("/")[2]: content for name, content in found}
+    if len(roots) != 1 or len(members) != len(found) or "" in members or ".." in "/".join(members):
+        raise ModelError("is an archive, but not a TorchScript one")
+    if not {"data.pkl", "version"} <= set(members) or not any(name.startswith("code/") for name in members):
+        raise ModelError("is an archive, but not a TorchScript one")
+    return {name: content for name, content in members.items() if not _UNNEEDED.fullmatch(name)}
+
+
+def pack_onnx(content: bytes, card: str) -> bytes:
+    """An ONNX file as a model file: card and seal become its last metadata."""
+    carded = content + _metadata(CARD, card.encode())
+    unsealed = carded + _metadata("sha256", bytes(_SEAL))[:-_SEAL]
+    return unsealed + _seal_of(unsealed)
+
+
+def _read(path: Path) -> bytes:
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise ModelError(f"{path}: is no file")
+        if status.st_size > MAX_MODEL_SIZE:
+            raise ModelError(f"{path}: is larger than {MAX_MODEL_SIZE} bytes")
+        with path.open("rb") as stream:
+            data = stream.read(MAX_MODEL_SIZE + 1)
+    except FileNotFoundError as error:
+        raise ModelError(f"{path}: there is no such file") from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise ModelError(f"{path}: cannot be read: {reason}") from error
+    if len(data) > MAX_MODEL_SIZE:
+        raise ModelError(f"{path}: is larger than {MAX_MODEL_SIZE} bytes")
+    if not data:
+        raise ModelError(f"{path}: is empty")
+    return data
+
+
+def _split_onnx(data: bytes) -> tuple[bytes, bytes | None]:
+    """What precedes the card, and the card, which has only the seal behind it."""
+    last = [(number, begin, inside) for number, begin, inside in _fields(data)][-2:]
+    if len(last) < 2 or last[0][0] != _METADATA:
+        return data, None
+    entries = [(number, content) for number, _, content in _fields(last[0][2])]
+    if len(entries) != 2 or entries[0] != (1, CARD.encode()) or entries[1][0] != 2:
+        return data, None
+    return data[: last[0][1]], entries[1][1]
+
+
+def _fields(data: bytes) -> Iterator[tuple[int, int, bytes]]:
+    """Number, start and content of each field of a Protocol Buffers message.
+
+    Raises:
+        ModelError: it is none.
+    """
+    place = 0
+    for _ in range(_MAX_FIELDS):
+        if place == len(data):
+            return
+        begin = place
+        key, place = _varint(data, place)
+        number, kind = key >> 3, key & 7
+        if kind == 0:
+            _, end = _varint(data, place)
+        elif kind == 1:
+            end = place + 8
+        elif kind == 2:
+            length, place = _varint(data, place)
+            end = place + length
+        elif kind == 5:
+            end = place + 4
+        else:
+            raise ModelError(_FOREIGN)
+        if number == 0 or end > len(data):
+            raise ModelError(_FOREIGN)
+        yield number, begin, data[place:end]
+        place = end
+    raise ModelError("holds more than a model does")
+
+
+def _varint(data: bytes, place: int) -> tuple[int, int]:
+    value = 0
+    for shift in range(0, 70, 7):
+        if place >= len(data):
+            break
+        byte = data[place]
+        place += 1
+        value |= (byte & 0x7F) << shift
+        if byte < 0x80:
+            return value, place
+    raise ModelError(_FOREIGN)
+
+
+def _metadata(key: str, value: bytes) -> bytes:
+    return _field(_METADATA, _field(1, key.encode()) + _field(2, value))
+
+
+def _field(number: int, content: bytes) -> bytes:
+    return _encoded(number << 3 | 2) + _encoded(len(content)) + content
+
+
+def _seal_of(data: bytes) -> bytes:
+    return sha256(data).hexdigest().encode()
+
+
+def _encoded(value: int) -> bytes:
+    out = bytearray()
+    while value > 0x7F:
+        out.append(value & 0x7F | 0x80)
+        value >>= 7
+    out.append(value)
+    return bytes(out)
+
+
+_UNNEEDED = re.compile(r"(.*\.debug_pkl|\.data/serialization_id|traced_inputs.*)")
+_ENDINGS = tuple(SUFFIXES.values())
+_FOREIGN = "is neither a TorchScript archive nor an ONNX file, or is cut short"
+_LISTED = re.compile(r"([0-9a-f]{64}) [ *]([^/\\\s][^/\\]*)")

@@ -1,0 +1,1 @@
+"""Driving without trees: trajectories, path planning, the ball's motion, the kick approach."""

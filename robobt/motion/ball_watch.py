@@ -1,0 +1,48 @@
+"""Tells from the ball's changing speed whether it still slides."""
+
+from __future__ import annotations
+
+from math import inf
+
+from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.world.state import Frame
+
+_OLDEST = 0.2
+"""Frames farther apart say nothing about the deceleration [s]."""
+_KICKED = 2.0
+"""A ball that speeds up faster than this has been hit [m/s^2]."""
+_GUESS = 0.8
+"""Share of its speed at which a ball will roll that was not seen being kicked."""
+
+
+class BallWatch:
+    """Remembers the ball's speed from frame to frame.
+
+    A frame holds no spin, so a sliding ball and a rolling one look the same in
+    it; over two frames the sliding one loses its speed several times as fast.
+    """
+
+    def __init__(self, model: BallModel = DEFAULT_BALL) -> None:
+        self._model = model
+        self._time = -inf
+        self._speed = 0.0
+        self._rolling = 0.0
+
+    def rolling_speed(self, frame: Frame) -> float:
+        """The speed [m/s] from which on the ball rolls: its own when it rolls already."""
+        model, speed = self._model, frame.ball.speed
+        elapsed = frame.time - self._time
+        if elapsed == 0.0:
+            return min(self._rolling, speed)
+        if not 0.0 < elapsed < _OLDEST:
+            self._rolling = speed
+        else:
+            deceleration = (self._speed - speed) / elapsed
+            if deceleration < -_KICKED:
+                self._rolling = model.switch_share * speed
+            elif deceleration < 0.5 * (model.slide_deceleration + model.roll_deceleration):
+                self._rolling = speed
+            elif self._rolling >= speed:
+                self._rolling = _GUESS * speed
+        self._time, self._speed = frame.time, speed
+        return min(self._rolling, speed)

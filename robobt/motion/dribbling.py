@@ -1,0 +1,45 @@
+"""How a robot may move without losing the ball from its dribbler."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from robobt.motion.pilot import command, turn_rate
+from robobt.world.command import RobotCommand
+from robobt.world.limits import RobotLimits
+from robobt.world.state import RobotState
+
+MAX_TURN = 2.0
+"""Turning rate that every dribbler of the simulator's presets bears [rad/s]."""
+MAX_ACCELERATION = 1.5
+"""Acceleration that the default dribbler bears while it turns [m/s^2]."""
+TURN_ACCELERATION = 15.0
+"""Change of the turning rate that the default dribbler bears [rad/s^2]."""
+
+
+@lru_cache(maxsize=64)
+def dribbling_limits(
+    max_speed: float = 2.0, max_turn: float = MAX_TURN, max_acceleration: float = MAX_ACCELERATION
+) -> RobotLimits:
+    """Limits for driving with the ball, the same in every direction.
+
+    Args:
+        max_speed: [m/s].
+        max_turn: [rad/s].
+        max_acceleration: [m/s^2].
+    """
+    return RobotLimits(
+        max_speed=max_speed,
+        acceleration=max_acceleration,
+        braking=max_acceleration,
+        max_turn=max_turn,
+        turn_acceleration=TURN_ACCELERATION,
+    )
+
+
+def settle(me: RobotState, period: float) -> RobotCommand:
+    """Come to rest with the ball."""
+    limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.hold_acceleration))
+    still = command(me, 0.0, 0.0, turn_rate(me, me.heading, limits, period), limits, period)
+    still.dribbler = True
+    return still

@@ -1,0 +1,329 @@
+"""Finds the next way-point around robots, ball and defence areas, and drives there.
+
+The plan is made anew every tick and only its first leg is driven. Obstacles are
+circles; a blocked way leaves along the tangent of the first circle on it, on
+the side with the shorter way round. Defence areas are passed by their corners.
+
+Source of the idea and the clearances: RoboBulls' published code (FPPA planner);
+tangents, side choice and moving obstacles are robobt's.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import acos, atan2, cos, hypot, inf, pi, sin, sqrt, tan
+
+from robobt.motion.pilot import drive
+from robobt.world.command import RobotCommand
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+STOP_SPEED = 1.5
+"""Most a robot may drive while the referee has stopped the game [m/s]. Source: the rules."""
+STOP_DISTANCE = 0.5
+"""Distance to the ball while the game is stopped or the opponents restart it [m]. Source: the rules."""
+AREA_DISTANCE = 0.2
+"""Distance to the opponents' defence area while the game is stopped or restarts [m]. Source: the rules."""
+
+ROBOT_GAP = 0.03
+"""Gap to another robot below which a way is blocked [m]."""
+BALL_GAP = 0.01
+"""Gap to an avoided ball below which a way is blocked [m]. Source: RoboBulls' published code."""
+
+_DETOUR = 0.04
+"""How much wider than the blocking circle a detour is, so that the next plan finds it free [m]."""
+_AREA_GAP = 0.02
+_WALL_GAP = 0.02
+_LOOK_AHEAD = 0.4
+"""Longest time an obstacle is moved ahead along its velocity [s]."""
+_CORNER_SLACK = 0.05
+"""How far a way-point may be cut or overshot [m]; decides the speed there."""
+_WIDEST_TURN = 0.9
+
+Circle = tuple[float, float, float]
+
+
+def travel(
+    frame: Frame,
+    me: RobotState,
+    target: Point,
+    heading: float,
+    limits: RobotLimits,
+    *,
+    avoid_robots: bool = True,
+    avoid_ball: bool = False,
+    goalkeeper: bool = False,
+    final_speed: float = 0.0,
+) -> RobotCommand:
+    """:func:`~robobt.motion.pilot.drive` along a way that is free, within the rules.
+
+    The target is first made one that may be driven to (:func:`allowed_target`).
+    While the referee has stopped the game the robot keeps to the speed and, as
+    in the opponents' restarts, to the distance from the ball that the rules ask.
+
+    Args:
+        target: where to [m].
+        heading: where the mouth shall point [rad].
+        limits: how to drive; usually ``me.limits``.
+        avoid_robots, avoid_ball: what must not be touched on the way.
+        goalkeeper: may enter the own defence area.
+        final_speed: speed allowed at the target [m/s].
+    """
+    game = frame.game
+    if game.stopped and limits.max_speed > STOP_SPEED:
+        limits = slowed(limits, STOP_SPEED)
+    goal = allowed_target(frame, me, target, goalkeeper=goalkeeper)
+    if goal != target:
+        final_speed = 0.0
+    point, speed = way_point(
+        frame, me, goal, avoid_robots=avoid_robots, avoid_ball=avoid_ball, goalkeeper=goalkeeper
+    )
+    return drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
+
+
+@lru_cache(maxsize=256)
+def slowed(limits: RobotLimits, max_speed: float) -> RobotLimits:
+    """The same limits with a top speed of at most ``max_speed`` [m/s]."""
+    if limits.max_speed <= max_speed:
+        return limits
+    return limits.model_copy(update={"max_speed": max_speed})
+
+
+def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: bool = False) -> Point:
+    """The point nearest to ``target`` where the robot may stand.
+
+    That is inside the walls, outside the opponents' defence area, outside the
+    own one unless it is the goalkeeper, and far enough from the ball while the
+    referee wants it so.
+    """
+    field = frame.field
+    x, y = target
+    if _keep_off(frame):
+        x, y = _away_from_ball(frame, me, x, y)
+    most_y = field.half_width + field.margin - ROBOT_RADIUS - _WALL_GAP
+    y = min(most_y, max(-most_y, y))
+    # Behind the goal line there is the goal or a strip too narrow to be of use near it.
+    beside_goal = abs(y) > field.goal_width / 2 + ROBOT_RADIUS + _WALL_GAP
+    most_x = field.half_length + (field.margin - ROBOT_RADIUS - _WALL_GAP if beside_goal else 0.0)
+    x = min(most_x, max(-most_x, x))
+    x, y = _expelled(field, x, y, _their_gap(frame))
+    if not goalkeeper:
+        x, y = _expelled(field, -x, y, ROBOT_RADIUS + _AREA_GAP)
+        x = -x
+    return (x, y)
+
+
+def way_point(
+    frame: Frame,
+    me: RobotState,
+    target: Point,
+    *,
+    avoid_robots: bool = True,
+    avoid_ball: bool = False,
+    goalkeeper: bool = False,
+) -> tuple[Point, float]:
+    """The next point of a free way to ``target``, and the speed at which to pass it [m/s].
+
+    The speed is 0 for ``target`` itself. An obstacle that the robot already
+    overlaps, or that ``target`` lies in, blocks only ways that lead deeper into it.
+    """
+    field = frame.field
+    x, y = me.x, me.y
+    their_gap = _their_gap(frame)
+    goal = _around_area(field, x, y, target, their_gap)
+    if not goalkeeper and goal is target:
+        corner = _around_area(field, -x, y, (-target[0], target[1]), ROBOT_RADIUS + _AREA_GAP)
+        if corner != (-target[0], target[1]):
+            goal = (-corner[0], corner[1])
+    corner_first = goal != target
+    circles = _circles(frame, me, goal, avoid_robots, avoid_ball)
+    first = _first_hit(x, y, goal[0], goal[1], circles, not corner_first) if circles else None
+    if first is None:
+        return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
+    acceleration = min(me.limits.acceleration, me.limits.lateral_acceleration)
+    best = (goal, 0.0)
+    least = inf
+    speed = max(1.0, hypot(me.vx, me.vy))
+    for side in (1.0, -1.0):
+        point, cost, arc = _detour(x, y, goal, first, side, circles, 4)
+        px, py = point
+        gap = hypot(px - x, py - y)
+        if gap > 0.0:
+            # Keep to the side one is already driving to.
+            cost -= 0.15 * (me.vx * (px - x) + me.vy * (py - y)) / (gap * speed)
+        if not _open(field, px, py, their_gap, goalkeeper):
+            cost += 10.0
+        if cost < least:
+            bend = 1.0 / cos(min(arc, 2.8) / 2.0) - 1.0
+            passing = sqrt(acceleration * max(first[2], _CORNER_SLACK / max(bend, 1e-3)))
+            best, least = (point, passing), cost
+    return best
+
+
+def _keep_off(frame: Frame) -> bool:
+    game = frame.game
+    return game.stopped or (game.restart is not None and game.restart_team is not frame.team)
+
+
+def _their_gap(frame: Frame) -> float:
+    game = frame.game
+    extra = AREA_DISTANCE if game.stopped or game.restart is not None else _AREA_GAP
+    return ROBOT_RADIUS + extra
+
+
+def _away_from_ball(frame: Frame, me: RobotState, x: float, y: float) -> Point:
+    ball = frame.ball
+    keep = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS
+    dx, dy = x - ball.x, y - ball.y
+    gap = hypot(dx, dy)
+    if gap >= keep:
+        return (x, y)
+    if gap < 1e-3:
+        dx, dy = me.x - ball.x, me.y - ball.y
+        gap = hypot(dx, dy)
+        if gap < 1e-3:
+            dx, dy, gap = -1.0, 0.0, 1.0
+    return (ball.x + dx * keep / gap, ball.y + dy * keep / gap)
+
+
+def _expelled(field: FieldGeometry, x: float, y: float, gap: float) -> Point:
+    """(x, y) moved out of the defence area at +x, grown by ``gap``, over its nearest edge."""
+    front = field.half_length - field.defense_depth - gap
+    side = field.defense_width / 2 + gap
+    if x <= front or abs(y) >= side:
+        return (x, y)
+    if x - front <= side - abs(y):
+        return (front, y)
+    return (x, side if y >= 0.0 else -side)
+
+
+def _around_area(field: FieldGeometry, x: float, y: float, target: Point, gap: float) -> Point:
+    """``target``, or the corner to go to first when the defence area at +x is in the way."""
+    gx, gy = target
+    front = field.half_length - field.defense_depth - gap
+    if x <= front and gx <= front:
+        return target
+    side = field.defense_width / 2 + gap
+    if x > front and abs(y) < side:
+        return target
+    # The part of the way beyond the front edge, from (., ya) to (., yb).
+    ya, yb = y, gy
+    if x <= front:
+        ya = y + (gy - y) * (front - x) / (gx - x)
+    elif gx <= front:
+        yb = y + (gy - y) * (front - x) / (gx - x)
+    if max(ya, yb) <= -side or min(ya, yb) >= side:
+        return target
+    if x > front:
+        return (front - _AREA_GAP, side + _AREA_GAP if y > 0.0 else -side - _AREA_GAP)
+    return (front - _AREA_GAP, side + _AREA_GAP if gy > 0.0 else -side - _AREA_GAP)
+
+
+def _open(field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper: bool) -> bool:
+    border = field.margin - ROBOT_RADIUS
+    if not field.contains(x, y, border) or field.in_their_defense(x, y, their_gap - _AREA_GAP):
+        return False
+    return goalkeeper or not field.in_our_defense(x, y, ROBOT_RADIUS)
+
+
+def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoid_ball: bool) -> list[Circle]:
+    """The obstacles near enough to matter, each where it will be when the robot gets there."""
+    x, y = me.x, me.y
+    reach = hypot(goal[0] - x, goal[1] - y) + 1.0
+    pace = 1.0 / max(1.0, hypot(me.vx, me.vy))
+    circles: list[Circle] = []
+    if avoid_robots:
+        radius = 2.0 * ROBOT_RADIUS + ROBOT_GAP
+        number = me.id
+        for robot in frame.own:
+            if robot.id != number:
+                ox, oy = robot.x, robot.y
+                gap = hypot(ox - x, oy - y)
+                if gap < reach:
+                    ahead = min(_LOOK_AHEAD, gap * pace)
+                    circles.append((ox + robot.vx * ahead, oy + robot.vy * ahead, radius))
+        for robot in frame.opponents:
+            ox, oy = robot.x, robot.y
+            gap = hypot(ox - x, oy - y)
+            if gap < reach:
+                ahead = min(_LOOK_AHEAD, gap * pace)
+                circles.append((ox + robot.vx * ahead, oy + robot.vy * ahead, radius))
+    keep_off = _keep_off(frame)
+    if avoid_ball or keep_off:
+        ball = frame.ball
+        ahead = min(_LOOK_AHEAD, hypot(ball.x - x, ball.y - y) * pace)
+        radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else BALL_GAP)
+        circles.append((ball.x + ball.vx * ahead, ball.y + ball.vy * ahead, radius))
+    return circles
+
+
+def _first_hit(
+    x: float, y: float, gx: float, gy: float, circles: list[Circle], goal_counts: bool
+) -> Circle | None:
+    """The circle that the segment enters first, shrunk to leave out the segment's ends."""
+    dx, dy = gx - x, gy - y
+    length = hypot(dx, dy)
+    if length < 1e-6:
+        return None
+    ux, uy = dx / length, dy / length
+    nearest = inf
+    hit: Circle | None = None
+    for cx, cy, radius in circles:
+        ox, oy = cx - x, cy - y
+        ahead = ox * ux + oy * uy
+        if ahead <= 0.0 or ahead >= length + radius:
+            continue
+        across = ox * uy - oy * ux
+        if across >= radius or across <= -radius:
+            continue
+        start = hypot(ox, oy)
+        if start < radius:
+            radius = start * 0.999
+        if goal_counts:
+            end = hypot(cx - gx, cy - gy)
+            if end < radius:
+                radius = end * 0.999
+        half_chord = radius * radius - across * across
+        if half_chord <= 0.0:
+            continue
+        entry = ahead - sqrt(half_chord)
+        if entry < length and entry < nearest:
+            nearest = entry
+            hit = (cx, cy, radius)
+    return hit
+
+
+def _detour(
+    x: float, y: float, goal: Point, circle: Circle, side: float, circles: list[Circle], depth: int
+) -> tuple[Point, float, float]:
+    """The first way-point round ``circle`` on one side (1 leaves it to the right, -1 to the left).
+
+    Returns:
+        the point where the tangents from start and goal meet, the length of the
+        way with a fine for what else is in it, and the angle turned there.
+    """
+    cx, cy, radius = circle
+    wide = radius + _DETOUR
+    sx, sy = x - cx, y - cy
+    gx, gy = goal[0] - cx, goal[1] - cy
+    start, end = hypot(sx, sy), hypot(gx, gy)
+    near, far = min(wide, start), min(wide, end)
+    turned = (atan2(sy, sx) - atan2(gy, gx)) * side % (2.0 * pi)
+    to_tangent = acos(near / start) if start > 0.0 else 0.0
+    arc = max(0.0, turned - to_tangent - (acos(far / end) if end > 0.0 else 0.0))
+    leg = sqrt(max(0.0, start * start - near * near))
+    cost = leg + wide * arc + sqrt(max(0.0, end * end - far * far))
+    tangent = atan2(-sy, -sx) + side * (pi / 2.0 - to_tangent)
+    reach = leg + near * tan(min(arc / 2.0, _WIDEST_TURN)) + 0.01
+    px, py = x + reach * cos(tangent), y + reach * sin(tangent)
+    if depth > 0:
+        others = [other for other in circles if other[0] != cx or other[1] != cy]
+        blocking = _first_hit(x, y, px, py, others, False)
+        if blocking is not None:
+            point, extra, bend = _detour(x, y, (px, py), blocking, side, others, depth - 1)
+            return (point, cost + extra - reach + 0.1, arc + bend)
+        if _first_hit(px, py, goal[0], goal[1], others, True) is not None:
+            cost += 0.2
+    return ((px, py), cost, arc)

@@ -1,0 +1,229 @@
+"""Shots spread evenly over range, angle and goalkeeper offset, at any point of the goal line.
+
+The shots of an attacker that picks them leave out what it would not dare. Here
+trial i is the i-th point of a low-discrepancy sequence over the scene, so that
+any number of trials in a row covers it evenly, close targets and goalkeepers on
+the line included.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from math import atan2, cos, hypot, pi, sin
+from typing import Any, Literal
+
+import numpy as np
+
+from robobt.match.runner import trial_seed
+from robobt.match.scenario.placing import HELD_DISTANCE
+from robobt.match.scenario.scenario import Robots, RobotSetup, Scenario, load_scenario
+from robobt.match.scenario.starts import RobotStart
+from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, CollectionSettings
+from robobt.skills.aim.raters.goal_line import POST_GAP
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point, direction
+from robobt.world.state import ROBOT_RADIUS
+
+FARTHEST = 4.8
+"""Ball to goal centre [m]; the paper's shots reach to 4.6 m."""
+
+WIDEST = 1.3
+"""Bearing of the ball off the straight way out of the goal [rad]."""
+
+OFFSET = 0.7
+"""Largest distance at the start of a goalkeeper from the line of a shot taken at once [m]."""
+
+_EDGE = 0.15
+_GAP = 0.35
+_TURN = 0.8
+_AT_ONCE = 0.6
+"""Share of the standing attackers that need not turn first."""
+_OUT = (ROBOT_RADIUS, 0.7)
+_TRAVEL = (0.3, 0.7)
+_SPEEDS = (1.0, 2.0)
+_TOLERANCES = (0.005, 0.03)
+
+
+def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
+    """The set-up of one trial; it depends on the settings and the trial's number alone."""
+    seed = trial_seed(settings.seed, trial)
+    rng = np.random.default_rng([seed, 1])
+    kinds: Sequence[Literal["motion", "still"]] = (
+        ("motion", "still") if settings.scenario == "both" else (settings.scenario,)
+    )
+    kind = kinds[trial % len(kinds)]
+    even = _even_point(settings.seed, trial // len(kinds))
+    variant = "still" if kind == "still" else ("mid_range", "close_range")[trial // len(kinds) % 2]
+    base = _base(kind, _opponents(settings, trial))
+    field = base.field
+    ball = _ball(field, variant, even[0], even[1])
+    usable = field.goal_width / 2.0 - POST_GAP
+    target = (field.half_length, (2.0 * even[4] - 1.0) * usable)
+    start, turn, at_once = ball, _TURN * (2.0 * even[5] - 1.0), rng.random() < _AT_ONCE
+    if kind == "motion":
+        start = _before(field, ball, rng)
+        heading = direction(start, ball) + 0.3 * turn
+    else:
+        heading = direction(ball, target) + (0.02 * turn if at_once else turn)
+    # While the attacker turns or comes, the goalkeeper moves to the line; it starts the farther off.
+    widest = OFFSET if kind == "still" and at_once else 2.0 * OFFSET
+    keeper = _keeper(field, ball, target, widest * (2.0 * even[2] - 1.0), even[3])
+    shooter = (start[0] - HELD_DISTANCE * cos(heading), start[1] - HELD_DISTANCE * sin(heading))
+    speed = (0.5, 1.0)[int(rng.integers(2))]
+    params: dict[str, Any] = {
+        "target_y": target[1],
+        "place_x": ball[0],
+        "place_y": ball[1],
+        "dribble_speed": float(rng.uniform(*_SPEEDS)),
+        "tolerance": float(rng.uniform(*_TOLERANCES)),
+        "shot_speed": SHOT_SPEED,
+    }
+    blue, yellow = base.robots.blue[0], base.robots.yellow
+    taken = [shooter, start, keeper]
+    opponents = [_moved(yellow[0], keeper, direction(keeper, start), flip=True, speed=speed)]
+    for setup in yellow[1:]:
+        place = _blocker(field, ball, target, taken, rng)
+        taken.append(place)
+        opponents.append(_moved(setup, place, direction(place, start), flip=True))
+    robots = base.robots.model_copy(
+        update={
+            "blue": (_moved(blue, shooter, heading).model_copy(update={"params": params}),),
+            "yellow": tuple(opponents),
+        }
+    )
+    labels = {
+        "scenario": kind,
+        "variant": variant,
+        "seed": settings.seed,
+        "tolerance": 0.0,
+        "goalkeeper_speed": speed,
+    }
+    return Attempt(base.model_copy(update={"robots": robots}), seed, labels)
+
+
+def _opponents(settings: CollectionSettings, trial: int) -> int:
+    """How many opponents: the goalkeeper alone in every other pair of trials, else up to as many as asked."""
+    more = settings.opponents - 1
+    group = trial // 4
+    return 1 if more == 0 or group % 2 == 0 else 2 + group // 2 % more
+
+
+_DIMENSIONS = 6
+
+
+@lru_cache(maxsize=8)
+def _sequence(
+    seed: int,
+) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
+    # The root of x^(d + 1) = x + 1, whose powers make the most even additive sequence known.
+    root = 1.5
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (_DIMENSIONS + 1))
+    steps = root ** -np.arange(1.0, _DIMENSIONS + 1)
+    return np.random.default_rng([seed, 2]).random(_DIMENSIONS), steps
+
+
+def _even_point(seed: int, index: int) -> list[float]:
+    """Point ``index`` of a sequence that fills the unit cube evenly.
+
+    Source: Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
+    """
+    start, steps = _sequence(seed)
+    point: list[float] = ((start + (index + 1) * steps) % 1.0).tolist()
+    return point
+
+
+@lru_cache(maxsize=16)
+def _base(kind: str, opponents: int) -> Scenario:
+    scenario = load_scenario(f"collect_shots_{kind}")
+    keeper = scenario.robots.yellow[0]
+    defenders = [
+        RobotSetup(
+            number=number,
+            play="defender",
+            params={"place": number - 1, "size": opponents - 1},
+            start=RobotStart(position=(-2.0, -2.0 + number * 0.5), heading=0.0),
+        )
+        for number in range(1, opponents)
+    ]
+    robots = Robots(blue=scenario.robots.blue, yellow=(keeper, *defenders))
+    return scenario.model_copy(update={"robots": robots})
+
+
+def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Point:
+    """Where the ball shall be kicked: even in range and bearing, outside the defence area."""
+    bearing = WIDEST * (2.0 * angle - 1.0)
+    away, aside = cos(bearing), abs(sin(bearing))
+    most = min(FARTHEST, (field.half_width - 0.2) / aside if aside > 0.0 else FARTHEST)
+    depth = field.defense_depth + _EDGE
+    side = field.defense_width / 2.0 + _EDGE
+    least = min(depth / away if away > 0.0 else depth, side / aside if aside > 0.0 else FARTHEST)
+    least = min(least, most)
+    if variant == "mid_range":
+        least = min(max(least, CLOSE_RANGE), most)
+    elif variant == "close_range":
+        most = max(least, min(most, CLOSE_RANGE))
+    reach = least + range_ * (most - least)
+    return (field.half_length - reach * away, reach * sin(bearing))
+
+
+def _keeper(field: FieldGeometry, ball: Point, target: Point, offset: float, out: float) -> Point:
+    """A goalkeeper beside the line of the shot by ``offset``, ``out`` of the way out of its goal."""
+    x = field.half_length - (_OUT[0] + out * (_OUT[1] - _OUT[0]))
+    beside = offset
+    aim = direction(ball, target)
+    along = (x - ball[0]) / cos(aim) if cos(aim) > 0.05 else hypot(target[0] - ball[0], target[1] - ball[1])
+    place = [ball[0] + along * cos(aim) - beside * sin(aim), ball[1] + along * sin(aim) + beside * cos(aim)]
+    reach = field.defense_width / 2.0 - ROBOT_RADIUS
+    place[0] = min(field.half_length - 0.02, max(field.half_length - field.defense_depth, place[0]))
+    place[1] = min(reach, max(-reach, place[1]))
+    gap = hypot(place[0] - ball[0], place[1] - ball[1])
+    if gap < _GAP:
+        # Straight towards the goal, out of the ball's way.
+        home = direction((place[0], place[1]), field.their_goal)
+        place = [place[0] + (_GAP - gap) * cos(home), place[1] + (_GAP - gap) * sin(home)]
+    return (place[0], place[1])
+
+
+def _before(field: FieldGeometry, ball: Point, rng: np.random.Generator) -> Point:
+    """Where the attacker comes from: some way farther out, from any side of that."""
+    outward = direction(field.their_goal, ball)
+    travel = float(rng.uniform(*_TRAVEL))
+    bearing = outward + float(rng.uniform(-0.5 * pi, 0.5 * pi))
+    edge = field.half_width - 0.2
+    y = min(edge, max(-edge, ball[1] + travel * sin(bearing)))
+    return (min(field.half_length - 0.3, ball[0] + travel * cos(bearing)), y)
+
+
+def _blocker(
+    field: FieldGeometry, ball: Point, target: Point, taken: list[Point], rng: np.random.Generator
+) -> Point:
+    """A place for one more opponent, half of them near the line of the shot."""
+    while True:
+        share, aside = float(rng.uniform(0.1, 0.95)), float(rng.normal(0.0, 0.4))
+        x = ball[0] + share * (target[0] - ball[0])
+        y = ball[1] + share * (target[1] - ball[1])
+        if rng.random() < 0.5:
+            aim = direction(ball, target)
+            x, y = x - aside * sin(aim), y + aside * cos(aim)
+        else:
+            x = float(rng.uniform(0.0, field.half_length - field.defense_depth))
+            y = float(rng.uniform(-field.half_width + 0.2, field.half_width - 0.2))
+        inside = x > field.half_length - field.defense_depth - ROBOT_RADIUS and (
+            abs(y) < field.defense_width / 2.0 + ROBOT_RADIUS
+        )
+        on_field = x < field.half_length - 0.1 and abs(y) < field.half_width - 0.1
+        if on_field and not inside and all(hypot(x - a, y - b) > 0.25 for a, b in taken):
+            return (x, y)
+
+
+def _moved(
+    setup: RobotSetup, place: Point, heading: float, *, flip: bool = False, speed: float | None = None
+) -> RobotSetup:
+    """The robot started elsewhere; a start is in the own team's view, so yellow's is turned round."""
+    x, y = (-place[0], -place[1]) if flip else place
+    turned = atan2(sin(heading + pi), cos(heading + pi)) if flip else atan2(sin(heading), cos(heading))
+    start = setup.start.model_copy(update={"position": (x, y), "heading": turned})
+    params = setup.params if speed is None else {**setup.params, "speed": speed}
+    return setup.model_copy(update={"start": start, "params": params})

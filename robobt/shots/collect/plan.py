@@ -1,0 +1,60 @@
+"""What is asked of a collection of shots, and the set-up of each of its trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robobt.match.scenario.scenario import MAX_SEED, Scenario
+
+MID_RANGE, CLOSE_RANGE = 3.5, 2.5
+"""From how far the attacker on the move shoots in its two variants: ball to goal centre at most [m].
+
+Half of the paper's shots on the move were taken from within 3.35 m.
+"""
+
+SHOT_SPEED = 7.5
+"""What RoboBulls sends for a shot [m/s]."""
+
+
+Section = tuple[tuple[float, float], tuple[float, float]]
+"""A part of the field: x and y, each from and to [m]."""
+
+
+class CollectionSettings(BaseModel):
+    """What a collection is made of: the same settings give the same shots."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    scenario: Literal["motion", "still", "both"] = Field(
+        "both", description="how the attacker comes to shoot"
+    )
+    protocol: Literal["balanced", "paper"] = Field(
+        "balanced",
+        description="balanced: over range, angle and goalkeeper offset, at any point of the goal line; "
+        "paper: the shots that Attack Main takes, in the numbers of the paper",
+    )
+    seed: int = Field(1, ge=0, le=MAX_SEED, description="what every trial's randomness follows from")
+    opponents: int = Field(
+        1, ge=1, le=6, description="most opponents on the field, the goalkeeper among them"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One trial of a collection.
+
+    Attributes:
+        scenario: what is played.
+        seed: of the match.
+        labels: columns of its row that are known beforehand.
+        section: x and y, from and to, that the attacker has to shoot from [m]; None is anywhere.
+    """
+
+    scenario: Scenario
+    seed: int
+    labels: Mapping[str, Any]
+    section: Section | None = None

@@ -1,0 +1,170 @@
+"""Sees a shot as it is taken: a world that writes down what was there when the kick went out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan2, cos, hypot, sin
+from typing import Any
+
+from robobt.match.ends import Outcome
+from robobt.match.loop import Match, WorldFactory
+from robobt.match.scenario.scenario import Scenario
+from robobt.shots.collect.plan import Attempt, Section
+from robobt.skills.store import Shot, Store
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import distance, wrap_angle
+from robobt.world.protocol import Placement, World
+from robobt.world.state import Frame, RobotId, RobotState
+
+_LEFT_SHARE = 0.5
+"""A ball that leaves with this share of the kick's speed has been kicked."""
+
+_OUTCOMES = {
+    Outcome.GOAL_BLUE: "goal",
+    Outcome.SAVED: "saved",
+    Outcome.OUT: "wide",
+    Outcome.REST: "stopped",
+}
+
+
+class WatchedWorld:
+    """Passes everything on to a world and keeps the last shot of one blue robot.
+
+    Args:
+        world: where it is played.
+        shooter: whose shots.
+
+    Attributes:
+        store: the shooter's store; it knows the target.
+        shot: the last shot so far, columns by name, None before the first.
+    """
+
+    def __init__(self, world: World, shooter: RobotId) -> None:
+        self._world, self._shooter = world, shooter
+        self.store: Store | None = None
+        self.shot: dict[str, Any] | None = None
+
+    def reset(self, placement: Placement, seed: int) -> None:
+        """See :class:`World`."""
+        self._world.reset(placement, seed)
+
+    def observe(self) -> Frame:
+        """See :class:`World`."""
+        return self._world.observe()
+
+    def truth(self) -> Frame:
+        """See :class:`World`."""
+        return self._world.truth()
+
+    def place_ball(self, x: float, y: float) -> None:
+        """See :class:`World`."""
+        self._world.place_ball(x, y)
+
+    def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """Pass the commands on, and look whether one of them was the kick."""
+        order = commands.get(self._shooter)
+        if order is None or order.kick_speed <= 0.0:
+            self._world.act(commands)
+            return
+        before = self._world.truth()
+        aimed = None if self.store is None else self.store.shot
+        self._world.act(commands)
+        me = before.robot(self._shooter.number)
+        if aimed is None or me is None:
+            return
+        after = self._world.truth()
+        away = _speed_away(me, after) - _speed_away(me, before)
+        if away > _LEFT_SHARE * order.kick_speed or _stopped_at_once(before, after, self._shooter):
+            self.shot = _scene(before, after, me, aimed, self._shooter)
+
+
+def take_shot(
+    attempt: Attempt, world_factory: WorldFactory, trial: int = 0
+) -> tuple[dict[str, Any] | None, float]:
+    """Play one trial with one attacker, blue's first robot.
+
+    Returns:
+        Its last shot, as recorded columns of the table of shots, None when it took
+        none; and how long the trial lasted [s].
+    """
+    shooter = next(iter(attempt.scenario.robots))[0]
+    watched: list[WatchedWorld] = []
+
+    def factory(played: Scenario) -> World:
+        watched.append(WatchedWorld(world_factory(played), shooter))
+        return watched[0]
+
+    with Match(attempt.scenario, attempt.seed, factory, trial=trial) as match:
+        world = watched[0]
+        world.store = next(player.store for player in match.players if player.robot == shooter)
+        while match.tick():
+            if attempt.section is not None and world.shot is None and _outside(attempt.section, world.store):
+                break
+        result = match.result()
+        touched = world.truth().last_touch
+    shot = world.shot
+    if shot is not None:
+        outcome = _OUTCOMES.get(Outcome(result.outcome), result.outcome)
+        if outcome in ("wide", "stopped") and touched is not None and touched.team is not shooter.team:
+            outcome = "blocked"
+        shot.update(attempt.labels)
+        shot["outcome"], shot["success"] = outcome, int(outcome == "goal")
+        shot["trial"] = trial
+    return shot, result.time
+
+
+def _outside(section: Section, store: Store) -> bool:
+    (x0, x1), (y0, y1) = section
+    ball = store.frame.ball
+    return not (x0 <= ball.x <= x1 and y0 <= ball.y <= y1)
+
+
+def _scene(before: Frame, after: Frame, me: RobotState, shot: Shot, shooter: RobotId) -> dict[str, Any]:
+    ball, mates, opponents = before.ball, before.teammates(me.id), before.opponents
+    row: dict[str, Any] = {
+        "time": before.time,
+        "robot_x": me.x,
+        "robot_y": me.y,
+        "robot_heading": wrap_angle(me.heading),
+        "robot_field_vx": me.vx,
+        "robot_field_vy": me.vy,
+        "robot_omega": me.omega,
+        "ball_x": ball.x,
+        "ball_y": ball.y,
+        "ball_vx": ball.vx,
+        "ball_vy": ball.vy,
+        "target_x": shot.target[0],
+        "target_y": shot.target[1],
+        "opponents_x": [robot.x for robot in opponents],
+        "opponents_y": [robot.y for robot in opponents],
+        "opponents_heading": [wrap_angle(robot.heading) for robot in opponents],
+        "opponents_vx": [robot.vx for robot in opponents],
+        "opponents_vy": [robot.vy for robot in opponents],
+        "opponents_omega": [robot.omega for robot in opponents],
+        "mates_x": [robot.x for robot in mates],
+        "mates_y": [robot.y for robot in mates],
+        "mates_vx": [robot.vx for robot in mates],
+        "mates_vy": [robot.vy for robot in mates],
+    }
+    if after.last_touch == shooter:
+        # What the kick did is seen while nobody else has touched the ball.
+        aim = atan2(shot.target[1] - ball.y, shot.target[0] - ball.x)
+        row["kick_speed"] = after.ball.speed
+        row["kick_error"] = wrap_angle(atan2(after.ball.vy, after.ball.vx) - aim)
+    return row
+
+
+def _speed_away(me: RobotState, frame: Frame) -> float:
+    return frame.ball.vx * cos(me.heading) + frame.ball.vy * sin(me.heading)
+
+
+def _stopped_at_once(before: Frame, after: Frame, shooter: RobotId) -> bool:
+    """Whether somebody stands so near that the kicked ball met him before it was seen."""
+    toucher = after.last_touch
+    return (
+        toucher is not None
+        and toucher != shooter
+        and toucher != before.last_touch
+        and distance(before.ball.position, after.ball.position) > 0.05
+        and hypot(after.ball.vx, after.ball.vy) > 0.0
+    )

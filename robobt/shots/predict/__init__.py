@@ -1,0 +1,1 @@
+"""Shot predictors: training, cross-validation, export."""

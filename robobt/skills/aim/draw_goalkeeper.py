@@ -1,0 +1,94 @@
+"""Lead the opponent's goalkeeper from one side of its goal to the other."""
+
+from __future__ import annotations
+
+from math import inf
+
+from robobt.motion.dribbling import dribbling_limits
+from robobt.motion.pilot import command, turn_rate
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.geometry import direction, wrap_angle
+from robobt.world.state import BALL_RADIUS
+
+
+@skill
+class DrawGoalkeeper(Skill):
+    """Turn with the ball from one post to the other and back, standing still.
+
+    A goalkeeper covers the line that the robot with the ball points along. It can be
+    turned faster than a goalkeeper drives, so that on the way to the other post it is
+    left behind: that is when a rater sees an opening. The swing begins towards the
+    post that is nearer to the robot's heading and turns round once the robot has
+    pointed at a post for ``hold``. FAILURE without the ball, and once ``patience`` is
+    at an end; what interrupts it for less than a second does not restore that.
+
+    Args:
+        patience: longest time to spend [s]; None is any.
+        hold: how long to point at a post, for the goalkeeper to come [s].
+        max_turn: turning rate with the ball [rad/s].
+        inset: how far inside the post it points [m].
+    """
+
+    def __init__(
+        self,
+        *,
+        patience: float | None = None,
+        hold: float = 0.3,
+        max_turn: float = 4.0,
+        inset: float = 0.05,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.patience = patience
+        self.hold = hold
+        self.inset = inset
+        self._limits = dribbling_limits(2.0, max_turn)
+        self._side = 0.0
+        self._there_since = inf
+        self._began = self._last = -inf
+
+    def on_start(self) -> None:
+        """It has yet to point at the post."""
+        self._there_since = inf
+
+    def on_running(self) -> Status:
+        """One period of the swing."""
+        frame, me, ball = self.frame, self.me, self.ball
+        if not has_ball(me, ball):
+            return self.fail("it does not have the ball")
+        if not 0.0 <= frame.time - self._last < _PAUSE:
+            self._began, self._side = frame.time, self._nearer_side()
+        self._last = frame.time
+        if self.patience is not None and frame.time - self._began > self.patience:
+            return self.fail("its patience is at an end")
+        error = wrap_angle(self._aim(self._side) - me.heading)
+        if abs(error) > _POINTS_AT:
+            self._there_since = inf
+        elif self._there_since == inf:
+            self._there_since = frame.time
+        elif frame.time - self._there_since >= self.hold - 1e-9:
+            self._side = -self._side
+            self._there_since = inf
+        omega = turn_rate(me, self._aim(self._side), self._limits, frame.period)
+        self.store.command = command(me, 0.0, 0.0, omega, self._limits, frame.period)
+        self.store.command.dribbler = True
+        return self.run("to the left post" if self._side > 0.0 else "to the right post")
+
+    def _aim(self, side: float) -> float:
+        field = self.frame.field
+        y = side * max(0.0, field.goal_width / 2.0 - BALL_RADIUS - self.inset)
+        return direction(self.me.position, (field.half_length, y))
+
+    def _nearer_side(self) -> float:
+        left = abs(wrap_angle(self._aim(1.0) - self.me.heading))
+        right = abs(wrap_angle(self._aim(-1.0) - self.me.heading))
+        return 1.0 if left <= right else -1.0
+
+
+_PAUSE = 1.0
+"""After so long without it, it begins anew [s]."""
+
+_POINTS_AT = 0.06
+"""So near to the post's direction it points at it [rad]."""

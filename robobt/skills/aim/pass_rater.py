@@ -1,0 +1,163 @@
+"""Judges passes: to whom, where to, how fast."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import exp, hypot, inf
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.skills.aim.raters import RATERS, OpenAngle, ShotRater, make_rater
+from robobt.skills.aim.raters.goal_line import lane_clearances, obstacles
+from robobt.skills.store import Pass
+from robobt.world.geometry import Point, distance
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+_BODY = ROBOT_RADIUS + BALL_RADIUS
+_LANE_SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
+
+
+class PassRater(BaseModel):
+    """Rates a straight pass to every team-mate.
+
+    A mate is aimed at where it comes to rest if it brakes now. It is no receiver
+    while that point is too near, outside the field or in a defence area, or while
+    any robot stands in the lane. The others score
+
+        safety * (shot_weight * shot + (1 - shot_weight) * progress)
+
+    * safety: a sigmoid of the least head start the ball has over any opponent at
+      any point of the lane;
+    * shot: the score of the receiver's own shot from there, at the time it gets the ball;
+    * progress: the way won towards the goal line, from 0 (half a field lost) over
+      0.5 (none) to 1 (half a field won).
+
+    Sources: RoboBulls' published code (bestPassPoint) for the lane; the ideas of
+    Thunderbots' pass cost (product of soft terms, receive speed) and Sumatra's
+    interception rating.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    shot_rater: ShotRater = Field(OpenAngle(), description="judges the receiver's shot")
+    shot_weight: float = Field(0.6, ge=0, le=1, description="of the receiver's shot against progress")
+    receive_speed: float = Field(2.0, gt=0, le=6.5, description="of the ball at the receiver [m/s]")
+    max_speed: float = Field(6.0, gt=0, le=20, description="fastest kick [m/s]")
+    min_distance: float = Field(1.0, ge=0, le=50, description="shortest pass [m]")
+    lane_clearance: float = Field(0.2415, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
+    reaction: float = Field(0.12, ge=0, le=2, description="before an opponent moves to intercept [s]")
+    margin_scale: float = Field(0.4, gt=0, le=10, description="head start that gives a safety of 0.73 [s]")
+    ball: BallModel = Field(DEFAULT_BALL, description="how the ball travels")
+
+    @field_validator("shot_rater", mode="before")
+    @classmethod
+    def _by_name(cls, value: object) -> object:
+        return make_rater(value) if isinstance(value, str) and value in RATERS else value
+
+    def rate_all(self, frame: Frame, me: RobotState) -> list[Pass]:
+        """Every possible pass of ``me`` from where the ball lies, the best first."""
+        origin = frame.ball.position
+        receivers = self._receivers(frame, me)
+        if not receivers:
+            return []
+        lengths = [distance(origin, target) for _, target in receivers]
+        speeds = [min(self.max_speed, self.ball.kick_speed(length, self.receive_speed)) for length in lengths]
+        starts = self.head_starts(frame, [target for _, target in receivers], speeds)
+        passes = []
+        for (mate, target), length, speed, start in zip(receivers, lengths, speeds, starts, strict=True):
+            travel = self.ball.time_to(length, speed)
+            if travel == inf:
+                continue
+            shot = self.shot_rater.rate(frame, target, mate, delay=travel)
+            progress = 0.5 + (target[0] - origin[0]) / frame.field.length
+            worth = self.shot_weight * (shot.score if shot is not None else 0.0)
+            worth += (1.0 - self.shot_weight) * min(1.0, max(0.0, progress))
+            passes.append(Pass(mate.id, target, speed, worth * _sigmoid(start / self.margin_scale)))
+        return sorted(passes, key=_rank)
+
+    def head_starts(self, frame: Frame, targets: Sequence[Point], speeds: Sequence[float]) -> list[float]:
+        """Least time by which the ball of each pass comes before any opponent [s].
+
+        Looked at in five points of the lane; negative where an opponent could be
+        there first. An opponent goes on as it moves for its reaction time and then
+        accelerates straight to the point, which it passes at any speed.
+
+        Args:
+            targets: ends of the passes [m].
+            speeds: their kick speeds [m/s].
+        """
+        if not frame.opponents:
+            return [inf] * len(targets)
+        start = frame.ball.position
+        lanes = []
+        for target, speed in zip(targets, speeds, strict=True):
+            dx, dy = target[0] - start[0], target[1] - start[1]
+            length = hypot(dx, dy)
+            lanes.append(
+                [
+                    (start[0] + share * dx, start[1] + share * dy, self.ball.time_to(share * length, speed))
+                    for share in _LANE_SHARES
+                ]
+            )
+        px, py, arrival = np.array(lanes).transpose(2, 0, 1)[..., None]
+        x, y, vx, vy, acceleration, top = np.array([self._opponent(robot) for robot in frame.opponents]).T
+        dx, dy = px - x, py - y
+        gap = np.sqrt(dx * dx + dy * dy)
+        towards = (dx * vx + dy * vy) / np.maximum(gap, 1e-9)
+        gap = np.maximum(gap - _BODY, 0.0)
+        needed = (np.sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
+        ahead = np.maximum(needed, gap / top) - arrival
+        return [start + self.reaction for start in ahead.min(axis=(1, 2)).tolist()]
+
+    def _opponent(self, robot: RobotState) -> tuple[float, ...]:
+        limits = robot.limits
+        return (
+            robot.x + robot.vx * self.reaction,
+            robot.y + robot.vy * self.reaction,
+            robot.vx,
+            robot.vy,
+            max(limits.acceleration, limits.lateral_acceleration),
+            limits.max_speed,
+        )
+
+    def _receivers(self, frame: Frame, me: RobotState) -> list[tuple[RobotState, Point]]:
+        origin = frame.ball.position
+        mates = frame.teammates(me.id)
+        targets = [resting_point(mate) for mate in mates]
+        able = [
+            index
+            for index, target in enumerate(targets)
+            if _may_receive(frame, target) and distance(origin, target) >= self.min_distance
+        ]
+        if not able:
+            return []
+        gaps = lane_clearances(origin, np.array([targets[index] for index in able]), obstacles(frame, me))
+        # The obstacles begin with the mates in the same order; nobody blocks his own lane.
+        gaps[np.arange(len(able)), able] = inf
+        free = (gaps.min(axis=1) > self.lane_clearance).tolist()
+        return [(mates[index], targets[index]) for index, clear in zip(able, free, strict=True) if clear]
+
+
+def resting_point(robot: RobotState) -> Point:
+    """Where the robot comes to rest if it brakes from now on [m]."""
+    stretch = robot.speed / (2.0 * robot.limits.braking)
+    return (robot.x + stretch * robot.vx, robot.y + stretch * robot.vy)
+
+
+def _may_receive(frame: Frame, target: Point) -> bool:
+    field = frame.field
+    return (
+        field.contains(*target, tolerance=-ROBOT_RADIUS)
+        and not field.in_our_defense(*target, tolerance=ROBOT_RADIUS)
+        and not field.in_their_defense(*target, tolerance=ROBOT_RADIUS)
+    )
+
+
+def _sigmoid(x: float) -> float:
+    return 1.0 / (1.0 + exp(-x)) if x > -700.0 else 0.0
+
+
+def _rank(rated: Pass) -> tuple[float, int]:
+    return (-rated.score, rated.receiver)

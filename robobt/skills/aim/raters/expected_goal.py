@@ -1,0 +1,162 @@
+"""Rates a shot by the calibrated probability that it scores."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from pydantic import Field
+from scipy.special import ndtr
+
+from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
+from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, runs
+from robobt.skills.aim.raters.openings import goal_mouth
+from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.skills.store import Shot
+from robobt.world.features import SCENE_OPPONENTS, SHOT_SCENE, shot_scene
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+
+@RATERS.register("expected_goal")
+class ExpectedGoal(ShotRater):
+    """The probability of a goal for every target point, from the state of everyone at once.
+
+    The predictor sees where all robots are and how they move, in one call for the
+    whole goal line. What it says is multiplied by the chance that a kick with a
+    small error stays between the posts; a point with a robot in its lane has none.
+
+    Every local maximum along the goal line is a shot with that probability as its
+    score; any aim within its tolerance has at least the probability ``threshold``, or
+    ``keep`` of the maximum where that does not reach the threshold. Robots behind the
+    shooter do not count, team-mates ahead of it count as opponents do.
+    """
+
+    model: str = Field("shot_expected", description="predictor of a shot's scene: a shipped model or a file")
+    threshold: float = Field(0.9, ge=0, le=1, description="probability that any aim within the tolerance has")
+    keep: float = Field(0.9, gt=0, le=1, description="share of the best probability that still counts as it")
+    kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
+    spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
+
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
+        """See :meth:`ShotRater.rate_all`."""
+        return self.judge(frame, origin, me, delay=delay)[0]
+
+    def judge(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        *,
+        delay: float = 0.0,  # noqa: ARG002
+    ) -> tuple[list[Shot], Chances | None]:
+        """See :meth:`ShotRater.judge`."""
+        points = goal_candidates(frame.field, self.spacing)
+        chances = self.chances(frame, origin, me, points)
+        if chances is None:
+            return [], None
+        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        half_step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1) / 2.0
+        shots = []
+        for score, region, best in _openings(np.round(chances, 4), self.threshold, self.keep):
+            middle = (float(points[best[0], 1]) + float(points[best[1] - 1, 1])) / 2.0
+            aim = (float(aims[best[0]]) + float(aims[best[1] - 1])) / 2.0
+            # To the nearer end: an aim that is off by the tolerance is still good on either side.
+            near = min(float(aims[region[1] - 1]) - aim, aim - float(aims[region[0]]))
+            shots.append(Shot((frame.field.half_length, middle), near + half_step, score))
+        return best_first(shots, origin, me.heading), (points, chances)
+
+    def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
+        """Probability of a goal for every target point, None where there is no way into the goal.
+
+        Args:
+            points: (T, 2) on the opponent's goal line, from right to left [m].
+
+        Returns:
+            (T,) in [0, 1].
+        """
+        mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
+        if mouth is None:
+            return None
+        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        low, high = mouth
+        chances = ndtr((high - aims) / self.kick_error) - ndtr((low - aims) / self.kick_error)
+        ahead = [robot for robot in frame.others(me.id) if robot.x >= me.x]
+        if ahead:
+            centres = np.array([robot.position for robot in ahead])
+            in_way = lane_clearances(origin, points, centres).min(axis=1) < ROBOT_RADIUS + BALL_RADIUS
+            chances = chances * self._predicted(origin, me, points, ahead)
+            chances[in_way] = 0.0
+        result: FloatArray = chances
+        return result
+
+    def _predicted(
+        self, origin: Point, me: RobotState, points: FloatArray, ahead: list[RobotState]
+    ) -> FloatArray:
+        """What the predictor says, (T,): of more robots than a scene has room for, groups are judged.
+
+        The shooter is taken to point at each target already, with the ball before it:
+        the predictor knows kicks, which go out when it does.
+        """
+        gap = hypot(origin[0] - me.x, origin[1] - me.y)
+        shooter = np.empty((len(points), 6))
+        shooter[:] = (me.x, me.y, 0.0, me.vx, me.vy, 0.0)
+        shooter[:, 2] = np.arctan2(points[:, 1] - me.y, points[:, 0] - me.x)
+        ball = np.empty((len(points), 4))
+        ball[:] = (*origin, me.vx, me.vy)
+        if gap < _HELD:
+            ball[:, 0] = me.x + gap * np.cos(shooter[:, 2])
+            ball[:, 1] = me.y + gap * np.sin(shooter[:, 2])
+        rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead])
+        scenes = [
+            shot_scene(shooter, ball, points, rows[begin : begin + SCENE_OPPONENTS])
+            for begin in range(0, len(rows), SCENE_OPPONENTS)
+        ]
+        answers = shot_predictor(self.model, SHOT_SCENE)(np.concatenate(scenes))
+        predicted: FloatArray = answers.reshape(len(scenes), len(points)).min(axis=0)
+        return predicted
+
+
+_HELD = 0.13
+"""A ball nearer to the robot's centre turns with it [m]."""
+
+_SAME = 0.02
+"""Probabilities that differ by less are one summit."""
+
+
+Run = tuple[int, int]
+"""Neighbouring target points as (first, one past the last)."""
+
+
+def _openings(level: FloatArray, threshold: float, keep: float) -> list[tuple[float, Run, Run]]:
+    """Score, region and summit of each opening along the goal line, the best first.
+
+    A region is what lies around a summit without a gap and reaches ``threshold``, or
+    ``keep`` of a summit that does not reach it itself.
+    """
+    left = level.copy()
+    found: list[tuple[float, Run, Run]] = []
+    while len(left) and (score := float(left.max())) > 0.0:
+        top = int(left.argmax())
+        least = threshold if score >= threshold else keep * score
+        region = _around(level, top, min(least, score))
+        best = _around(level, top, max(least, score - _SAME))
+        begin, end = region
+        lone = (begin == 0 or level[begin - 1] <= score) and (end == len(level) or level[end] <= score)
+        if lone and not (found and _overlap(region, found)):
+            found.append((score, region, best))
+        # Down the slopes on either side: they lead to this summit, not to one of their own.
+        while begin > 0 and level[begin - 1] <= level[begin]:
+            begin -= 1
+        while end < len(level) and level[end] <= level[end - 1]:
+            end += 1
+        left[begin:end] = 0.0
+    return found
+
+
+def _around(level: FloatArray, top: int, least: float) -> Run:
+    return next(run for run in runs(level >= least) if run[0] <= top < run[1])
+
+
+def _overlap(region: Run, found: list[tuple[float, Run, Run]]) -> bool:
+    return any(region[0] < other[1] and other[0] < region[1] for _, other, _ in found)

@@ -1,0 +1,102 @@
+"""Rates a shot by the chance that a kick with a Gaussian error goes in."""
+
+from __future__ import annotations
+
+from math import atan, atan2, hypot
+
+import numpy as np
+from pydantic import Field
+from scipy.special import ndtr
+
+from robobt.skills.aim.raters.base import RATERS, ShotRater, best_first
+from robobt.skills.aim.raters.goal_line import goal_candidates, runs
+from robobt.skills.aim.raters.openings import Interval, goal_mouth
+from robobt.skills.store import Shot
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+
+@RATERS.register("gaussian")
+class Gaussian(ShotRater):
+    """The chance that the kick's direction lies in the goal mouth, less what the robots stop.
+
+    The direction is normal around the aim. A robot stops a ball straight at it
+    surely and one beside it by a Gaussian of the angle between, as wide as
+    ``blocker_width`` looks from the ball. The integral of their product over the
+    mouth is closed. Robots stop the ball independently of each other's existence:
+    what they stop is summed, which underrates a shot at robots in one line.
+
+    Every local maximum over the aim is a shot with that chance as its score and
+    half the angle over which the chance keeps 90 % of it as its tolerance.
+
+    Source: the idea of RoboJackets' historic KickEvaluator and its constants.
+    """
+
+    kick_error: float = Field(0.04, gt=0, le=1, description="standard deviation of the direction [rad]")
+    blocker_width: float = Field(0.3, gt=0, le=5, description="standard deviation of a robot's reach [m]")
+    spacing: float = Field(0.02, ge=0.001, le=1, description="between the target points tried [m]")
+
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002
+        """See :meth:`ShotRater.rate_all`."""
+        mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
+        if mouth is None:
+            return []
+        points = goal_candidates(frame.field, self.spacing)
+        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        chance = self.chances(aims, mouth, self._blockers(frame, origin, me))
+        # Rounded, so that a plateau is one opening and aimed at in its middle.
+        level = np.round(chance, 6)
+        shots = []
+        for first, stop in _plateaus(level):
+            score = float(chance[first:stop].max())
+            near = next(run for run in runs(level >= 0.9 * level[first]) if run[0] <= first < run[1])
+            spread = float(aims[near[1] - 1] - aims[near[0]])
+            step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1)
+            middle = (float(points[first, 1]) + float(points[stop - 1, 1])) / 2.0
+            shots.append(Shot((frame.field.half_length, middle), (spread + step) / 2.0, score))
+        return best_first(shots, origin, me.heading)
+
+    def chances(self, aims: FloatArray, mouth: Interval, blockers: list[tuple[float, float]]) -> FloatArray:
+        """Chance of a goal for every aim.
+
+        Args:
+            aims: (T,) directions [rad].
+            mouth: directions of the posts [rad].
+            blockers: direction and standard deviation of each robot [rad].
+
+        Returns:
+            (T,) in [0, 1].
+        """
+        low, high = mouth
+        error = self.kick_error
+        chance = ndtr((high - aims) / error) - ndtr((low - aims) / error)
+        if blockers:
+            centre, width = np.array(blockers).T[:, None, :]
+            aim = aims[:, None]
+            variance = width * width + error * error
+            # The product of two Gaussians is a Gaussian around this mean with this deviation.
+            mean = (aim * (width * width) + centre * (error * error)) / variance
+            deviation = error * width / np.sqrt(variance)
+            peak = deviation / error * np.exp(np.square(aim - centre) / (-2.0 * variance))
+            stopped = peak * (ndtr((high - mean) / deviation) - ndtr((low - mean) / deviation))
+            chance -= stopped.sum(axis=1)
+        return np.maximum(chance, 0.0)
+
+    def _blockers(self, frame: Frame, origin: Point, me: RobotState) -> list[tuple[float, float]]:
+        goal_x = frame.field.half_length
+        gx, gy = goal_x - origin[0], -origin[1]
+        found = []
+        for robot in frame.others(me.id):
+            dx, dy = robot.x - origin[0], robot.y - origin[1]
+            if dx * gx + dy * gy > 0.0 and robot.x - ROBOT_RADIUS < goal_x:
+                found.append((atan2(dy, dx), atan(self.blocker_width / hypot(dx, dy))))
+        return found
+
+
+def _plateaus(level: FloatArray) -> list[tuple[int, int]]:
+    """Runs of equal positive values above both neighbours, as (first, one past the last)."""
+    edges = [0, *(np.flatnonzero(level[1:] != level[:-1]) + 1).tolist(), len(level)]
+    values = [0.0, *level[edges[:-1]].tolist(), 0.0]
+    return [
+        (edges[i], edges[i + 1]) for i in range(len(edges) - 1) if values[i] < values[i + 1] > values[i + 2]
+    ]

@@ -1,0 +1,85 @@
+"""Rates a shot by the angle that robots leave free, given what they can reach in time."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from pydantic import Field
+
+from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.skills.aim.raters.base import RATERS, ShotRater
+from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_mouth, opening_shots
+from robobt.skills.store import Shot
+from robobt.world.geometry import Point
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+
+
+@RATERS.register("moving_horizon")
+class MovingHorizon(ShotRater):
+    """Each robot hides the angle of the disc it can cover before the ball has passed it.
+
+    A robot's horizon is ``travel_share`` of the ball's time to it and
+    ``delay_share`` of the time until the kick, less its reaction time, between 0
+    and ``longest``. A robot already moving has reacted the more the faster it is.
+    The goalkeeper is a robot like any other.
+
+    Source: the idea and the constants of Sumatra's AngleRangeRater.
+    """
+
+    full_angle: float = Field(0.3, gt=0, le=3, description="free angle that scores 1 [rad]")
+    goal_share: float = Field(0.95, gt=0, le=1, description="share of the goal's width aimed at")
+    kick_speed: float = Field(6.5, gt=0, le=20, description="speed of the shot [m/s]")
+    travel_share: float = Field(0.9, ge=0, le=2, description="share of the ball's travel time to use")
+    delay_share: float = Field(0.1, ge=0, le=2, description="share of the time until the kick to use")
+    reaction: float = Field(0.12, ge=0, le=2, description="of a robot at rest [s]")
+    reacting_speed: float = Field(1.5, gt=0, le=20, description="from this speed on a robot needs none [m/s]")
+    longest: float = Field(2.0, ge=0, le=10, description="horizon at most [s]")
+    ball: BallModel = Field(DEFAULT_BALL, description="how the ball travels")
+
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
+        """See :meth:`ShotRater.rate_all`."""
+        field = frame.field
+        mouth = goal_mouth(field, origin, field.goal_width * (1.0 - self.goal_share) / 2.0)
+        if mouth is None:
+            return []
+        shadows = []
+        for robot in frame.others(me.id):
+            shadow = disc_shadow(field, origin, *self.reach(robot, origin, delay))
+            if shadow is not None:
+                shadows.append(shadow)
+        return opening_shots(field, origin, me.heading, free_intervals(mouth, shadows), self.full_angle)
+
+    def reach(self, robot: RobotState, origin: Point, delay: float = 0.0) -> tuple[Point, float]:
+        """Centre and radius [m] of the disc in which ``robot`` can meet a ball kicked from ``origin``."""
+        speed = hypot(robot.vx, robot.vy)
+        travel = self.ball.time_to(hypot(robot.x - origin[0], robot.y - origin[1]), self.kick_speed)
+        reaction = self.reaction * (1.0 - min(1.0, speed / self.reacting_speed))
+        horizon = self.travel_share * travel + self.delay_share * delay - reaction
+        body = ROBOT_RADIUS + BALL_RADIUS
+        if horizon <= 0.0:
+            return ((robot.x, robot.y), body)
+        ahead, back = extent(speed, min(horizon, self.longest), robot.limits)
+        shift = (ahead + back) / (2.0 * speed) if speed > 0.0 else 0.0
+        centre = (robot.x + shift * robot.vx, robot.y + shift * robot.vy)
+        return (centre, (ahead - back) / 2.0 + body)
+
+
+def extent(speed: float, time: float, limits: RobotLimits) -> tuple[float, float]:
+    """How far along its motion a robot can be at most and at least after ``time`` [m].
+
+    Full acceleration all the time, or full braking and then full acceleration back.
+    """
+    acceleration = max(limits.acceleration, limits.lateral_acceleration)
+    braking = max(limits.braking, limits.lateral_braking)
+    ahead = _accelerate(speed, time, acceleration, max(limits.max_speed, speed))
+    stop = speed / braking
+    if time <= stop:
+        return (ahead, speed * time - braking * time * time / 2.0)
+    back = _accelerate(0.0, time - stop, acceleration, limits.max_speed)
+    return (ahead, speed * stop / 2.0 - back)
+
+
+def _accelerate(speed: float, time: float, acceleration: float, top: float) -> float:
+    rising = min(time, (top - speed) / acceleration)
+    return speed * rising + acceleration * rising * rising / 2.0 + top * (time - rising)

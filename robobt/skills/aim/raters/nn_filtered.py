@@ -1,0 +1,84 @@
+"""The paper's rater with a learned filter: clear target points that the network lets pass."""
+
+from __future__ import annotations
+
+from math import atan2
+
+import numpy as np
+from pydantic import Field
+
+from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
+from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, runs
+from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.skills.store import Shot
+from robobt.world.features import SHOT, shot_features
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import Frame, RobotState
+
+
+@RATERS.register("nn_filtered")
+class NNFiltered(ShotRater):
+    """A clear target point is good when the predictor gives it a chance past each robot by itself.
+
+    As :class:`~robobt.skills.aim.raters.SegmentClearance`, but robots behind the ball are
+    left out, and a point counts only when for every robot the predicted chance is at
+    least ``threshold``; a robot that is behind the shooter is not asked about. All
+    points and robots go through the network in one call.
+
+    Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
+    AttackNN, with its tolerance and threshold.
+    """
+
+    model: str = Field("shot_nn", description="predictor of the features of Eq. 4: a shipped model or a file")
+    threshold: float = Field(0.5, ge=0, le=1, description="least chance that a robot has to leave")
+    tolerance: float = Field(0.3645, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
+    spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
+
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
+        """See :meth:`ShotRater.rate_all`."""
+        return self.judge(frame, origin, me, delay=delay)[0]
+
+    def judge(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        *,
+        delay: float = 0.0,  # noqa: ARG002
+    ) -> tuple[list[Shot], Chances | None]:
+        """See :meth:`ShotRater.judge`; a point that is not clear has no chance."""
+        goal_x = frame.field.half_length
+        if origin[0] >= goal_x:
+            return [], None
+        points = goal_candidates(frame.field, self.spacing)
+        good = np.all(lane_clearances(origin, points, obstacles(frame, me)) > self.tolerance, axis=1)
+        chances = np.zeros(len(points))
+        if good.any():
+            chances[good] = self.chances(frame, me, points[good])
+            good &= chances >= self.threshold
+        shots = []
+        for first, stop in runs(good):
+            low, high = float(points[first, 1]), float(points[stop - 1, 1])
+            reach = goal_x - origin[0]
+            margin = self.spacing / 2.0
+            angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
+            shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
+        return best_first(shots, origin, me.heading), (points, chances)
+
+    def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
+        """The least chance that any robot leaves each target point.
+
+        Args:
+            points: (T, 2) [m].
+
+        Returns:
+            (T,) in [0, 1]; 1 where nobody is ahead of the shooter.
+        """
+        others = obstacles(frame, me)
+        ahead = others[others[:, 0] >= me.x]
+        if not len(ahead):
+            return np.ones(len(points))
+        features = shot_features(me.position, points[:, None, :], ahead[None, :, :])
+        answers = shot_predictor(self.model, SHOT)(features.reshape(-1, SHOT.size))
+        chances: FloatArray = answers.reshape(len(points), len(ahead)).min(axis=1)
+        return chances

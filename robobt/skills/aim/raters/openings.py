@@ -1,0 +1,75 @@
+"""The goal mouth as an interval of directions, and what robots take away from it."""
+
+from __future__ import annotations
+
+from math import asin, atan2, hypot, pi, tan
+
+from robobt.skills.aim.raters.base import best_first
+from robobt.skills.store import Shot
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point
+
+Interval = tuple[float, float]
+
+_SLIVER = 1e-9
+
+
+def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | None:
+    """Directions from ``origin`` to the right and the left post of the opponent's goal [rad].
+
+    None from a point on or behind the goal line.
+
+    Args:
+        inset: what either post takes off the goal [m].
+    """
+    reach = field.half_length - origin[0]
+    half = field.goal_width / 2.0 - inset
+    if reach <= 0.0 or half <= 0.0:
+        return None
+    return (atan2(-half - origin[1], reach), atan2(half - origin[1], reach))
+
+
+def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: float) -> Interval | None:
+    """Directions that a disc hides from ``origin`` [rad], not wrapped.
+
+    A disc that reaches over the origin hides the half plane on its side. One
+    that lies wholly behind the goal line hides nothing (None).
+    """
+    if centre[0] - radius >= field.half_length:
+        return None
+    dx, dy = centre[0] - origin[0], centre[1] - origin[1]
+    gap = hypot(dx, dy)
+    middle = atan2(dy, dx)
+    half = asin(radius / gap) if gap > radius else pi / 2.0
+    return (middle - half, middle + half)
+
+
+def free_intervals(mouth: Interval, shadows: list[Interval]) -> list[Interval]:
+    """What the shadows leave of the mouth, in order."""
+    low, high = mouth
+    free = []
+    for start, end in sorted(shadows):
+        if start >= high:
+            break
+        if start - low > _SLIVER:
+            free.append((low, start))
+        if end > low:
+            low = end
+    if high - low > _SLIVER:
+        free.append((low, high))
+    return free
+
+
+def opening_shots(
+    field: FieldGeometry, origin: Point, heading: float, openings: list[Interval], full_angle: float
+) -> list[Shot]:
+    """A shot along the bisector of each opening, best first.
+
+    The score is the opening's width as a share of ``full_angle`` [rad], at most 1.
+    """
+    reach = field.half_length - origin[0]
+    shots = []
+    for low, high in openings:
+        target = (field.half_length, origin[1] + reach * tan((low + high) / 2.0))
+        shots.append(Shot(target, (high - low) / 2.0, min((high - low) / full_angle, 1.0)))
+    return best_first(shots, origin, heading)

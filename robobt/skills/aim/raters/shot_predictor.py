@@ -1,0 +1,27 @@
+"""The predictor that a learned rater asks."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robobt.models.file import ModelError
+from robobt.world.features import ObservationSpec
+
+if TYPE_CHECKING:
+    from robobt.models.policy import Policy
+
+
+@lru_cache(maxsize=32)
+def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
+    """A shot predictor by the name of a shipped model or by its path, loaded once per process.
+
+    Raises:
+        ModelError: it cannot be used; the message names the file and says why.
+    """
+    from robobt.models.policy import load_policy
+
+    policy = load_policy(model, observation=observation)
+    if policy.card.kind != "shot_predictor":
+        raise ModelError(f"{policy.path}: is a {policy.card.kind}, not a shot_predictor")
+    return policy

@@ -1,0 +1,62 @@
+"""Choose a team-mate to clear the ball to."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.skills.base import Skill, skill
+from robobt.skills.store import Pass
+from robobt.tree import Status
+from robobt.world.geometry import distance, segment_distance
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotState
+
+_ARRIVAL_SPEED = 1.0
+_MAX_SPEED = 6.0
+
+
+@skill
+class SelectClearance(Skill):
+    """Write to ``pass_`` the foremost team-mate that the ball can reach, and no ``shot``.
+
+    A team-mate counts when it is at least a third of the own half off our goal
+    line and no other robot stands in the lane. FAILURE when there is none, and
+    ``pass_`` is None.
+
+    Source: RoboBulls' published code, Goalie, which counts team-mates beyond
+    x = -1.5 m on a 9 m field.
+
+    Args:
+        lane: half width of a lane that is free [m].
+    """
+
+    writes: ClassVar[tuple[str, ...]] = ("pass_", "shot")
+
+    def __init__(self, *, lane: float = ROBOT_RADIUS + BALL_RADIUS + 0.03, name: str = "") -> None:
+        super().__init__(name)
+        self.lane = lane
+
+    def on_running(self) -> Status:
+        """Go through the team-mates from the front."""
+        store, frame, ball = self.store, self.frame, self.ball.position
+        store.shot = store.pass_ = None
+        mates = [mate for mate in frame.teammates(self.me.id) if mate.x > -frame.field.half_length / 3]
+        mates.sort(key=_from_the_front)
+        for mate in mates:
+            if self._free(mate):
+                speed = DEFAULT_BALL.kick_speed(distance(ball, mate.position), _ARRIVAL_SPEED)
+                store.pass_ = Pass(mate.id, mate.position, min(speed, _MAX_SPEED), 1.0)
+                return self.succeed(f"to {mate.id}")
+        return self.fail("no team-mate can be reached")
+
+    def _free(self, mate: RobotState) -> bool:
+        ball = self.ball.position
+        return all(
+            segment_distance(other.position, ball, mate.position) >= self.lane
+            for other in self.frame.others(self.me.id)
+            if other is not mate
+        )
+
+
+def _from_the_front(mate: RobotState) -> float:
+    return -mate.x

@@ -1,0 +1,82 @@
+"""Choose where to shoot."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.aim.raters import ShotRater, make_rater
+from robobt.skills.aim.raters.goal_line import judged_goal_line
+from robobt.skills.base import Skill, skill
+from robobt.skills.store import Shot
+from robobt.tree import Status
+from robobt.world.geometry import Point, direction, distance, wrap_angle
+
+
+@skill
+class SelectShot(Skill):
+    """Rate the shots from where the ball lies and write the best one to ``shot``.
+
+    SUCCESS when there is one good enough. FAILURE otherwise, with the reason, and
+    ``shot`` is None. What a rater with an opinion on every point of the goal line thinks of
+    it goes to ``goal_line``, to be recorded and shown.
+
+    Args:
+        rater: name of a shot rater, or a rater with settings of its own.
+        tolerance: the tolerance of the ``segment_clearance`` rater [m]; None is its default.
+        min_score: worst score still accepted, 0 to 1; what a score means is the rater's.
+        max_distance: no shots from farther than this from the goal's centre [m]; None is any.
+        keep: stay with the opening of the last shot while it scores at most this
+            much worse than the best, so that the aim does not jump between two
+            like ones.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot",)
+    writes: ClassVar[tuple[str, ...]] = ("shot", "goal_line")
+    optional: ClassVar[tuple[str, ...]] = ("shot",)
+
+    def __init__(
+        self,
+        *,
+        rater: str | ShotRater = "segment_clearance",
+        tolerance: float | None = None,
+        min_score: float = 0.0,
+        max_distance: float | None = None,
+        keep: float = 0.1,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.rater = make_rater(rater, tolerance=tolerance)
+        self.min_score = min_score
+        self.max_distance = max_distance
+        self.keep = keep
+
+    def on_running(self) -> Status:
+        """Rate and choose."""
+        last, self.store.shot = self.store.shot, None
+        judged, self.store.goal_line = self.store.goal_line, None
+        frame = self.frame
+        origin = self.ball.position
+        if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
+            return self.fail(f"farther than {self.max_distance:g} m from the goal")
+        shots, chances = self.rater.judge(frame, origin, self.me)
+        if chances is not None:
+            self.store.goal_line = judged_goal_line(*chances, judged)
+        if not shots:
+            return self.fail("no way to the goal is free")
+        best = shots[0].score
+        if best < self.min_score:
+            return self.fail(f"the best shot scores {best:.2f}")
+        shot = shots[0] if last is None else _stay(shots, last, origin, max(self.min_score, best - self.keep))
+        self.store.shot = shot
+        return self.succeed(f"score {shot.score:.2f}")
+
+
+def _stay(shots: list[Shot], last: Shot, origin: Point, worst: float) -> Shot:
+    """The best shot, unless ``last`` aims into another opening that scores at least ``worst``."""
+    aim = direction(origin, last.target)
+    for shot in shots:
+        if shot.score < worst:
+            break
+        if abs(wrap_angle(direction(origin, shot.target) - aim)) <= shot.tolerance:
+            return shot
+    return shots[0]

@@ -1,0 +1,1 @@
+"""Getting the ball, keeping it and kicking it."""

@@ -1,0 +1,112 @@
+"""Carry the ball somewhere."""
+
+from __future__ import annotations
+
+from math import cos, hypot
+from typing import ClassVar
+
+from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
+from robobt.motion.path_planner import way_point
+from robobt.motion.pilot import approach_speed, command, turn_rate
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.geometry import Point, direction, distance, wrap_angle
+
+_GRACE = 0.15
+"""The ball counts as lost when it has been out of the mouth for this long [s]."""
+_RULE_MARGIN = 0.1
+"""How far before the dribbling limit the skill gives up, to have let go in time [m]."""
+
+
+@skill
+class DribbleTo(Skill):
+    """Carry the ball to a point in front of the robot, round other robots, gently enough to keep it.
+
+    Succeeds when the ball is within ``tolerance`` of the target. Fails without a
+    target, when the ball is lost, and when it has been carried as far as allowed.
+
+    Args:
+        target: where to [m]; None takes ``store.target``.
+        tolerance: distance that counts as there [m].
+        max_speed: [m/s].
+        max_turn: turning rate with the ball [rad/s].
+        max_acceleration: with the ball, in any direction [m/s^2].
+        max_distance: how far the ball may be carried from where it was taken [m];
+            the rules allow 1 m. None is any distance.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(
+        self,
+        *,
+        target: Point | None = None,
+        tolerance: float = 0.3,
+        max_speed: float = 2.0,
+        max_turn: float = MAX_TURN,
+        max_acceleration: float = MAX_ACCELERATION,
+        max_distance: float | None = None,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.target = target
+        self.tolerance = tolerance
+        self.max_distance = max_distance
+        self.limits = dribbling_limits(max_speed, max_turn, max_acceleration)
+        self._taken_at: Point | None = None
+        self._last_held = 0.0
+
+    def on_start(self) -> None:
+        """The ball counts as taken where it is now."""
+        self._taken_at = None
+        self._last_held = self.frame.time
+
+    def on_running(self) -> Status:
+        """Carry for one tick."""
+        frame, me, ball = self.frame, self.me, self.ball
+        target = self.store.target if self.target is None else self.target
+        if target is None:
+            return self.fail("no target")
+        if has_ball(me, ball):
+            self._last_held = frame.time
+        elif frame.time - self._last_held >= _GRACE or self._taken_at is None:
+            return self.fail("it does not have the ball")
+        if self._taken_at is None:
+            self._taken_at = ball.position
+        if distance(ball.position, target) <= self.tolerance:
+            self._carry(target)
+            return self.succeed("the ball is there")
+        if (
+            self.max_distance is not None
+            and distance(ball.position, self._taken_at) > self.max_distance - _RULE_MARGIN
+        ):
+            return self.fail("the ball has been carried as far as allowed")
+        self._carry(target)
+        return self.run("carrying the ball")
+
+    def _carry(self, target: Point) -> None:
+        frame, me, limits = self.frame, self.me, self.limits
+        point, speed_there = way_point(frame, me, target)
+        heading = direction(me.position, point)
+        dx, dy = point[0] - me.x, point[1] - me.y
+        gap = hypot(dx, dy)
+        vx = vy = 0.0
+        if gap > 0.0:
+            ux, uy = dx / gap, dy / gap
+            acceleration = limits.acceleration
+            speed_there = min(speed_there, limits.max_speed)
+            speed = approach_speed(
+                gap + speed_there * speed_there / (2.0 * acceleration),
+                ux * me.vx + uy * me.vy,
+                limits.max_speed,
+                acceleration,
+                acceleration,
+                frame.period,
+            )
+            # Only a ball that is pushed stays: the robot turns first and drives as it faces the way.
+            speed *= max(0.0, cos(wrap_angle(heading - me.heading))) ** 2
+            vx, vy = ux * speed, uy * speed
+        omega = turn_rate(me, heading, limits, frame.period)
+        self.store.command = command(me, vx, vy, omega, limits, frame.period)
+        self.store.command.dribbler = True

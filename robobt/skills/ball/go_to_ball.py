@@ -1,0 +1,272 @@
+"""Get to the ball so that it can be picked up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from math import atan2, cos, hypot, pi, radians, sin, sqrt
+from typing import ClassVar, Literal
+
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import allowed_target, travel
+from robobt.motion.pilot import travel_time
+from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
+from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.skills.store import Store
+from robobt.tree import Registry, Status
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point, direction, distance, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+
+HANDOVER_DISTANCE = 0.2
+"""Distance to the ball's centre at which the approach ends [m]. Source: the paper's Go-To-Ball."""
+
+_FACING = radians(30.0)
+_FACING_STILL = radians(60.0)
+_CLOSE = 0.16
+"""How far from the ball's centre the approach aims [m]: the planner's ball detour is just narrower."""
+_ARRIVAL_SPEED = 0.5
+"""Speed at the end of the approach [m/s], kept by the pick-up."""
+_REACHABLE = 0.03
+_ROUND = radians(30.0)
+_TURN_DISTANCE = 1.0
+_SURE = 0.8
+"""Share of its braking that is reckoned with."""
+_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+
+
+@dataclass(slots=True, frozen=True)
+class Approach:
+    """What an approach is asked for.
+
+    Attributes:
+        meeting: where the ball can be met [m].
+        facing: direction in which to come to it [rad]; None for any.
+        limits: how to drive.
+        goalkeeper: may enter the own defence area.
+    """
+
+    meeting: Point
+    facing: float | None
+    limits: RobotLimits
+    goalkeeper: bool
+
+
+Policy = Callable[[Store, Approach], RobotCommand]
+"""What decides an approach, tick by tick."""
+
+POLICIES: Registry[Policy] = Registry("go-to-ball policy")
+"""Every way to get to the ball by its name."""
+
+SHIPPED = {"ddpg": "go_to_ball_ddpg"}
+"""Those of them that are models, which are loaded when a leaf is made."""
+
+
+@skill
+class GoToBall(Skill):
+    """Approach the ball until it is within 0.2 m and ahead; then :class:`PickUpBall` takes over.
+
+    A moving ball is met where it will be. Once handed over, the skill goes on
+    succeeding until the ball is 0.3 m away or more than 60 degrees off the
+    heading, so that approach and pick-up do not take turns.
+
+    A trained policy hands over where it was trained to end: by the contact rule
+    in its model card, and from any side, so that ``approach`` says nothing to it. Should
+    it answer something that is no action, the skill fails and the robot stops.
+
+    Args:
+        policy: what decides the motion, by name: "geometric", or another of
+            ``POLICIES``; or a trained one by its model's name or file.
+        approach: "nearest" drives straight at the ball; "behind_target" comes
+            from the side opposite to ``store.shot``, else ``store.target``, else
+            the attacked goal.
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+        goalkeeper: may enter the own defence area.
+
+    Raises:
+        ValueError: no policy has that name, its model cannot be used, or no such approach.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot", "target")
+    optional: ClassVar[tuple[str, ...]] = ("shot", "target")
+
+    def __init__(
+        self,
+        *,
+        policy: str = "geometric",
+        approach: Literal["nearest", "behind_target"] = "nearest",
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        goalkeeper: bool = False,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        if approach not in ("nearest", "behind_target"):
+            raise ValueError(f"approach must be 'nearest' or 'behind_target', not {approach!r}")
+        self.policy = policy
+        self.approach = approach
+        self.goalkeeper = goalkeeper
+        self.pace = Pace(limits, speed)
+        self._decide = find_policy(policy, POLICIES, SHIPPED, LearnedApproach)
+        self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
+        self._handed_over = False
+
+    def on_running(self) -> Status:
+        """Drive one tick."""
+        me, ball = self.me, self.ball
+        limits = self.pace.of(me.limits)
+        meeting = meeting_point(self.frame, me, limits)
+        facing = None if self._learned is not None else self._facing(meeting)
+        try:
+            self.store.command = self._decide(self.store, Approach(meeting, facing, limits, self.goalkeeper))
+        except PolicyError as error:
+            self.store.command = RobotCommand()
+            return self.fail(str(error))
+        self._handed_over = has_ball(me, ball) or self._near(me, ball, facing)
+        return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
+
+    def _near(self, me: RobotState, ball: BallState, facing: float | None) -> bool:
+        within, off = HANDOVER_DISTANCE, _FACING
+        if self._learned is not None:
+            within, off = self._learned.reached
+        if self._handed_over:
+            within, off = LOST_DISTANCE, max(off, _FACING_STILL)
+        dx, dy = ball.x - me.x, ball.y - me.y
+        bearing = atan2(dy, dx)
+        return (
+            hypot(dx, dy) <= within
+            and abs(wrap_angle(bearing - me.heading)) <= off
+            and (facing is None or abs(wrap_angle(bearing - facing)) <= off)
+        )
+
+    def _facing(self, meeting: Point) -> float | None:
+        """The direction in which to come to the ball; None for any, as to a ball that lies at a wall."""
+        if self.approach == "nearest":
+            return None
+        store = self.store
+        if store.shot is not None:
+            aim = store.shot.target
+        else:
+            aim = self.frame.field.their_goal if store.target is None else store.target
+        facing = direction(meeting, aim)
+        place = beside(meeting, facing)
+        allowed = allowed_target(self.frame, self.me, place, goalkeeper=self.goalkeeper)
+        return facing if distance(allowed, place) < _REACHABLE else None
+
+
+@POLICIES.register("geometric")
+def geometric(store: Store, wanted: Approach) -> RobotCommand:
+    """Drive to the place beside the ball by the planned way, facing it."""
+    frame, me = store.frame, store.me
+    meeting, facing = wanted.meeting, wanted.facing
+    bearing = direction(me.position, meeting)
+    heading = direction(me.position, frame.ball.position)
+    round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
+    if facing is not None and distance(me.position, meeting) < _TURN_DISTANCE:
+        heading = facing
+    return travel(
+        frame,
+        me,
+        beside(meeting, bearing if facing is None else facing),
+        heading,
+        wanted.limits,
+        avoid_ball=round_it,
+        goalkeeper=wanted.goalkeeper,
+        final_speed=0.0 if round_it else _ARRIVAL_SPEED,
+    )
+
+
+class LearnedApproach:
+    """An approach that a trained policy decides, within the limits that it is asked to keep.
+
+    It does not come closer to the ball faster than it can still brake to the speed at
+    which the robot's dribbler takes it: policies are trained to arrive, not to stop.
+
+    Args:
+        model: name or file of a model for GoToBall.
+
+    Attributes:
+        reached: distance to the ball [m] and angle off the heading [rad] at which it was
+            trained to have reached it; a distance of 0 where it was trained to touch it.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+
+    def __init__(self, model: str) -> None:
+        self._control = LearnedControl(model, skill="GoToBall")
+        self.reached = _reached(self._control.card.environment.get("contact"))
+
+    def __call__(self, store: Store, wanted: Approach) -> RobotCommand:
+        """The command of one tick.
+
+        Raises:
+            PolicyError: the policy answers what is no action.
+        """
+        command, limits = self._control.decide(store.frame, store.me), wanted.limits
+        speed = hypot(command.vx, command.vy)
+        fastest = min(limits.max_speed, _closing_speed(store))
+        if speed > fastest:
+            command.vx *= fastest / speed
+            command.vy *= fastest / speed
+        command.omega = min(limits.max_turn, max(-limits.max_turn, command.omega))
+        return command
+
+
+def _closing_speed(store: Store) -> float:
+    """Speed from which the robot can brake to what its dribbler takes before it meets the ball [m/s]."""
+    frame, me = store.frame, store.me
+    limits, ball = me.limits, frame.ball
+    way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
+    braking = _SURE * min(limits.braking, limits.lateral_braking)
+    return ball.speed + sqrt(limits.catch_speed**2 + 2.0 * braking * max(0.0, way))
+
+
+def _reached(contact: object) -> tuple[float, float]:
+    rule = contact if isinstance(contact, dict) else {}
+    if rule.get("rule") in ("infrared", "held"):
+        return (0.0, pi)
+    distance_, angle = rule.get("distance"), rule.get("angle")
+    within = float(distance_) if isinstance(distance_, int | float) else HANDOVER_DISTANCE
+    if rule.get("rule") == "distance_facing" and isinstance(angle, int | float):
+        return (within, float(angle))
+    return (within, pi)
+
+
+@POLICIES.register("ddpg")
+def ddpg(store: Store, wanted: Approach) -> RobotCommand:
+    """Drive as the shipped model says that was trained with DDPG: straight at the ball, from any side."""
+    return _shipped()(store, wanted)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> LearnedApproach:
+    return LearnedApproach(SHIPPED["ddpg"])
+
+
+def beside(ball: Point, facing: float) -> Point:
+    """Where a robot stands that looks at ``ball`` along ``facing`` [rad], before it takes it [m]."""
+    return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))
+
+
+def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
+    """Where the ball will be when the robot gets there, as if it rolled [m]."""
+    ball = frame.ball
+    speed = ball.speed
+    if speed < 0.05:
+        return ball.position
+    ux, uy = ball.vx / speed, ball.vy / speed
+    x, y = ball.position
+    for _ in range(2):
+        dx, dy = x - me.x, y - me.y
+        gap = hypot(dx, dy)
+        towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
+        way = DEFAULT_BALL.way_in(travel_time(max(0.0, gap - _TOUCHING), towards, limits), speed)
+        x, y = ball.x + ux * way, ball.y + uy * way
+    return (x, y)

@@ -1,0 +1,153 @@
+"""Meet a moving ball and take it."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, sin
+
+from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.motion.ball_watch import BallWatch
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import travel
+from robobt.motion.pilot import travel_time
+from robobt.skills.ball.pick_up_ball import Grip, grab
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.command import RobotCommand
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+
+_FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
+"""Centre distance of robot and ball as they meet [m]; about what a flat front makes it."""
+_SLOW = 0.2
+"""A ball slower than this is gone to, not waited for [m/s]."""
+_CLOSE = 0.2
+_NEAR_ENOUGH = 0.15
+"""A robot this near counts as there [m]: it would else back away before the ball for its last centimetres."""
+_STEP = 0.15
+_HORIZON = 4.0
+
+
+def earliest_meeting(
+    frame: Frame,
+    me: RobotState,
+    limits: RobotLimits,
+    rolling: float,
+    model: BallModel = DEFAULT_BALL,
+) -> tuple[Point, float]:
+    """Where the ball can be met soonest and when [m, s from now].
+
+    The ball is followed along its line until the robot, by the trapezoid on the
+    straight line, can stand behind it there in time; if it never can, the point
+    where the ball comes to rest or leaves the field.
+
+    Args:
+        rolling: speed at which the ball begins to roll [m/s].
+    """
+    ball = frame.ball
+    speed = ball.speed
+    ux, uy = (ball.vx / speed, ball.vy / speed) if speed > 0.0 else (0.0, 0.0)
+    most = _way_to_border(frame.field, ball, ux, uy)
+    before = late = 0.0
+    time = 0.0
+    while True:
+        way = min(most, model.way_in(time, speed, rolling))
+        point = (ball.x + way * ux, ball.y + way * uy)
+        late = _arrival(me, point, ux, uy, limits) - time
+        if late <= 0.0 or way >= most or time >= _HORIZON:
+            break
+        before = time
+        time += _STEP
+    if late > 0.0:
+        return (point, time)
+    for _ in range(4):
+        middle = 0.5 * (before + time)
+        way = min(most, model.way_in(middle, speed, rolling))
+        trial = (ball.x + way * ux, ball.y + way * uy)
+        if _arrival(me, trial, ux, uy, limits) <= middle:
+            time, point = middle, trial
+        else:
+            before = middle
+    return (point, time)
+
+
+def meet(
+    frame: Frame, me: RobotState, limits: RobotLimits, rolling: float, *, goalkeeper: bool = False
+) -> RobotCommand:
+    """One tick of meeting the ball: drive onto its line, face it, and take it once it is near and slow.
+
+    Args:
+        rolling: speed at which the ball begins to roll [m/s].
+        goalkeeper: may enter the own defence area.
+    """
+    ball = frame.ball
+    dx, dy = ball.x - me.x, ball.y - me.y
+    gap = hypot(dx, dy)
+    speed = ball.speed
+    heading = atan2(dy, dx)
+    if gap < _CLOSE and (speed < _SLOW or me.ball_contact):
+        return grab(me, ball, 0.5, frame.period)
+    (x, y), _ = earliest_meeting(frame, me, limits, rolling)
+    ux, uy = (ball.vx / speed, ball.vy / speed) if speed > _SLOW else (-cos(heading), -sin(heading))
+    place = (x + _FRONT * ux, y + _FRONT * uy)
+    order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper)
+    order.dribbler = gap < 1.0
+    return order
+
+
+@skill
+class Intercept(Skill):
+    """Go where a moving ball can be met soonest, face it and take it.
+
+    Succeeds when the ball has been in the mouth for ``settle`` seconds.
+
+    Args:
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+        settle: how long the ball has to stay in the mouth [s].
+        goalkeeper: may enter the own defence area.
+    """
+
+    def __init__(
+        self,
+        *,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        settle: float = 0.05,
+        goalkeeper: bool = False,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.settle = settle
+        self.goalkeeper = goalkeeper
+        self.pace = Pace(limits, speed)
+        self._watch = BallWatch()
+        self._grip = Grip()
+
+    def on_running(self) -> Status:
+        """Drive one tick."""
+        frame, me = self.frame, self.me
+        rolling = self._watch.rolling_speed(frame)
+        self.store.command = meet(frame, me, self.pace.of(me.limits), rolling, goalkeeper=self.goalkeeper)
+        if self._grip.held_for(frame, me) >= self.settle - 1e-9:
+            return self.succeed("it has the ball")
+        return self.run("meeting the ball")
+
+
+def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLimits) -> float:
+    dx, dy = point[0] + _FRONT * ux - me.x, point[1] + _FRONT * uy - me.y
+    gap = hypot(dx, dy)
+    if gap <= _NEAR_ENOUGH:
+        return 0.0
+    return travel_time(gap - _NEAR_ENOUGH, (me.vx * dx + me.vy * dy) / gap, limits)
+
+
+def _way_to_border(field: FieldGeometry, ball: BallState, ux: float, uy: float) -> float:
+    """How far the ball rolls along (ux, uy) until it is out of the field [m]."""
+    way = inf
+    if ux != 0.0:
+        way = ((field.half_length if ux > 0.0 else -field.half_length) - ball.x) / ux
+    if uy != 0.0:
+        way = min(way, ((field.half_width if uy > 0.0 else -field.half_width) - ball.y) / uy)
+    return max(0.0, way)

@@ -1,0 +1,258 @@
+"""Kick the ball at the chosen target."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, radians, sin
+from typing import ClassVar, Literal
+
+from robobt.motion.dribbling import dribbling_limits
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import allowed_target, travel, way_point
+from robobt.motion.pilot import command, turn_rate
+from robobt.motion.run_up import RUN_UP_SPEED, run_up
+from robobt.skills.ball.go_to_ball import meeting_point
+from robobt.skills.ball.pick_up_ball import grab
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick
+from robobt.skills.store import Pass
+from robobt.tree import Status
+from robobt.world.command import KickTrigger
+from robobt.world.geometry import Point, direction, distance, wrap_angle
+from robobt.world.limits import RobotLimits
+
+SHOT_SPEED = 6.4
+"""Kick speed of a shot [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
+
+_SHOT_TOLERANCE = (radians(0.5), radians(4.0))
+"""Least and most angle by which a shot may be off its point [rad]."""
+_PASS_TOLERANCE = radians(1.5)
+_ROBOBULLS_TOLERANCE = {"shot": radians(1.0), "pass": radians(5.0)}
+
+_BEHIND = 0.16
+"""Where the robot stands behind the ball [m]: just outside the planner's way round it."""
+_THROUGH = 0.05
+_ROUND = 1.0
+"""Tangent of the angle to the line of the kick beyond which the way leads round the ball first."""
+_RUN_UP_DISTANCE = 2.5
+_IN_MOUTH = 0.03
+"""A ball no farther than this from the heading's line meets the mouth [m]."""
+_NEAR = 0.25
+_GOT_AWAY = 0.7
+_CREEP = 0.5
+_TURN_DISTANCE = 1.2
+_REACHABLE = 0.03
+_LEFT_SHARE = 0.6
+"""A ball with this share of the kick's speed towards the target has been kicked."""
+_CARRY_SPEED = 2.0
+_CARRY_ACCELERATION = 1.0
+
+
+@dataclass(slots=True, frozen=True)
+class _Order:
+    target: Point
+    tolerance: float
+    speed: float
+    pass_: Pass | None
+
+
+@skill
+class KickToTarget(Skill):
+    """Kick the ball at a point: turn with it when the robot has it, else come from behind and kick it.
+
+    Running until the ball has left, then succeeding. Fails without a target and
+    when the ball has got away. A pass is noted in the team's store as its kick
+    goes out.
+
+    The ball leaves along the heading with whatever sideways velocity it has, so
+    the robot aims that much to the other side, and may kick while it still turns.
+
+    Args:
+        target: where to kick [m]; None takes ``store.shot``, else ``store.pass_``.
+        style: "default", or "robobulls" for the paper's baseline
+            (:class:`~robobt.skills.robobulls.kick.RobobullsKick`).
+        kick_speed: [m/s]; None is the pass's own speed, or a full shot.
+        tolerance: angle by which the kick may be off [rad]; None is half the
+            shot's own tolerance, 1.5 degrees for a pass.
+        max_turn: turning rate with the ball [rad/s].
+        limits: how to drive without the ball; None for the robot's own, or
+            RoboBulls' in that style.
+        speed: factor on the top speed.
+        goalkeeper: may enter the own defence area.
+
+    Raises:
+        ValueError: no such style.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
+    writes: ClassVar[tuple[str, ...]] = ("team",)
+
+    def __init__(
+        self,
+        *,
+        target: Point | None = None,
+        style: Literal["default", "robobulls"] = "default",
+        kick_speed: float | None = None,
+        tolerance: float | None = None,
+        max_turn: float = 4.0,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        goalkeeper: bool = False,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        if style not in ("default", "robobulls"):
+            raise ValueError(f"style must be 'default' or 'robobulls', not {style!r}")
+        self.target = target
+        self.style = style
+        self.kick_speed = kick_speed
+        self.tolerance = tolerance
+        self.goalkeeper = goalkeeper
+        self.pace = Pace(limits, speed)
+        self._carry = dribbling_limits(_CARRY_SPEED, max_turn, _CARRY_ACCELERATION)
+        self._robobulls = RobobullsKick(goalkeeper=goalkeeper) if style == "robobulls" else None
+        if self._robobulls is not None and limits is not None:
+            self._robobulls.limits = limits
+        self._kicking: _Order | None = None
+        self._was_near = False
+
+    def needs(self) -> list[tuple[str, ...]]:
+        """A shot or a pass, unless it has been told where to kick."""
+        return [("shot", "pass_")] if self.target is None else []
+
+    def on_start(self) -> None:
+        """Forget the last kick."""
+        self._kicking = None
+        self._was_near = False
+        if self._robobulls is not None:
+            self._robobulls.start()
+
+    def on_running(self) -> Status:
+        """Aim, or kick, for one tick."""
+        if self._kicking is not None and self._has_left(self._kicking):
+            self._note_pass(self._kicking)
+            return self.succeed("kicked")
+        order = self._order()
+        if order is None:
+            return self.fail("no target")
+        if self._robobulls is not None:
+            return self._as_robobulls(self._robobulls, order)
+        gap = distance(self.me.position, self.ball.position)
+        if gap < _NEAR:
+            self._was_near = True
+        elif self._was_near and gap > _GOT_AWAY:
+            return self.fail("the ball got away")
+        if self.me.ball_contact:
+            self._turn_with_ball(order)
+            doing = "aiming with the ball"
+        else:
+            self._come_from_behind(order)
+            doing = "getting behind the ball"
+        self._kicking = order if self._kick_if_aimed(order, gap) else None
+        return self.run(doing if self._kicking is None else "kicking")
+
+    def _order(self) -> _Order | None:
+        shot, pass_ = self.store.shot, self.store.pass_
+        if self.target is not None:
+            return self._with(self.target, _SHOT_TOLERANCE[0], SHOT_SPEED, None)
+        if shot is not None:
+            least, most = _SHOT_TOLERANCE
+            return self._with(shot.target, min(most, max(least, 0.5 * shot.tolerance)), SHOT_SPEED, None)
+        if pass_ is not None:
+            return self._with(pass_.target, _PASS_TOLERANCE, pass_.speed, pass_)
+        return None
+
+    def _with(self, target: Point, tolerance: float, speed: float, pass_: Pass | None) -> _Order:
+        return _Order(
+            target,
+            tolerance if self.tolerance is None else self.tolerance,
+            speed if self.kick_speed is None else self.kick_speed,
+            pass_,
+        )
+
+    def _turn_with_ball(self, order: _Order) -> None:
+        me, limits, period = self.me, self._carry, self.frame.period
+        wanted = direction(self.ball.position, order.target)
+        omega = turn_rate(me, wanted, limits, period)
+        self.store.command = command(me, 0.0, 0.0, omega, limits, period)
+        self.store.command.dribbler = True
+
+    def _come_from_behind(self, order: _Order) -> None:
+        frame, me, ball = self.frame, self.me, self.ball
+        limits = self.pace.of(me.limits)
+        near = distance(me.position, ball.position) < _NEAR
+        x, y = ball.position if near else meeting_point(frame, me, limits)
+        line = direction((x, y), order.target)
+        facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.speed)
+        ux, uy = cos(facing), sin(facing)
+        # How far the robot is behind the ball and beside the line of the kick.
+        back = (x - me.x) * ux + (y - me.y) * uy
+        aside = abs((x - me.x) * uy - (y - me.y) * ux)
+        behind = (x - _BEHIND * ux, y - _BEHIND * uy)
+        allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
+        at_wall = distance(allowed, behind) > _REACHABLE
+        in_line = aside < _ROUND * back and (not near or aside < _IN_MOUTH)
+        if not in_line and (has_ball(me, ball) or (at_wall and near)):
+            # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
+            self.store.command = grab(me, ball, _CREEP, frame.period)
+            return
+        heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))
+        if in_line and not at_wall and back < _RUN_UP_DISTANCE:
+            through = (x + _THROUGH * ux, y + _THROUGH * uy)
+            if way_point(frame, me, through, goalkeeper=self.goalkeeper)[0] == through:
+                self.store.command = run_up(me, ball, facing, limits, frame.period)
+                self.store.command.dribbler = near
+                return
+        place, final_speed = behind, RUN_UP_SPEED if in_line else 0.0
+        if at_wall:
+            heading = direction(me.position, (x, y))
+            place = (x - _BEHIND * cos(heading), y - _BEHIND * sin(heading))
+            final_speed = _CREEP
+        self.store.command = travel(
+            frame,
+            me,
+            place,
+            heading,
+            limits,
+            avoid_ball=not in_line and not at_wall,
+            goalkeeper=self.goalkeeper,
+            final_speed=final_speed,
+        )
+        self.store.command.dribbler = near
+
+    def _kick_if_aimed(self, order: _Order, gap: float) -> bool:
+        me, ball = self.me, self.ball
+        if gap > _NEAR:
+            return False
+        sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
+        leaving = me.heading + atan2(sideways, order.speed)
+        if abs(wrap_angle(direction(ball.position, order.target) - leaving)) > order.tolerance:
+            return False
+        self.store.command.kick_speed = order.speed
+        self.store.command.kick_trigger = KickTrigger.ON_CONTACT
+        if has_ball(me, ball):
+            self._note_pass(order)
+        return True
+
+    def _has_left(self, order: _Order) -> bool:
+        me, ball = self.me, self.ball
+        if me.ball_contact:
+            return False
+        line = direction(ball.position, order.target)
+        return ball.vx * cos(line) + ball.vy * sin(line) > _LEFT_SHARE * order.speed
+
+    def _as_robobulls(self, kick: RobobullsKick, order: _Order) -> Status:
+        default = _ROBOBULLS_TOLERANCE["shot" if order.pass_ is None else "pass"]
+        kick.tolerance = default if self.tolerance is None else self.tolerance
+        kick.kick_speed = ROBOBULLS_KICK_SPEED if self.kick_speed is None else self.kick_speed
+        status = kick.tick(self.store, order.target)
+        if self.store.command.kick_speed > 0.0:
+            self._note_pass(order)
+        return self.succeed("kicked") if status is Status.SUCCESS else self.run(kick.stage.value)
+
+    def _note_pass(self, order: _Order) -> None:
+        if order.pass_ is not None:
+            team = self.store.team
+            team.passer, team.receiver = self.me.id, order.pass_.receiver
+            team.pass_target, team.pass_time = order.pass_.target, self.frame.time

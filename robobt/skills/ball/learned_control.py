@@ -1,0 +1,102 @@
+"""From a frame through a trained policy to one robot's command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import isnan
+from pathlib import Path
+from typing import TypeVar
+
+from robobt.models.actions import command_of
+from robobt.models.file import ModelError, UnknownModelError
+from robobt.models.policy import load_policy
+from robobt.tree import Registry
+from robobt.world.command import RobotCommand
+from robobt.world.features import GO_TO_BALL, SHOOT, go_to_ball_of, shoot_of
+from robobt.world.geometry import FloatArray
+from robobt.world.state import Frame, RobotState
+
+OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
+    GO_TO_BALL.name: go_to_ball_of,
+    SHOOT.name: shoot_of,
+}
+"""What makes each observation from a frame."""
+
+P = TypeVar("P")
+
+_LIMIT = 1.0 + 1e-4
+"""Largest action that rounding in single precision explains."""
+
+
+class PolicyError(RuntimeError):
+    """A policy answered what is no action; the robot must not act on it."""
+
+
+class LearnedControl:
+    """A trained policy that decides one robot's command, tick by tick. It has no memory.
+
+    Args:
+        model: name of a shipped model, or the path of a model file.
+        skill: what the model has to be for; None for anything.
+
+    Attributes:
+        card: what the model says about itself.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+
+    def __init__(self, model: str | Path, skill: str | None = None) -> None:
+        policy = load_policy(model, skill=skill)
+        self.card = policy.card
+        if self.card.kind != "policy" or self.card.action is None:
+            raise ModelError(f"{policy.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
+        if self.card.observation.name not in OBSERVERS:
+            there = ", ".join(OBSERVERS)
+            raise ModelError(
+                f"{policy.path}: no skill makes the observation {self.card.observation.name!r}; "
+                f"there are {there}"
+            )
+        self._observe = OBSERVERS[self.card.observation.name]
+        self._infer: Callable[[FloatArray], list[float]] = policy.single()
+        self._scaling = self.card.action
+
+    def decide(self, frame: Frame, me: RobotState) -> RobotCommand:
+        """The command of one tick.
+
+        Raises:
+            PolicyError: the policy's answer is not finite or lies outside [-1, 1].
+        """
+        action = self._infer(self._observe(frame, me))
+        for entry in action:
+            if not -_LIMIT <= entry <= _LIMIT:
+                said = "no number" if isnan(entry) else f"{entry:.3g}, outside [-1, 1]"
+                raise PolicyError(f"the policy {self.card.name} answers {said}")
+        return command_of(action, self._scaling)
+
+
+def find_policy(
+    name: str, policies: Registry[P], shipped: Mapping[str, str], learned: Callable[[str], P]
+) -> P:
+    """What decides for a skill, by the word in its ``policy`` parameter.
+
+    Args:
+        name: of a policy, or the name or file of a model.
+        policies: the skill's own.
+        shipped: those of them that are models, with the models' names.
+        learned: makes one of a model.
+
+    Raises:
+        ValueError: there is no such policy, or its model cannot be used.
+    """
+    if name in policies and name not in shipped:
+        return policies[name]
+    try:
+        return learned(shipped.get(name, name))
+    except UnknownModelError as error:
+        if name in shipped:
+            raise
+        raise ValueError(
+            f"no {policies.kind} is called {name!r}; there are {', '.join(policies)}, "
+            "and models by name or file (robobt models)"
+        ) from error

@@ -1,0 +1,42 @@
+"""Any trained policy as a leaf."""
+
+from __future__ import annotations
+
+from robobt.skills.ball.learned_control import LearnedControl, PolicyError
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.command import RobotCommand
+
+
+@skill
+class LearnedSkill(Skill):
+    """Does what a trained policy says, tick by tick, and goes on for as long as it is ticked.
+
+    When to begin and when it is done is the tree's affair: put conditions beside
+    it. Fails, and stops the robot, when the policy answers something that is no
+    action.
+
+    Args:
+        model: name of a shipped model (``robobt models``) or the path of a model
+            file; what it observes and how its actions are scaled is in its card.
+            Without one the leaf fails.
+
+    Raises:
+        ModelError: the model cannot be used; the message names the file and says why.
+    """
+
+    def __init__(self, *, model: str = "", name: str = "") -> None:
+        super().__init__(name)
+        self.model = model
+        self._control = LearnedControl(model) if model else None
+
+    def on_running(self) -> Status:
+        """Decide one tick."""
+        if self._control is None:
+            return self.fail("it has been given no model")
+        try:
+            self.store.command = self._control.decide(self.frame, self.me)
+        except PolicyError as error:
+            self.store.command = RobotCommand()
+            return self.fail(str(error))
+        return self.run(f"as {self.model} says")

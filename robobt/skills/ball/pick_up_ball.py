@@ -1,0 +1,91 @@
+"""Take a ball that lies close by into the mouth."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, pi, sin
+
+from robobt.motion.dribbling import settle
+from robobt.motion.pilot import command, turn_rate
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import wrap_angle
+from robobt.world.state import BallState, Frame, RobotState
+
+LOST_DISTANCE = 0.3
+"""A ball farther away is no longer one to pick up [m]."""
+
+
+def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotCommand:
+    """One tick of creeping onto the ball: turn to it and drive at it ``speed`` faster than it rolls.
+
+    The more the ball lies aside, the less the robot closes in, so that the mouth
+    meets it and not the hull.
+
+    Args:
+        speed: closing speed [m/s].
+        period: time until the next command [s].
+    """
+    if me.ball_contact:
+        return settle(me, period)
+    bearing = atan2(ball.y - me.y, ball.x - me.x)
+    aside = abs(wrap_angle(bearing - me.heading))
+    closing = speed * cos(min(2.0 * aside, 0.5 * pi))
+    omega = turn_rate(me, bearing, me.limits, period)
+    vx, vy = ball.vx + closing * cos(bearing), ball.vy + closing * sin(bearing)
+    chase = command(me, vx, vy, omega, me.limits, period)
+    chase.dribbler = True
+    return chase
+
+
+class Grip:
+    """Since when the ball has been in the mouth without a break."""
+
+    def __init__(self) -> None:
+        self._since = inf
+        self._seen = -inf
+
+    def held_for(self, frame: Frame, me: RobotState) -> float:
+        """Seconds of unbroken contact up to this frame; negative without contact."""
+        if not me.ball_contact:
+            self._since = inf
+            return -1.0
+        if self._since == inf or not 0.0 <= frame.time - self._seen < 2.5 * frame.period:
+            self._since = frame.time
+        self._seen = frame.time
+        return frame.time - self._since
+
+
+@skill
+class PickUpBall(Skill):
+    """Creep onto a ball close by with the dribbler on, turning to it on the way.
+
+    Succeeds when the ball has been in the mouth for ``settle`` seconds, fails
+    when it is more than 0.3 m away.
+
+    Source: the hand-coded state between the learned Go-To-Ball and Shoot in
+    RoboBulls' published code, which creeps at 0.2 m/s.
+
+    Args:
+        speed: how much faster than the ball to drive [m/s], but never faster than the robot's
+            dribbler takes it; None for that.
+        settle: how long the ball has to stay in the mouth [s].
+    """
+
+    def __init__(self, *, speed: float | None = 0.5, settle: float = 0.05, name: str = "") -> None:
+        super().__init__(name)
+        self.speed = speed
+        self.settle = settle
+        self._grip = Grip()
+
+    def on_running(self) -> Status:
+        """Creep for one tick."""
+        me, ball = self.me, self.ball
+        if hypot(ball.x - me.x, ball.y - me.y) > LOST_DISTANCE:
+            return self.fail("the ball is too far away")
+        takes = me.limits.catch_speed
+        speed = takes if self.speed is None else min(self.speed, takes)
+        self.store.command = grab(me, ball, speed, self.frame.period)
+        if self._grip.held_for(self.frame, me) >= self.settle - 1e-9:
+            return self.succeed("it has the ball")
+        return self.run("creeping onto the ball")

@@ -1,0 +1,170 @@
+"""Turn with the ball and kick it into the goal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from math import atan2, cos, hypot, inf, sin, sqrt
+from typing import ClassVar
+
+from robobt.motion.dribbling import MAX_ACCELERATION, dribbling_limits
+from robobt.motion.pilot import command, turn_rate
+from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
+from robobt.skills.base import Skill, skill
+from robobt.skills.store import Store
+from robobt.tree import Registry, Status
+from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.geometry import Point, direction, wrap_angle
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, RobotState
+
+KICK_SPEED = 6.4
+"""Kick speed of the hand-written policy [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
+
+_MAX_TURN = 4.0
+"""Turning rate of the hand-written policy with the ball [rad/s]."""
+_INSIDE = 0.6
+"""Share of the open angle to each side of the aim in which it kicks."""
+_LEFT = 1.0
+"""A ball that is this much faster than the robot after a kick has left [m/s]."""
+_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+_LOST_AFTER = 0.15
+"""A ball out of the mouth for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
+
+Policy = Callable[[Store], RobotCommand]
+"""What decides a shot, tick by tick, while the robot has the ball."""
+
+POLICIES: Registry[Policy] = Registry("shoot policy")
+"""Every way to shoot by its name."""
+
+SHIPPED = {"ddpg": "shoot_ddpg"}
+"""Those of them that are models, which are loaded when a leaf is made."""
+
+
+@skill
+class Shoot(Skill):
+    """Turn on the spot with the ball and kick it into the attacked goal: the paper's Shoot-Towards-Goal.
+
+    Succeeds when the ball has left after a kick, fails when the ball does not lie in
+    the mouth: one that merely lies before it cannot be kicked from the spot. Should
+    a trained policy answer something that is no action, the skill fails and the
+    robot stops.
+
+    Args:
+        policy: what decides turning and kick, by name: "geometric" aims at
+            ``store.shot``, else at the middle of the goal; or another of
+            ``POLICIES``; or a trained one by its model's name or file.
+
+    Raises:
+        ValueError: no policy has that name, or its model cannot be used.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot",)
+    optional: ClassVar[tuple[str, ...]] = ("shot",)
+
+    def __init__(self, *, policy: str = "geometric", name: str = "") -> None:
+        super().__init__(name)
+        self.policy = policy
+        self._decide = find_policy(policy, POLICIES, SHIPPED, LearnedShot)
+        self._kicked = False
+        self._had_it = -inf
+
+    def on_start(self) -> None:
+        """Forget the last shot."""
+        self._kicked = False
+        self._had_it = -inf
+
+    def on_running(self) -> Status:
+        """Turn, or kick, for one tick."""
+        me, ball, time = self.me, self.ball, self.frame.time
+        if self._kicked and _has_left(me, ball):
+            return self.succeed("kicked")
+        if me.ball_contact:
+            self._had_it = time
+        elif not 0.0 <= time - self._had_it <= _LOST_AFTER:
+            return self.fail("it does not have the ball")
+        try:
+            self.store.command = self._decide(self.store)
+        except PolicyError as error:
+            self.store.command = RobotCommand()
+            return self.fail(str(error))
+        self._kicked |= self.store.command.kick_speed > 0.0
+        return self.run("kicking" if self.store.command.kick_speed > 0.0 else "turning with the ball")
+
+
+@POLICIES.register("geometric")
+def geometric(store: Store) -> RobotCommand:
+    """Turn to the aim at the rate the dribbler bears, and kick once the ball would leave towards it.
+
+    The ball leaves along the heading with whatever sideways velocity it has.
+    """
+    frame, me, ball = store.frame, store.me, store.frame.ball
+    aim, tolerance = _aim(store)
+    wanted = direction(ball.position, aim)
+    limits = dribbling_limits(max_turn=_MAX_TURN, max_acceleration=MAX_ACCELERATION)
+    decided = command(me, 0.0, 0.0, turn_rate(me, wanted, limits, frame.period), limits, frame.period)
+    decided.dribbler = True
+    sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
+    if abs(wrap_angle(wanted - me.heading - atan2(sideways, KICK_SPEED))) <= tolerance:
+        decided.kick_speed = KICK_SPEED
+        decided.kick_trigger = KickTrigger.NOW
+    return decided
+
+
+class LearnedShot:
+    """A shot that a trained policy decides, turning and braking no harder than the dribbler bears.
+
+    Args:
+        model: name or file of a model for Shoot.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+
+    def __init__(self, model: str) -> None:
+        self._control = LearnedControl(model, skill="Shoot")
+
+    def __call__(self, store: Store) -> RobotCommand:
+        """The command of one tick.
+
+        Raises:
+            PolicyError: the policy answers what is no action.
+        """
+        decided, me = self._control.decide(store.frame, store.me), store.me
+        held = me.limits.hold_acceleration
+        # A ball at distance L that is turned with at w needs w^2 L.
+        fastest = sqrt(held / _TOUCHING)
+        decided.omega = min(fastest, max(-fastest, decided.omega))
+        speed = me.speed
+        if speed > held * store.frame.period:
+            left = 1.0 - held * store.frame.period / speed
+            c, s = left * cos(me.heading), left * sin(me.heading)
+            decided.vx, decided.vy = c * me.vx + s * me.vy, c * me.vy - s * me.vx
+        return decided
+
+
+@POLICIES.register("ddpg")
+def ddpg(store: Store) -> RobotCommand:
+    """Turn and kick as the shipped model says that was trained with DDPG."""
+    return _shipped()(store)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> LearnedShot:
+    return LearnedShot(SHIPPED["ddpg"])
+
+
+def _aim(store: Store) -> tuple[Point, float]:
+    """Where to shoot [m], and by how much the shot may be off [rad]."""
+    if store.shot is not None:
+        return store.shot.target, 0.5 * store.shot.tolerance
+    frame = store.frame
+    goal, half = frame.field.their_goal, frame.field.goal_width / 2 - BALL_RADIUS
+    x, y = frame.ball.position
+    upper, lower = (direction((x, y), (goal[0], side)) for side in (half, -half))
+    middle = direction((x, y), goal)
+    nearer_post = min(abs(wrap_angle(upper - middle)), abs(wrap_angle(lower - middle)))
+    return goal, _INSIDE * nearer_post
+
+
+def _has_left(me: RobotState, ball: BallState) -> bool:
+    return not me.ball_contact and hypot(ball.vx - me.vx, ball.vy - me.vy) > _LEFT

@@ -1,0 +1,1 @@
+"""Conditions: leaves that look and decide nothing else."""

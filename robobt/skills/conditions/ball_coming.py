@@ -1,0 +1,48 @@
+"""Condition: the ball rolls this robot's way."""
+
+from __future__ import annotations
+
+from robobt.motion.pilot import travel_time
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import has_ball
+from robobt.tree import Status
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+
+
+@skill
+class BallComing(Skill):
+    """SUCCESS while the ball rolls towards this robot, which can step into its way in time.
+
+    A ball that has passed, or passes too far off, has to be chased instead. FAILURE
+    while the robot has the ball.
+
+    Args:
+        slowest: ball that still comes [m/s].
+        late: how much too late the robot may be [s]; it then takes the ball a little farther on.
+    """
+
+    def __init__(self, *, slowest: float = 0.4, late: float = 0.2, name: str = "") -> None:
+        super().__init__(name)
+        self.slowest = slowest
+        self.late = late
+
+    def on_running(self) -> Status:
+        """Compare the ball's way to abreast of the robot with the robot's way to there."""
+        me, ball = self.me, self.ball
+        speed = ball.speed
+        if speed < self.slowest:
+            return self.fail("the ball is slow")
+        if has_ball(me, ball):
+            return self.fail("it has the ball")
+        dx, dy = me.x - ball.x, me.y - ball.y
+        ahead = (dx * ball.vx + dy * ball.vy) / speed
+        aside = (dy * ball.vx - dx * ball.vy) / speed
+        if ahead < _TOUCHING:
+            return self.fail("the ball has passed")
+        towards = (me.vx * ball.vy - me.vy * ball.vx) / speed * (1.0 if aside > 0.0 else -1.0)
+        needed = travel_time(max(0.0, abs(aside) - ROBOT_RADIUS), towards, me.limits)
+        if needed > ahead / speed + self.late:
+            return self.fail("the ball passes too far off")
+        return self.succeed("the ball comes")

@@ -1,0 +1,33 @@
+"""Condition: this robot may touch the ball."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.team.teamwork import attacker
+from robobt.tree import Status
+
+
+@skill
+class MayTouchBall(Skill):
+    """SUCCESS while the rules let this robot touch the ball.
+
+    That is while the ball is in play, but for a kicker before anybody else has
+    touched the ball, and for the own team once it may take a restart.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
+
+    def on_running(self) -> Status:
+        """Listen to the referee and remember who kicked."""
+        frame, team = self.frame, self.store.team
+        attacker(frame, team)
+        game = frame.game
+        if game.in_play:
+            if team.kicker == self.me.id:
+                return self.fail("nobody has touched the ball since my kick")
+            return self.succeed()
+        if game.may_touch and game.restart_team is frame.team and not game.halted and not game.stopped:
+            return self.succeed("our restart")
+        return self.fail(game.command.name)

@@ -1,0 +1,105 @@
+"""Get between the ball and the point it would go to."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import ClassVar
+
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.ball_watch import BallWatch
+from robobt.motion.pace import Pace
+from robobt.motion.pilot import drive, travel_time
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
+from robobt.world.limits import RobotLimits
+
+_SLOW = 0.5
+"""A slower ball is no reason to dive [m/s]."""
+
+_THERE = 0.04
+"""A robot this near to the line stops the ball with its front [m]."""
+
+
+@skill
+class BlockShot(Skill):
+    """Drive to the nearest point of the line from the ball to the store's ``target``, facing the ball.
+
+    Never ends by itself; FAILURE without a target. Avoids nothing: there is no
+    time to. A robot that cannot stop on the line before the ball is there does
+    not try to: it dives, which is to say it drives through.
+
+    Source: RoboBulls' published code, Goalie, which always brakes.
+
+    Args:
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+        dribbler: whether to catch the ball with the dribbler.
+        dive: whether it may drive through.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(
+        self,
+        *,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        dribbler: bool = True,
+        dive: bool = True,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.dribbler = dribbler
+        self.dive = dive
+        self.pace = Pace(limits, speed)
+        self._watch = BallWatch()
+
+    def on_running(self) -> Status:
+        """One period on the way to the line."""
+        target = self.store.target
+        if target is None:
+            return self.fail("no target to block the way to")
+        me, ball = self.me, self.ball
+        place = closest_point_on_segment(me.position, ball.position, target)
+        limits = self.pace.of(me.limits)
+        final_speed = self._dive_speed(place, limits) if self.dive else 0.0
+        facing = direction(me.position, ball.position)
+        self.store.command = drive(me, place, facing, limits, self.frame.period, final_speed)
+        self.store.command.dribbler = self.dribbler
+        return self.run("diving" if final_speed > 0.0 else "to the line of the shot")
+
+    def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
+        """The least speed at ``place`` with which the robot is there before the ball [m/s]."""
+        me, ball = self.me, self.ball
+        speed = ball.speed
+        rolling = self._watch.rolling_speed(self.frame)
+        gap = distance(me.position, place)
+        if speed < _SLOW or gap < _THERE:
+            return 0.0
+        time = DEFAULT_BALL.time_for(distance(ball.position, place), speed, rolling)
+        towards = (me.vx * (place[0] - me.x) + me.vy * (place[1] - me.y)) / gap
+        least, most = 0.0, limits.max_speed
+        if _in_time_braking(gap - _THERE, towards, time, limits) or (
+            _time_through(gap, towards, least, limits) <= time
+        ):
+            return 0.0
+        for _ in range(6):
+            middle = 0.5 * (least + most)
+            if _time_through(gap, towards, middle, limits) <= time:
+                most = middle
+            else:
+                least = middle
+        return most
+
+
+def _time_through(gap: float, towards: float, final_speed: float, limits: RobotLimits) -> float:
+    """Time to get ``gap`` far and be ``final_speed`` fast there [s]."""
+    braking = final_speed / limits.braking
+    return travel_time(gap + 0.5 * final_speed * braking, towards, limits) - braking
+
+
+def _in_time_braking(gap: float, towards: float, time: float, limits: RobotLimits) -> bool:
+    """Whether a robot that brakes from now on gets ``gap`` far within ``time``."""
+    left = towards * towards - 2.0 * limits.braking * gap
+    return towards > 0.0 and left >= 0.0 and towards - sqrt(left) <= limits.braking * time

@@ -1,0 +1,42 @@
+"""Stand in the way of the opponent that has the ball."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from robobt.motion.path_planner import travel
+from robobt.skills.base import Skill, skill
+from robobt.skills.possession import owner
+from robobt.tree import Status
+from robobt.world.geometry import direction
+from robobt.world.state import ROBOT_RADIUS
+
+
+@skill
+class ChallengeBall(Skill):
+    """Stand before the opponent that has the ball, on the line along which it looks.
+
+    FAILURE while no opponent has the ball; otherwise it never ends by itself.
+
+    Source: RoboBulls' published code (ChallengeBallBot), three radii beyond the ball.
+
+    Args:
+        gap: from the ball to the robot's centre [m].
+    """
+
+    def __init__(self, *, gap: float = 3.0 * ROBOT_RADIUS, name: str = "") -> None:
+        super().__init__(name)
+        self.gap = gap
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        frame, me, ball = self.frame, self.me, self.ball
+        who = owner(frame)
+        if who is None or who.team is frame.team:
+            return self.fail("no opponent has the ball")
+        holder = next(robot for robot in frame.opponents if robot.id == who.number)
+        target = (ball.x + self.gap * cos(holder.heading), ball.y + self.gap * sin(holder.heading))
+        self.store.command = travel(
+            frame, me, target, direction(me.position, ball.position), me.limits, avoid_ball=True
+        )
+        return self.run(f"before {holder.id}")

@@ -1,0 +1,70 @@
+"""Stand where the ball sees as little of our goal as possible."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import travel
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import direction
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+
+@skill
+class CoverAngle(Skill):
+    """Stand on the bisector of the angle between the posts as the ball sees them, facing the ball.
+
+    How far out is as far as ``stand_out``, but no farther than the own defence
+    area lets, nor than where the robot's width already hides the whole goal.
+    Never ends by itself; FAILURE while the ball is behind the goal line.
+
+    Args:
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+        stand_out: farthest from the goal line [m].
+    """
+
+    def __init__(
+        self,
+        *,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        stand_out: float = 0.5,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.stand_out = stand_out
+        self.pace = Pace(limits, speed)
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        field, me, ball = self.frame.field, self.me, self.ball
+        if ball.x <= -field.half_length:
+            return self.fail("the ball is behind the goal line")
+        half_goal = field.goal_width / 2
+        line = -field.half_length
+        to_left = hypot(ball.x - line, half_goal - ball.y)
+        to_right = hypot(ball.x - line, half_goal + ball.y)
+        # The bisector of an angle divides the opposite side as the other two sides.
+        foot = half_goal * (to_right - to_left) / (to_right + to_left)
+        dx, dy = ball.x - line, ball.y - foot
+        gap = hypot(dx, dy)
+        hides = ROBOT_RADIUS / half_goal * gap
+        out = min(self.stand_out, max(gap - hides, ROBOT_RADIUS), gap - ROBOT_RADIUS - BALL_RADIUS)
+        out = max(out, 0.0)
+        x = max(line + out * dx / gap, line + ROBOT_RADIUS)
+        most_y = field.defense_width / 2 - ROBOT_RADIUS
+        y = min(most_y, max(-most_y, foot + out * dy / gap))
+        self.store.command = travel(
+            self.frame,
+            me,
+            (min(x, line + field.defense_depth - ROBOT_RADIUS), y),
+            direction(me.position, ball.position),
+            self.pace.of(me.limits),
+            avoid_robots=False,
+            goalkeeper=True,
+        )
+        return self.run("covering the angle")

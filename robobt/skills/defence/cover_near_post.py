@@ -1,0 +1,62 @@
+"""Stand between the ball and the nearest point of our goal."""
+
+from __future__ import annotations
+
+from robobt.motion.pace import Pace
+from robobt.motion.path_planner import travel
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import closest_point_on_segment, direction
+from robobt.world.limits import RobotLimits
+from robobt.world.state import ROBOT_RADIUS
+
+
+@skill
+class CoverNearPost(Skill):
+    """Drive to the nearest point of the line from the ball to the nearest point of the goal mouth.
+
+    Never ends by itself. FAILURE while the ball lies beside the goal or that
+    point is not well inside the own defence area.
+
+    Source: RoboBulls' published code, Goalie.
+
+    Args:
+        limits: how to drive; None for the robot's own.
+        speed: factor on the top speed.
+        before_goal: balls farther back than this count as beside the goal [m].
+    """
+
+    def __init__(
+        self,
+        *,
+        limits: RobotLimits | None = None,
+        speed: float = 1.0,
+        before_goal: float = 0.15,
+        name: str = "",
+    ) -> None:
+        super().__init__(name)
+        self.before_goal = before_goal
+        self.pace = Pace(limits, speed)
+
+    def on_running(self) -> Status:
+        """One period on the way to the line."""
+        field, me, ball = self.frame.field, self.me, self.ball.position
+        if ball[0] < self.before_goal - field.half_length:
+            return self.fail("the ball is beside the goal")
+        half_goal = field.goal_width / 2
+        nearest = (-field.half_length, min(half_goal, max(-half_goal, ball[1])))
+        place = closest_point_on_segment(me.position, ball, nearest)
+        if place[0] > field.defense_depth - field.half_length - ROBOT_RADIUS or (
+            abs(place[1]) > field.defense_width / 2
+        ):
+            return self.fail("too far out")
+        self.store.command = travel(
+            self.frame,
+            me,
+            place,
+            direction(me.position, ball),
+            self.pace.of(me.limits),
+            avoid_robots=False,
+            goalkeeper=True,
+        )
+        return self.run("covering the near post")

@@ -1,0 +1,51 @@
+"""Mark an opponent, so that it gets no pass."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.motion.path_planner import travel
+from robobt.skills.base import Skill, skill
+from robobt.skills.team.teamwork import marked
+from robobt.tree import Status
+from robobt.world.geometry import direction
+
+
+@skill
+class MarkOpponent(Skill):
+    """Stand beside an opponent in the own half, between it and the ball.
+
+    The robots of a team that mark share the opponents: those nearest to the own
+    goal first, each the nearest free marker, none the holder of the ball. FAILURE
+    while there is none left for this robot; otherwise it never ends by itself.
+
+    Source: RoboBulls' published code (MarkBot).
+
+    Args:
+        gap: from centre to centre [m].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
+    writes: ClassVar[tuple[str, ...]] = ("team",)
+
+    def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
+        super().__init__(name)
+        self.gap = gap
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        frame, me, team = self.frame, self.me, self.store.team
+        if me.id not in team.markers:
+            team.markers.add(me.id)
+            team.agreed_on = None
+        opponent = marked(frame, team, me.id)
+        if opponent is None:
+            return self.fail("nobody to mark")
+        ball = frame.ball
+        dx, dy = ball.x - opponent.x, ball.y - opponent.y
+        share = self.gap / max(self.gap, (dx * dx + dy * dy) ** 0.5)
+        target = (opponent.x + dx * share, opponent.y + dy * share)
+        self.store.command = travel(
+            frame, me, target, direction(me.position, ball.position), me.limits, avoid_ball=True
+        )
+        return self.run(f"marking {opponent.id}")

@@ -1,0 +1,1 @@
+"""Positions and conduct while the ball is out of play."""

@@ -1,0 +1,44 @@
+"""Line up for a kick-off."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from robobt.motion.path_planner import travel
+from robobt.skills.base import Skill, skill
+from robobt.skills.team.teamwork import attacker
+from robobt.tree import Status
+from robobt.world.geometry import direction
+from robobt.world.state import ROBOT_RADIUS
+
+_ROOM = 0.1
+
+
+@skill
+class GoToKickoffPosition(Skill):
+    """Line up in the own half outside the centre circle, spread over the field's width.
+
+    The robots that go for the ball in open play share the line in order of their
+    numbers, without the one that takes the kick-off. Never ends by itself.
+
+    Args:
+        spread: share of the field's width that the line takes.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
+
+    def __init__(self, *, spread: float = 0.6, name: str = "") -> None:
+        super().__init__(name)
+        self.spread = spread
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        frame, me, team = self.frame, self.me, self.store.team
+        field = frame.field
+        taker = attacker(frame, team) if frame.game.restart_team is frame.team else None
+        line = sorted({*team.attackers, me.id} - {taker})
+        share = (line.index(me.id) + 0.5) / len(line) - 0.5
+        x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)
+        target = (x, -share * self.spread * field.width)
+        self.store.command = travel(frame, me, target, direction(me.position, (0.0, 0.0)), me.limits)
+        return self.run("lining up")

@@ -1,0 +1,65 @@
+"""Wait behind the ball until the restart may be taken."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import ClassVar
+
+from robobt.motion.path_planner import STOP_DISTANCE, travel
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.geometry import Point, direction
+from robobt.world.state import ROBOT_RADIUS
+
+_STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
+
+
+@skill
+class PrepareRestart(Skill):
+    """Stand behind the ball of the own restart, looking over it at where it shall go.
+
+    That is the target of ``shot``, else of ``pass_``, else the opponent's goal. In
+    a stop it keeps to the rules' distance. SUCCESS once the restart may be taken,
+    FAILURE while the own team has none.
+
+    Args:
+        gap: from the ball to the robot's centre [m].
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
+    optional: ClassVar[tuple[str, ...]] = ("shot", "pass_")
+
+    def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
+        super().__init__(name)
+        self.gap = gap
+
+    def on_running(self) -> Status:
+        """One period on the way to the place."""
+        frame, me, game = self.frame, self.me, self.frame.game
+        if game.restart is None or game.restart_team is not frame.team:
+            return self.fail("no restart of ours")
+        if game.may_touch and not game.stopped:
+            return self.succeed("it may be taken")
+        spot = game.placement or frame.ball.position
+        x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
+        if game.stopped and not frame.field.contains(x, y):
+            x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
+        self.store.command = travel(
+            frame, me, (x, y), direction(me.position, spot), me.limits, avoid_ball=True
+        )
+        return self.run("waiting for the whistle")
+
+    def _aim(self) -> Point:
+        store = self.store
+        if store.shot is not None:
+            return store.shot.target
+        return self.frame.field.their_goal if store.pass_ is None else store.pass_.target
+
+
+def _before(spot: Point, point: Point, gap: float) -> Point:
+    """``gap`` metres from ``spot`` towards ``point``, towards +x where both are one; behind when negative."""
+    dx, dy = point[0] - spot[0], point[1] - spot[1]
+    length = hypot(dx, dy)
+    if length == 0.0:
+        return (spot[0] + gap, spot[1])
+    return (spot[0] + gap * dx / length, spot[1] + gap * dy / length)

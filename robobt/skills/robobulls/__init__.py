@@ -1,0 +1,1 @@
+"""The paper's own team software, RoboBulls, as its published code behaves."""

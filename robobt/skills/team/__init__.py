@@ -1,0 +1,1 @@
+"""Who does what, and where to wait for the ball."""

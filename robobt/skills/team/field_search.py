@@ -1,0 +1,58 @@
+"""The base of skills that look for the best place in the opponent's half."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from math import inf
+from typing import ClassVar
+
+from robobt.skills.base import Skill
+from robobt.skills.rate_limit import Cadence
+from robobt.skills.team.position_grid import GridArray, PositionGrid, position_grid
+from robobt.tree import Status
+from robobt.world.geometry import Point
+
+
+class FieldSearch(Skill):
+    """Write the grid point with the largest :meth:`value` to ``target``.
+
+    SUCCESS, or FAILURE on a field with no point to go to. The target stands until
+    the next look, and after it while no other is clearly better.
+
+    Args:
+        spacing: of the grid [m].
+        every: time from one look to the next [s].
+        keep: stay with the last target while it is at most this much worse than the best.
+    """
+
+    writes: ClassVar[tuple[str, ...]] = ("target",)
+
+    def __init__(self, *, spacing: float, every: float, keep: float, name: str) -> None:
+        super().__init__(name)
+        if not spacing > 0.0:
+            raise ValueError(f"spacing must be positive, not {spacing}")
+        self.spacing = spacing
+        self.keep = keep
+        self._look = Cadence(every)
+        self._target: Point | None = None
+
+    @abstractmethod
+    def value(self, grid: PositionGrid) -> GridArray:
+        """How good each grid point is, (X, Y); -inf where nobody may go."""
+
+    def on_running(self) -> Status:
+        """Look again when it is time to."""
+        if self._look.due(self.frame.time):
+            self._target = self._search()
+        self.store.target = self._target
+        return self.fail("nowhere to go") if self._target is None else self.succeed()
+
+    def _search(self) -> Point | None:
+        grid = position_grid(self.frame.field, self.spacing)
+        value = self.value(grid)
+        point, most = grid.best(value)
+        if most == -inf:
+            return None
+        if self._target is not None and grid.at(value, self._target) >= most - self.keep:
+            return self._target
+        return point

@@ -1,0 +1,41 @@
+"""Condition: this robot is the one that goes for the ball."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import ClassVar
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.team.teamwork import attacker
+from robobt.tree import Status
+
+
+@skill
+class IsAttacker(Skill):
+    """SUCCESS for the one robot of the team that goes for the ball or takes the restart.
+
+    Of the robots that ask it is the one with the shortest way to behind the ball;
+    another takes over when its way is clearly shorter. A kicker that may not
+    touch the ball again yet is passed over.
+
+    Args:
+        farthest: largest x of the ball at which this robot goes for it [m]; None is any.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = ("team",)
+    writes: ClassVar[tuple[str, ...]] = ("team",)
+
+    def __init__(self, *, farthest: float | None = None, name: str = "") -> None:
+        super().__init__(name)
+        self.farthest = inf if farthest is None else farthest
+
+    def on_running(self) -> Status:
+        """Enter oneself and see who it is."""
+        team, number = self.store.team, self.me.id
+        if number not in team.attackers:
+            team.attackers[number] = self.farthest
+            team.agreed_on = None
+        chosen = attacker(self.frame, team)
+        if chosen == number:
+            return self.succeed()
+        return self.fail("nobody" if chosen is None else f"{chosen} does")

@@ -1,0 +1,202 @@
+"""Replaces nodes of a built tree by leaves that follow a script, to test what is around them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import ParallelPolicy, Status
+from py_trees.composites import Composite, Parallel
+from py_trees.decorators import Decorator
+
+from robobt.tree.interop.errors import TreeFileError
+from robobt.tree.interop.plain_yaml import MAX_BYTES, Marked, YamlError, read_marked
+from robobt.tree.runner import node_path
+
+
+class ScriptedLeaf(Behaviour):
+    """Returns the statuses of a script in turn, a tick each, and the last one from then on.
+
+    Neither its end nor an interruption begins the script anew.
+
+    Args:
+        script: at least one status.
+    """
+
+    def __init__(self, name: str, script: Iterable[Status]) -> None:
+        super().__init__(name)
+        self.script = tuple(script)
+        self.ticks = 0
+        if not self.script:
+            raise ValueError(f"the script of {name!r} is empty")
+
+    def update(self) -> Status:
+        """The next status."""
+        status = self.script[min(self.ticks, len(self.script) - 1)]
+        self.ticks += 1
+        self.feedback_message = f"scripted, tick {self.ticks}"
+        return status
+
+
+@dataclass(frozen=True, slots=True)
+class Substitution:
+    """A rule: which nodes are replaced, and by what.
+
+    Attributes:
+        pattern: of the nodes' paths, such as ``*/GoToBall``; ``*`` stands for any text,
+            slashes too, ``?`` and ``[...]`` as in file names; upper and lower case differ.
+        script: statuses that the leaf in their place returns, a tick each; the last one stays.
+        source, line: where the rule stands, for messages.
+    """
+
+    pattern: str
+    script: tuple[Status, ...]
+    source: str = "rules"
+    line: int | None = None
+
+
+def read_substitutions(path: str | Path) -> list[Substitution]:
+    """The rules of a YAML file.
+
+    A mapping from patterns to a status, a list of statuses, or a mapping with one of both
+    under ``status`` or ``script``::
+
+        "*/GoToBall": SUCCESS
+        "*/kick away/*/KickToTarget": [RUNNING, RUNNING, FAILURE]
+        "*/HasBall": {script: [FAILURE, SUCCESS]}
+
+    Raises:
+        TreeFileError: the first thing that is wrong, with file and line.
+    """
+    source = str(path)
+    try:
+        with Path(path).open("rb") as opened:
+            content = opened.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise TreeFileError(source, None, f"cannot be read: {reason}") from error
+    try:
+        marked = read_marked(content)
+    except YamlError as error:
+        raise TreeFileError(source, error.line, str(error)) from error
+    return _rules(marked, source)
+
+
+def substitutions(rules: Mapping[str, Any], source: str = "rules") -> list[Substitution]:
+    """The same rules from a mapping as a file has them; statuses may also be :class:`Status`.
+
+    Raises:
+        TreeFileError: the first thing that is wrong, without a line.
+    """
+    return _rules(_marked(dict(rules)), source)
+
+
+def substitute(root: Behaviour, rules: Iterable[Substitution] | Mapping[str, Any] | str | Path) -> Behaviour:
+    """Replace every node whose path matches a rule by a :class:`ScriptedLeaf` of its name.
+
+    The first rule that matches counts, and what is below a replaced node is gone with it.
+    To be called before the tree is bound to a store and ticked.
+
+    Args:
+        root: the tree; it is changed.
+        rules: as read or given; a path is that of a file of them.
+
+    Returns:
+        The tree's root, another one when the root itself was replaced.
+
+    Raises:
+        TreeFileError: a rule is wrong, or there is no node for it.
+    """
+    if isinstance(rules, str | Path):
+        rules = read_substitutions(rules)
+    elif isinstance(rules, Mapping):
+        rules = substitutions(rules)
+    chosen = list(rules)
+    matched: set[int] = set()
+    # Chosen before anything is replaced, so that a broken rule leaves the tree as it was.
+    replaced = _choose(root, chosen, matched)
+    for number, rule in enumerate(chosen):
+        if number not in matched:
+            raise TreeFileError(rule.source, rule.line, f"no node of the tree is left for {rule.pattern!r}")
+    for node, rule in replaced:
+        leaf = ScriptedLeaf(node.name, rule.script)
+        if node is root:
+            return leaf
+        _replace(node, leaf)
+    return root
+
+
+def _choose(
+    node: Behaviour, rules: list[Substitution], matched: set[int]
+) -> list[tuple[Behaviour, Substitution]]:
+    path = node_path(node)
+    for number, rule in enumerate(rules):
+        if fnmatchcase(path, rule.pattern):
+            matched.add(number)
+            return [(node, rule)]
+    return [pair for child in node.children for pair in _choose(child, rules, matched)]
+
+
+def _replace(node: Behaviour, leaf: Behaviour) -> None:
+    parent = node.parent
+    if isinstance(parent, Composite):
+        parent.replace_child(node, leaf)
+    elif isinstance(parent, Decorator):
+        parent.decorated, parent.children, leaf.parent = leaf, [leaf], parent
+    if isinstance(parent, Parallel) and isinstance(parent.policy, ParallelPolicy.SuccessOnSelected):
+        parent.policy.children = [leaf if child is node else child for child in parent.policy.children]
+
+
+def _rules(marked: Marked, source: str) -> list[Substitution]:
+    if not isinstance(marked.value, dict) or not marked.value:
+        problem = "rules map patterns of paths to statuses: '*/HasBall': SUCCESS"
+        raise TreeFileError(source, marked.line or None, problem)
+    return [
+        Substitution(pattern, _script(pattern, part, source), source, part.line or None)
+        for pattern, part in marked.value.items()
+    ]
+
+
+def _script(pattern: str, marked: Marked, source: str) -> tuple[Status, ...]:
+    line = marked.line or None
+    if isinstance(marked.value, dict):
+        for key, part in marked.value.items():
+            if key not in ("status", "script"):
+                problem = f"{pattern}: unknown key {key!r}; a rule has status or script"
+                raise TreeFileError(source, part.line or None, problem)
+        if len(marked.value) != 1:
+            raise TreeFileError(source, line, f"{pattern}: a rule has either status or script")
+        ((key, marked),) = marked.value.items()
+        if isinstance(marked.value, list) is not (key == "script"):
+            one = "a list of statuses" if key == "script" else "one status"
+            raise TreeFileError(source, marked.line or None, f"{pattern}: {key} is {one}")
+    steps = marked.value if isinstance(marked.value, list) else [marked]
+    if not steps:
+        raise TreeFileError(source, line, f"{pattern}: the script is empty")
+    return tuple(_status(pattern, step, source) for step in steps)
+
+
+def _status(pattern: str, marked: Marked, source: str) -> Status:
+    for status in (Status.SUCCESS, Status.FAILURE, Status.RUNNING):
+        if marked.value is status or marked.value == status.value:
+            return status
+    problem = f"{pattern}: {_say(marked.value)} is not SUCCESS, FAILURE or RUNNING"
+    raise TreeFileError(source, marked.line or None, problem)
+
+
+def _say(value: Any) -> str:
+    kinds: dict[type, str] = {dict: "a mapping", list: "a list"}
+    return kinds.get(type(value)) or repr(value)[:40]
+
+
+def _marked(value: Any) -> Marked:
+    """Given data in the form of read data; its lines are 0, for there are none."""
+    if isinstance(value, Mapping):
+        return Marked({str(key): _marked(part) for key, part in value.items()}, 0)
+    if isinstance(value, list | tuple):
+        return Marked([_marked(part) for part in value], 0)
+    return Marked(value, 0)

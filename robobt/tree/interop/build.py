@@ -1,0 +1,241 @@
+"""From what a tree file says to the tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from robobt.tree.check import entries_of
+from robobt.tree.interop.errors import TreeFileError
+from robobt.tree.interop.formula import evaluate
+from robobt.tree.interop.model import (
+    Choice,
+    Definition,
+    Entry,
+    Formula,
+    Name,
+    Node,
+    Spec,
+    SubTree,
+    Text,
+    TreeFile,
+    Value,
+)
+from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.parameters import Parameter, ParameterError, parameters_of, say_value
+
+MAX_NODES = 10_000
+"""Most nodes of a tree that is built from a file."""
+
+
+def build_tree(
+    file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value] | None = None, tree: str | None = None
+) -> Behaviour:
+    """A new tree.
+
+    Args:
+        file: what is built; :func:`~robobt.tree.interop.verify.verify` has found nothing wrong with it.
+        vocabulary: what it names.
+        given: values of the tree's parameters, plain data.
+        tree: which of the file's trees; None for its main tree.
+
+    Raises:
+        TreeFileError: a value does not fit, or a node cannot be made.
+    """
+    definition = file.trees[file.main if tree is None else tree]
+    try:
+        return _Builder(file, vocabulary).tree(definition, given or {}, None)
+    except RecursionError as error:
+        raise TreeFileError(file.source, definition.line, "it is nested too deeply") from error
+
+
+@dataclass(slots=True)
+class _Scope:
+    """What names stand for in one tree.
+
+    Attributes:
+        values: its parameters and what it computes from them.
+        outside: where names that it does not know are looked up, None when nowhere.
+    """
+
+    values: dict[str, Value]
+    outside: _Scope | None
+
+
+class _Builder:
+    def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
+        self.file, self.vocabulary = file, vocabulary
+        self.count = 0
+        self.open: list[str] = []
+        self.top: _Scope | None = None
+
+    def tree(self, definition: Definition, given: Mapping[str, Value], outside: _Scope | None) -> Behaviour:
+        scope = self._scope(definition, given, outside)
+        self.top = self.top or scope
+        self.open.append(definition.name)
+        root = self.spec(definition.root, scope)
+        self.open.pop()
+        return root
+
+    def spec(self, spec: Spec, scope: _Scope) -> Behaviour:
+        if isinstance(spec, Choice):
+            chosen: Spec = self._chosen(spec, scope)
+            return self.spec(chosen, scope)
+        self.count += 1
+        if self.count > MAX_NODES:
+            raise self._error(spec.line, f"the tree has more than {MAX_NODES} nodes")
+        return self._sub_tree(spec, scope) if isinstance(spec, SubTree) else self._node(spec, scope)
+
+    def _scope(self, definition: Definition, given: Mapping[str, Value], outside: _Scope | None) -> _Scope:
+        scope = _Scope(dict(given), outside)
+        for name, parameter in definition.parameters.items():
+            if name in given:
+                if not isinstance(given[name], Entry | Text):
+                    with self._at(definition.line, definition.name):
+                        parameter.convert(given[name])
+            elif not parameter.required and outside is None:
+                default = parameter.default
+                scope.values[name] = Entry(default.name) if isinstance(default, Name) else default
+        for name, value in definition.let.items():
+            scope.values[name] = self._resolve(value, scope, definition.line)
+        return scope
+
+    def _sub_tree(self, spec: SubTree, scope: _Scope) -> Behaviour:
+        given = {
+            name: self._resolve(value, scope, spec.line_of(name)) for name, value in spec.parameters.items()
+        }
+        definition = self.file.trees.get(spec.tree)
+        if definition is not None:
+            if spec.tree in self.open:
+                raise self._error(spec.line, f"the tree {spec.tree!r} contains itself")
+            for name, parameter in definition.parameters.items():
+                if name not in given and isinstance(parameter.default, Name) and not spec.autoremap:
+                    given[name] = self._resolve(parameter.default, scope, spec.line)
+            return self.tree(definition, given, scope if spec.autoremap else None)
+        play = self.vocabulary.plays[spec.tree]
+        known = {parameter.name: parameter for parameter in parameters_of(play)}
+        converted = {}
+        for name, value in given.items():
+            with self._at(spec.line_of(name), spec.tree):
+                converted[name] = self._converted(known[name], value)
+        with self._at(spec.line, spec.tree):
+            root = play(**converted)
+            if isinstance(root, Behaviour):
+                return root
+        raise self._error(spec.line, f"{spec.tree} is no play: it made {say_value(root)}")
+
+    def _node(self, spec: Node, scope: _Scope) -> Behaviour:
+        known = self.vocabulary.type(spec.type)
+        assert known is not None
+        given = {}
+        for name, value in spec.parameters.items():
+            line = spec.line_of(name)
+            resolved = self._resolve(value, scope, line)
+            with self._at(line, spec.type):
+                if isinstance(resolved, Entry):
+                    self._check_entry(resolved)
+                if not self._wired(known, name, resolved):
+                    given[name] = self._converted(known.parameters[name], resolved)
+        branches: dict[str, Any] = {}
+        for name, branch in spec.branches.items():
+            if isinstance(branch, list):
+                branches[name] = [self.spec(child, scope) for child in branch]
+            elif isinstance(branch, dict):
+                made = [(cases, self.spec(child, scope)) for cases, child in branch.items()]
+                branches[name] = {case: child for cases, child in made for case in split_cases(cases)}
+            else:
+                branches[name] = self.spec(branch, scope)
+        with self._at(spec.line, spec.type):
+            return known.make(spec.name, given, branches)
+
+    def _wired(self, known: NodeType, name: str, value: Value) -> bool:
+        """Whether the value only says which entry a leaf uses, and says what it does anyway."""
+        if name not in (*known.reads, *known.writes):
+            return False
+        if isinstance(value, Entry):
+            if value.entry == name:
+                return True
+            if name not in known.parameters:
+                raise ParameterError(
+                    name, f"{known.name} uses the entry {name!r} and cannot be wired to {value.entry!r}"
+                )
+        elif name not in known.parameters:
+            raise ParameterError(name, f"is an entry that {known.name} uses; it takes {{{name}}}, no value")
+        return False
+
+    def _check_entry(self, entry: Entry) -> None:
+        store = self.vocabulary.store
+        if store is not None and entry.entry not in entries_of(store):
+            raise ParameterError(
+                entry.entry,
+                f"is no parameter of the tree, and {store.__name__} has no such entry; "
+                f"there are {', '.join(entries_of(store))}",
+            )
+
+    def _converted(self, parameter: Parameter, value: Value) -> Any:
+        if isinstance(value, Text):
+            value = self.vocabulary.from_text(parameter, value.text)
+        return self.vocabulary.convert(parameter, value)
+
+    def _resolve(self, value: Value, scope: _Scope, line: int) -> Value:
+        """The value with everything that stands for something else replaced by that."""
+        if isinstance(value, Name):
+            return self._find(value.name, scope, line)
+        if isinstance(value, Formula):
+            with self._at(line, "formula"):
+                return evaluate(value.text, scope.values)
+        if isinstance(value, Choice):
+            return self._resolve(self._chosen(value, scope), scope, line)
+        if isinstance(value, list):
+            return [self._resolve(part, scope, line) for part in value]
+        if isinstance(value, dict):
+            return {key: self._resolve(part, scope, line) for key, part in value.items()}
+        return value
+
+    def _find(self, name: str, scope: _Scope, line: int) -> Value:
+        place: _Scope | None = self.top if name.startswith("@") else scope
+        name = name.removeprefix("@")
+        last = place
+        while place is not None:
+            if name in place.values:
+                return place.values[name]
+            last, place = place, place.outside
+        if last is self.top:
+            return Entry(name)
+        raise self._error(
+            line,
+            f"the tree {self.open[-1]!r} is not given {name!r}: in BehaviorTree.CPP it would be the "
+            f'sub-tree\'s own entry, which robobt has not; give it {name}="{{{name}}}" or _autoremap',
+        )
+
+    def _chosen(self, choice: Choice, scope: _Scope) -> Any:
+        by = self._resolve(choice.by, scope, choice.line)
+        if isinstance(by, str) and by in choice.cases:
+            return choice.cases[by]
+        cases = ", ".join(choice.cases)
+        raise self._error(choice.line, f"there is no case for {say_value(by)}; there are {cases}")
+
+    def _error(self, line: int | None, problem: str) -> TreeFileError:
+        return TreeFileError(self.file.source, line, problem)
+
+    @contextmanager
+    def _at(self, line: int, what: str) -> Iterator[None]:
+        """Whatever a constructor or a play raises is an error at this line."""
+        try:
+            yield
+        except (TreeFileError, RecursionError):
+            raise
+        except ParameterError as error:
+            raise self._error(line, f"{what}: {error.parameter}: {error}") from error
+        except Exception as error:
+            said = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+            raise self._error(line, f"{what}: {said}") from error
+
+
+def split_cases(cases: str) -> list[str]:
+    """The cases that one branch of a switch serves: ``halt | stop``."""
+    return [case.strip() for case in cases.split("|")]

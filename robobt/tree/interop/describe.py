@@ -1,0 +1,121 @@
+"""From a tree to what a tree file says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from robobt.tree.interop.model import Definition, Node, TreeFile
+from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.parameters import ParameterError
+from robobt.tree.runner import node_path
+
+
+def describe_tree(root: Behaviour, vocabulary: Vocabulary, name: str) -> TreeFile:
+    """A tree as a file of one tree without parameters; parameters at their default are left out.
+
+    Args:
+        root: the tree.
+        vocabulary: what files may name.
+        name: what the tree will be called.
+
+    Raises:
+        ValueError: files cannot say it; the message names the node's path.
+    """
+    return TreeFile(name, name, {name: Definition(name, _describe(root, vocabulary))}, "yaml")
+
+
+def tree_differences(one: Behaviour, other: Behaviour, vocabulary: Vocabulary) -> list[str]:
+    """Where two trees differ in types, names, parameters and children, a line each; none when equal.
+
+    Raises:
+        ValueError: a node is of a type that no file can name.
+    """
+    path = node_path(one)
+    if type(one) is not type(other) or one.name != other.name:
+        return [f"{path}: {_say(one)} and {_say(other)}"]
+    kind = _type_of(one, vocabulary)
+    mine, theirs = kind.arguments(one), kind.arguments(other)
+    found = [
+        f"{path}: {name} is {mine[name]!r} and {theirs[name]!r}"
+        for name in mine
+        if mine[name] != theirs[name]
+    ]
+    if _cases(one, kind) != _cases(other, kind):
+        found.append(f"{path}: the cases differ")
+    if len(one.children) != len(other.children):
+        found.append(f"{path}: {len(one.children)} children and {len(other.children)}")
+    for child, its in zip(one.children, other.children, strict=False):
+        found += tree_differences(child, its, vocabulary)
+    return found
+
+
+def _describe(node: Behaviour, vocabulary: Vocabulary) -> Node:
+    kind = _type_of(node, vocabulary)
+    described = Node(kind.name, _name(node, kind))
+    try:
+        arguments = kind.arguments(node)
+    except (AttributeError, ValueError) as error:
+        raise ValueError(f"{node_path(node)}: {error}") from error
+    for name, value in arguments.items():
+        parameter = kind.parameters[name]
+        if parameter.required or not _is_default(value, parameter.default):
+            try:
+                described.parameters[name] = vocabulary.plain(parameter, value)
+            except ParameterError as error:
+                raise ValueError(f"{node_path(node)}: {error.parameter}: {error}") from error
+    for name, shape in kind.branches.items():
+        if shape == "many":
+            described.branches[name] = [_describe(child, vocabulary) for child in node.children]
+        elif shape == "cases":
+            described.branches[name] = {
+                " | ".join(cases): _describe(child, vocabulary)
+                for cases, child in _by_child(getattr(node, name)).values()
+            }
+        else:
+            child = node.children[0] if shape == "one" else getattr(node, name)
+            if child is not None:
+                described.branches[name] = _describe(child, vocabulary)
+    return described
+
+
+def _type_of(node: Behaviour, vocabulary: Vocabulary) -> NodeType:
+    kind = vocabulary.type_of(node)
+    if kind is None:
+        raise ValueError(
+            f"{node_path(node)}: files cannot name a {type(node).__name__}; it is not registered"
+        )
+    return kind
+
+
+def _name(node: Behaviour, kind: NodeType) -> str | None:
+    if not node.name.strip() or not node.name.isprintable():
+        raise ValueError(f"{node_path(node)!r}: files hold names that are printable and on one line")
+    return None if kind.leaf and node.name == kind.cls.__name__ else node.name
+
+
+def _is_default(value: Any, default: Any) -> bool:
+    return value is default or (type(value) is type(default) and bool(value == default))
+
+
+def _by_child(cases: dict[str, Behaviour]) -> dict[int, tuple[list[str], Behaviour]]:
+    """Cases that share a child together, in the order of their first."""
+    shared: dict[int, tuple[list[str], Behaviour]] = {}
+    for case, child in cases.items():
+        shared.setdefault(id(child), ([], child))[0].append(case)
+    return shared
+
+
+def _cases(node: Behaviour, kind: NodeType) -> list[tuple[str, int]]:
+    """Which child serves which case."""
+    return [
+        (case, node.children.index(child))
+        for name, shape in kind.branches.items()
+        if shape == "cases"
+        for case, child in getattr(node, name).items()
+    ]
+
+
+def _say(node: Behaviour) -> str:
+    return f"{type(node).__name__} {node.name!r}"

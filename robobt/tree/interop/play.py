@@ -1,0 +1,93 @@
+"""A tree file as a function: what plays are."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from robobt.tree.interop.build import build_tree
+from robobt.tree.interop.errors import TreeFileError
+from robobt.tree.interop.model import Name, Text, TreeFile
+from robobt.tree.interop.vocabulary import Vocabulary
+from robobt.tree.interop.xml import parse_xml
+from robobt.tree.interop.xml_reader import MAX_BYTES
+from robobt.tree.interop.yaml import parse_yaml
+
+FILE_ENDINGS = (".yaml", ".yml", ".xml")
+"""How the names of tree files end."""
+
+
+class FilePlay:
+    """Builds a new tree of a file at every call.
+
+    Its signature is that of the main tree's parameters, so that it can be listed,
+    checked and called as a play that is written in Python.
+
+    Attributes:
+        file: what the file says.
+    """
+
+    def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
+        self.file = file
+        self._vocabulary = vocabulary
+        main = file.trees[file.main]
+        self.__name__ = self.__qualname__ = main.name
+        self.__doc__ = main.description
+        entries = [
+            inspect.Parameter(
+                entry.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=inspect.Parameter.empty if entry.required else entry.default,
+                annotation=entry.hint,
+            )
+            for entry in main.parameters.values()
+            # What is no plain data of a known type is XML's own affair.
+            if not isinstance(entry.default, Name | Text)
+        ]
+        self.__annotations__ = {entry.name: entry.annotation for entry in entries}
+        self.__signature__ = inspect.Signature(entries)
+
+    def __call__(self, **given: Any) -> Behaviour:
+        """A new tree.
+
+        Raises:
+            TypeError: a parameter is unknown or missing.
+            TreeFileError: a value does not fit.
+        """
+        self.__signature__.bind(**given)
+        return build_tree(self.file, self._vocabulary, given)
+
+
+def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
+    """The trees of a file, YAML or XML by its ending, with the main tree built once to see that it can be.
+
+    Raises:
+        TreeFileError: it cannot be read, or the first thing that is wrong with it.
+    """
+    path = Path(path)
+    if path.suffix not in FILE_ENDINGS:
+        raise TreeFileError(str(path), None, f"its ending is none of {', '.join(FILE_ENDINGS)}")
+    parse = parse_xml if path.suffix == ".xml" else parse_yaml
+    try:
+        with path.open("rb") as opened:
+            content = opened.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise TreeFileError(str(path), None, f"cannot be read: {reason}") from error
+    file = parse(content, vocabulary, str(path))
+    try_build(file, vocabulary)
+    return file
+
+
+def try_build(file: TreeFile, vocabulary: Vocabulary) -> None:
+    """Build a file's main tree with its parameters' defaults, if they all have one.
+
+    Raises:
+        TreeFileError: it cannot be built.
+    """
+    main = file.trees[file.main]
+    if file.language == "xml" or not any(entry.required for entry in main.parameters.values()):
+        build_tree(file, vocabulary)

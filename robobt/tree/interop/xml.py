@@ -1,0 +1,526 @@
+"""Tree files in the XML of BehaviorTree.CPP 4, as Groot2 writes it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from math import isfinite
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from robobt.tree.interop.btcpp import (
+    METADATA,
+    NODE_TAGS,
+    OTHER_TAGS,
+    SCRIPTS,
+    TAGS,
+    UNKNOWN_HERE,
+    Attribute,
+    Tag,
+)
+from robobt.tree.interop.errors import TreeFileError
+from robobt.tree.interop.kinds import hint_of, say_kind
+from robobt.tree.interop.model import (
+    Choice,
+    Definition,
+    Formula,
+    Name,
+    Node,
+    Spec,
+    SubTree,
+    Text,
+    TreeFile,
+    Value,
+)
+from robobt.tree.interop.verify import sub_trees, unknown_type, verify
+from robobt.tree.interop.vocabulary import NodeType, Vocabulary, is_pointer, takes_entry
+from robobt.tree.interop.xml_reader import Element, XmlError, read_element
+from robobt.tree.parameters import Parameter, ParameterError
+
+
+def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
+    """The trees of an XML text.
+
+    The main tree is what ``main_tree_to_execute`` names, else the only tree, else
+    the one that is no other's sub-tree.
+
+    Args:
+        source: what messages call it.
+
+    Raises:
+        TreeFileError: the first thing that is wrong.
+    """
+    try:
+        file = _Reader(vocabulary, source).file(read_element(text))
+    except XmlError as error:
+        raise TreeFileError(source, error.line, str(error)) from error
+    except RecursionError as error:
+        raise TreeFileError(source, None, "it is nested too deeply") from error
+    verify(file, vocabulary)
+    return file
+
+
+def write_xml(file: TreeFile, vocabulary: Vocabulary) -> str:
+    """The XML text of a file, with the models of all leaves for Groot2's palette.
+
+    Raises:
+        ValueError: it has been read from YAML and holds what XML cannot say
+            (formulas, choices); build its tree and describe that.
+    """
+    return _Writer(vocabulary).file(file)
+
+
+class _Reader:
+    def __init__(self, vocabulary: Vocabulary, source: str) -> None:
+        self.vocabulary, self.source = vocabulary, source
+
+    def file(self, root: Element) -> TreeFile:
+        if root.tag != "root":
+            raise self._error(root, f"the outermost tag is <root>, not <{root.tag}>")
+        self._attributes(root, ("BTCPP_format", "main_tree_to_execute"), ("BTCPP_format",))
+        if root.attributes["BTCPP_format"] != "4":
+            raise self._error(root, f"BTCPP_format is 4, not {root.attributes['BTCPP_format']}")
+        self._no_text(root)
+        trees: dict[str, Definition] = {}
+        model: Element | None = None
+        for part in root.children:
+            if part.tag == "BehaviorTree":
+                definition = self._tree(part, only=len(root.children) == 1)
+                if definition.name in trees:
+                    raise self._error(part, f"the tree {definition.name!r} is there twice")
+                trees[definition.name] = definition
+            elif part.tag == "TreeNodesModel" and model is None:
+                model = part
+            elif part.tag == "TreeNodesModel":
+                raise self._error(part, "there are two <TreeNodesModel>")
+            elif part.tag == "include":
+                raise self._error(part, "<include> is not supported; put the trees into one file")
+            else:
+                raise self._error(part, f"<root> has <BehaviorTree> and <TreeNodesModel>, no <{part.tag}>")
+        if not trees:
+            raise self._error(root, "there is no <BehaviorTree>")
+        if model is not None:
+            self._model(model, trees)
+        return TreeFile(self.source, self._main(root, trees), trees, "xml")
+
+    def _main(self, root: Element, trees: dict[str, Definition]) -> str:
+        named = root.attributes.get("main_tree_to_execute")
+        if named is not None:
+            if named not in trees:
+                raise self._error(root, f"there is no tree {named!r}; there are {', '.join(trees)}")
+            return named
+        inner = {
+            spec.tree for tree in trees.values() for spec in sub_trees(tree.root) if spec.tree != tree.name
+        }
+        outer = [name for name in trees if name not in inner]
+        if len(outer) != 1:
+            which = f"{', '.join(outer)} are no sub-trees" if outer else "all are sub-trees"
+            raise self._error(root, f"which tree is the main one? {which}; name it in main_tree_to_execute")
+        return outer[0]
+
+    def _tree(self, element: Element, only: bool) -> Definition:
+        self._attributes(element, ("ID", *METADATA), () if only else ("ID",))
+        self._no_text(element)
+        if len(element.children) != 1:
+            raise self._error(element, f"<BehaviorTree> has one child, not {len(element.children)}")
+        name = self._word(element, "ID") if "ID" in element.attributes else "BehaviorTree"
+        return Definition(name, self._spec(element.children[0]), line=element.line)
+
+    def _spec(self, element: Element) -> Spec:
+        self._no_text(element)
+        for name in element.attributes:
+            if name in SCRIPTS:
+                raise self._error(element, f"{name}: robobt has no scripts; write a condition")
+            if name.startswith("_") and name not in METADATA and element.tag != "SubTree":
+                raise self._error(element, f"<{element.tag}> has no attribute {name}")
+        return self._sub_tree(element) if element.tag == "SubTree" else self._node(element)
+
+    def _sub_tree(self, element: Element) -> SubTree:
+        if element.children:
+            raise self._error(element, "<SubTree> has no children")
+        if "ID" not in element.attributes:
+            raise self._error(element, "<SubTree> needs the attribute ID")
+        spec = SubTree(self._word(element, "ID"), line=element.line)
+        for name, text in element.attributes.items():
+            if name == "_autoremap":
+                if text.lower() not in _WORDS:
+                    raise self._error(element, f"_autoremap is true or false, not {text!r}")
+                spec.autoremap = _WORDS[text.lower()]
+            elif name == "name":
+                spec.label = self._word(element, "name")
+            elif name.startswith("_") and name not in METADATA:
+                raise self._error(element, f"<SubTree> has no attribute {name}")
+            elif name != "ID" and name not in METADATA:
+                spec.parameters[name] = self._pointer(element, name, text) if is_pointer(text) else Text(text)
+        return spec
+
+    def _node(self, element: Element) -> Node:
+        shown, tag, kind = self._type(element)
+        node = Node(kind.name, line=element.line)
+        if "name" in element.attributes:
+            node.name = self._word(element, "name")
+        elif not kind.leaf:
+            node.name = shown
+        node.parameters.update(tag.fixed)
+        given = {
+            name: text
+            for name, text in element.attributes.items()
+            if name not in ("name", *METADATA) and not (name == "ID" and element.tag in NODE_TAGS)
+        }
+        cases = next((name for name, shape in kind.branches.items() if shape == "cases"), None)
+        self._branches(element, node, kind, given.pop(cases, None) if cases is not None else None)
+        for name, attribute in tag.attributes.items():
+            if name not in given and attribute.default is None:
+                raise self._error(element, f"<{shown}> needs the attribute {name}")
+            given.setdefault(name, attribute.default or "")
+        for name, text in given.items():
+            self._parameter(element, node, shown, tag, kind, name, text)
+        for attribute in tag.attributes.values():
+            if attribute.endless is not None and node.parameters.get(attribute.parameter) == -1:
+                node.type = attribute.endless
+                del node.parameters[attribute.parameter]
+        return node
+
+    def _parameter(
+        self, element: Element, node: Node, shown: str, tag: Tag, kind: NodeType, name: str, text: str
+    ) -> None:
+        attribute = tag.attributes.get(name)
+        key = name if attribute is None else attribute.parameter
+        parameter = kind.parameters.get(key)
+        entries = (*kind.reads, *kind.writes)
+        hidden = attribute is None and (shown in TAGS or key in tag.fixed)
+        if hidden or (parameter is None and name not in entries):
+            there = list(tag.attributes) if shown in TAGS else [*kind.parameters, *entries]
+            has = f"it has {', '.join(there)}" if there else "it has none besides its name"
+            raise self._error(element, f"<{shown}> has no attribute {name}; {has}")
+        if is_pointer(text):
+            if attribute is not None and attribute.milliseconds:
+                raise self._error(element, f"{name} of <{shown}> is a number, not {text}")
+            node.parameters[key] = self._pointer(element, name, text)
+        elif parameter is None:
+            raise self._error(
+                element, f"{name} of <{shown}> is an entry that it uses: {{{name}}}, not {text!r}"
+            )
+        else:
+            try:
+                node.parameters[key] = self._plain(attribute, parameter, text)
+            except ParameterError as error:
+                raise self._error(element, f"{name} of <{shown}>: {error}") from error
+
+    def _plain(self, attribute: Attribute | None, parameter: Parameter, text: str) -> Any:
+        if attribute is None:
+            return self.vocabulary.from_text(parameter, text)
+        number = self.vocabulary.from_text(Parameter(parameter.name, int), text)
+        if attribute.milliseconds:
+            if number < 0:
+                raise ParameterError(parameter.name, f"{number} is negative")
+            return number / 1000.0
+        if attribute.count and number < 1 and number != -1:
+            raise ParameterError(parameter.name, f"{number} is neither 1 or more nor -1, without end")
+        return number
+
+    def _type(self, element: Element) -> tuple[str, Tag, NodeType]:
+        """What the element is called in messages, the tag it stands for, and the node's type."""
+        long_form = element.tag in NODE_TAGS
+        if long_form and "ID" not in element.attributes:
+            raise self._error(element, f"<{element.tag}> needs the attribute ID")
+        shown = self._word(element, "ID") if long_form else element.tag
+        tag = TAGS.get(shown) or Tag(OTHER_TAGS.get(shown, shown))
+        try:
+            kind = self.vocabulary.type(tag.type)
+        except ValueError as error:
+            raise self._error(element, str(error)) from error
+        if kind is None and shown in UNKNOWN_HERE:
+            raise self._error(element, f"<{shown}>: {UNKNOWN_HERE[shown]}")
+        if kind is None:
+            raise self._error(element, unknown_type(shown, self.vocabulary, TAGS))
+        if shown not in TAGS and shown not in OTHER_TAGS and _tags_of(kind.name):
+            raise self._error(element, f"<{shown}> is written {' or '.join(_tags_of(kind.name))} in XML")
+        if long_form and element.tag not in _long_tags(kind):
+            raise self._error(element, f"{shown} is no <{element.tag}> but a <{_long_tags(kind)[0]}>")
+        return shown, tag, kind
+
+    def _branches(self, element: Element, node: Node, kind: NodeType, cases: str | None) -> None:
+        children = [self._spec(child) for child in element.children]
+        count = len(children)
+        if kind.leaf:
+            if count:
+                raise self._error(element, f"<{element.tag}> has no children")
+            return
+        (branch, shape), *rest = kind.branches.items()
+        if shape == "many":
+            if not count:
+                raise self._error(element, f"<{element.tag}> needs a child")
+            node.branches[branch] = children
+        elif shape == "cases":
+            names = cases.split(";") if cases else []
+            others = count - len(names)
+            if cases is None or others not in (0, len(rest)) or len(set(names)) != len(names):
+                raise self._error(element, f'<{element.tag}> names the cases of its children: cases="a;b"')
+            node.branches[branch] = dict(zip(names, children, strict=False))
+            if others:
+                node.branches[rest[0][0]] = children[-1]
+        else:
+            if count != 1:
+                raise self._error(element, f"<{element.tag}> has one child, not {count}")
+            node.branches[branch] = children[0]
+
+    def _model(self, model: Element, trees: dict[str, Definition]) -> None:
+        """Look at the palette; what it says of sub-trees counts."""
+        self._attributes(model, (), ())
+        self._no_text(model)
+        for part in model.children:
+            if part.tag not in (*NODE_TAGS, "SubTree"):
+                raise self._error(part, f"<TreeNodesModel> has no <{part.tag}>")
+            self._attributes(part, ("ID", "editable"), ("ID",))
+            self._no_text(part)
+            for port in part.children:
+                if port.tag == "MetadataFields":
+                    continue
+                if port.tag not in ("input_port", "output_port", "inout_port"):
+                    raise self._error(port, f"a model has ports, no <{port.tag}>")
+                self._attributes(port, ("name", "type", "default", "description"), ("name",))
+                if port.children:
+                    raise self._error(port, f"<{port.tag}> has no children")
+                if part.tag == "SubTree" and part.attributes["ID"] in trees:
+                    definition = trees[part.attributes["ID"]]
+                    name = self._word(port, "name")
+                    if name in definition.parameters:
+                        raise self._error(port, f"the port {name!r} is there twice")
+                    definition.parameters[name] = self._port(port, name)
+
+    def _port(self, port: Element, name: str) -> Parameter:
+        text = port.attributes.get("default")
+        try:
+            hint = hint_of(port.attributes.get("type", ""))
+        except ValueError:
+            # A type of somebody's C++; what it means shows where the port is used.
+            hint = Any
+        parameter = Parameter(name, hint)
+        if text is None:
+            return parameter
+        if is_pointer(text):
+            return Parameter(name, hint, self._pointer(port, name, text))
+        if hint is Any:
+            return Parameter(name, hint, Text(text))
+        try:
+            return Parameter(name, hint, self.vocabulary.from_text(parameter, text))
+        except ParameterError as error:
+            raise self._error(port, f"default of {name}: {error}") from error
+
+    def _pointer(self, element: Element, attribute: str, text: str) -> Name:
+        name = attribute if text == "{=}" else text[1:-1].strip()
+        if not _POINTER.fullmatch(name):
+            raise self._error(element, f"{attribute}: {text} is no name of an entry")
+        return Name(name)
+
+    def _attributes(self, element: Element, known: Iterable[str], needed: Iterable[str]) -> None:
+        known = tuple(known)
+        for name in element.attributes:
+            if name not in known:
+                has = f"it has {', '.join(known)}" if known else "it has none"
+                raise self._error(element, f"<{element.tag}> has no attribute {name}; {has}")
+        for name in needed:
+            if name not in element.attributes:
+                raise self._error(element, f"<{element.tag}> needs the attribute {name}")
+
+    def _no_text(self, element: Element) -> None:
+        if element.text.strip():
+            raise self._error(element, f"there is text in <{element.tag}>: {element.text.strip()[:40]!r}")
+
+    def _word(self, element: Element, attribute: str) -> str:
+        text = element.attributes[attribute]
+        if not text.strip() or not text.isprintable():
+            raise self._error(element, f"{attribute} of <{element.tag}> is a text on one line")
+        return text
+
+    def _error(self, element: Element, problem: str) -> TreeFileError:
+        return TreeFileError(self.source, element.line, problem)
+
+
+class _Writer:
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+        self.in_main = True
+
+    def file(self, file: TreeFile) -> str:
+        main = file.trees[file.main]
+        used: set[str] = set()
+        lines = ['<?xml version="1.0" encoding="UTF-8"?>']
+        lines.append(f'<root BTCPP_format="4" main_tree_to_execute={quoteattr(main.name)}>')
+        for definition in file.trees.values():
+            if definition.let:
+                raise ValueError(f"the tree {definition.name!r} computes values; build it first")
+            self.in_main = definition is main
+            lines.append(f"  <BehaviorTree ID={quoteattr(definition.name)}>")
+            lines += self._spec(definition.root, "    ", used)
+            lines += ["  </BehaviorTree>", ""]
+        lines.append("  <!-- Description of Node Models (used by Groot) -->")
+        lines.append("  <TreeNodesModel>")
+        for name in self.vocabulary:
+            kind = self.vocabulary.type(name)
+            assert kind is not None
+            if not _tags_of(name) and (name in used or kind.leaf or kind.cls in self.vocabulary.controls):
+                lines += _model_lines(_long_tags(kind)[0], _tag_name(kind), self._ports(kind))
+        for definition in file.trees.values():
+            if definition.parameters:
+                ports = [("input_port", self._tree_port(entry)) for entry in definition.parameters.values()]
+                lines += _model_lines("SubTree", definition.name, ports)
+        lines += ["  </TreeNodesModel>", "</root>", ""]
+        return "\n".join(lines)
+
+    def _spec(self, spec: Spec, indent: str, used: set[str]) -> list[str]:
+        if isinstance(spec, Choice):
+            raise ValueError("XML has no choices; build the tree first")
+        if isinstance(spec, SubTree):
+            attributes = {"ID": spec.tree}
+            if spec.label is not None:
+                attributes["name"] = spec.label
+            if spec.autoremap:
+                attributes["_autoremap"] = "true"
+            attributes.update({name: self._text(None, value) for name, value in spec.parameters.items()})
+            return [f"{indent}<SubTree{_attributes(attributes)}/>"]
+        kind = self.vocabulary.type(spec.type)
+        assert kind is not None
+        used.add(kind.name)
+        tag, attributes, children = self._node(spec, kind)
+        if not children:
+            return [f"{indent}<{tag}{_attributes(attributes)}/>"]
+        inner = [line for child in children for line in self._spec(child, indent + "  ", used)]
+        return [f"{indent}<{tag}{_attributes(attributes)}>", *inner, f"{indent}</{tag}>"]
+
+    def _node(self, spec: Node, kind: NodeType) -> tuple[str, dict[str, str], list[Spec]]:
+        endless = _ENDLESS.get(kind.name)
+        name, tag = (endless[0], Tag(kind.name)) if endless is not None else _tag_for(spec, kind)
+        attributes = {}
+        if spec.name is not None and spec.name != name:
+            attributes["name"] = spec.name
+        if endless is not None:
+            attributes[endless[1]] = "-1"
+        renamed = {entry.parameter: (shown, entry) for shown, entry in tag.attributes.items()}
+        for key, value in spec.parameters.items():
+            if key in tag.fixed:
+                continue
+            shown, attribute = renamed.get(key, (key, None))
+            attributes[shown] = self._attribute(attribute, kind.parameters.get(key), value)
+        for shown, attribute in tag.attributes.items():
+            # Groot2 shows what is written; its own defaults are not to be relied on.
+            if attribute.default is not None and attribute.parameter not in spec.parameters:
+                attributes[shown] = attribute.default
+        for branch, children in spec.branches.items():
+            if isinstance(children, dict):
+                attributes[branch] = ";".join(children)
+        return name, attributes, list(spec.children())
+
+    def _attribute(self, attribute: Attribute | None, parameter: Parameter | None, value: Value) -> str:
+        if attribute is not None and attribute.milliseconds and not isinstance(value, Name):
+            milliseconds = value * 1000.0
+            if not isfinite(milliseconds) or round(milliseconds) / 1000.0 != value:
+                raise ValueError(f"{value} s is no whole number of milliseconds, as XML has it")
+            return str(round(milliseconds))
+        return self._text(parameter, value)
+
+    def _text(self, parameter: Parameter | None, value: Value) -> str:
+        if isinstance(value, Name):
+            return f"{{{value.name}}}"
+        if isinstance(value, Text):
+            return value.text
+        if (
+            parameter is not None
+            and takes_entry(parameter)
+            and isinstance(value, dict)
+            and set(value) == {"entry"}
+        ):
+            # A sub-tree sees only what it is given, and what the outermost tree sees.
+            return f"{{{value['entry']}}}" if self.in_main else f"{{@{value['entry']}}}"
+        if _holds_references(value):
+            raise ValueError("XML has no formulas, choices or names within values; build the tree first")
+        return self.vocabulary.to_text(parameter, value)
+
+    def _ports(self, kind: NodeType) -> Iterator[tuple[str, dict[str, str]]]:
+        for parameter in kind.parameters.values():
+            port = {"name": parameter.name, "type": parameter.kind}
+            if parameter.name in kind.reads and parameter.default is None:
+                port["default"] = f"{{{parameter.name}}}"
+            elif not parameter.required and parameter.default is not None:
+                try:
+                    default = self.vocabulary.plain(parameter, parameter.default)
+                    port["default"] = self.vocabulary.to_text(parameter, default)
+                except ParameterError:
+                    # A default that only Python can say; Groot2 leaves it out and so it holds.
+                    pass
+            yield "input_port", port
+        for entry in dict.fromkeys((*kind.reads, *kind.writes)):
+            if entry not in kind.parameters:
+                both = entry in kind.reads and entry in kind.writes
+                direction = "inout_port" if both else "input_port" if entry in kind.reads else "output_port"
+                yield direction, {"name": entry, "default": f"{{{entry}}}"}
+
+    def _tree_port(self, parameter: Parameter) -> dict[str, str]:
+        port = {"name": parameter.name}
+        if parameter.hint is not Any:
+            port["type"] = say_kind(parameter.hint)
+        if not parameter.required:
+            known = None if parameter.hint is Any else parameter
+            port["default"] = self._text(known, parameter.default)
+        return port
+
+
+def _tags_of(kind: str) -> list[str]:
+    return [tag for tag, entry in TAGS.items() if entry.type == kind]
+
+
+def _tag_for(spec: Node, kind: NodeType) -> tuple[str, Tag]:
+    for name, tag in TAGS.items():
+        fits = all(spec.parameters.get(key) is value for key, value in tag.fixed.items())
+        if tag.type == kind.name and fits:
+            return name, tag
+    if _tags_of(kind.name):
+        raise ValueError(f"{kind.name} with {spec.parameters} is nothing XML can say; build the tree first")
+    return _tag_name(kind), Tag(kind.name)
+
+
+def _tag_name(kind: NodeType) -> str:
+    return next((tag for tag, name in OTHER_TAGS.items() if name == kind.name), kind.name)
+
+
+def _long_tags(kind: NodeType) -> tuple[str, ...]:
+    if kind.leaf:
+        return ("Action", "Condition")
+    return ("Decorator",) if "one" in kind.branches.values() else ("Control",)
+
+
+def _model_lines(tag: str, name: str, ports: Iterable[tuple[str, dict[str, str]]]) -> list[str]:
+    inner = [f"      <{direction}{_attributes(port)}/>" for direction, port in ports]
+    start = f"    <{tag} ID={quoteattr(name)}"
+    return [f"{start}>", *inner, f"    </{tag}>"] if inner else [f"{start}/>"]
+
+
+def _attributes(attributes: dict[str, str]) -> str:
+    for value in attributes.values():
+        if _UNWRITABLE.search(value):
+            raise ValueError(f"XML cannot hold the characters of {value!r}")
+    return "".join([f" {name}={quoteattr(value, _ENTITIES)}" for name, value in attributes.items()])
+
+
+def _holds_references(value: Value) -> bool:
+    if isinstance(value, list):
+        return any(_holds_references(part) for part in value)
+    if isinstance(value, dict):
+        return any(_holds_references(part) for part in value.values())
+    return isinstance(value, Name | Formula | Choice | Text)
+
+
+_ENDLESS = {
+    attribute.endless: (tag, name)
+    for tag, entry in TAGS.items()
+    for name, attribute in entry.attributes.items()
+    if attribute.endless is not None
+}
+"""Types that are written as another tag with -1: the tag and the attribute."""
+
+_WORDS = {"true": True, "false": False, "1": True, "0": False}
+_POINTER = re.compile(r"@?[^\W\d]\w*")
+_UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+# Attribute values lose their line ends unless they are written as references.
+_ENTITIES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}

@@ -1,0 +1,517 @@
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from typer.testing import CliRunner, Result
+
+from robobt import __version__
+from robobt.cli import app
+from robobt.match.recording import load_recording
+from robobt.plays import PLAYS, python_files
+from robobt.resources import bundled_scenarios, models_folder
+from robobt.skills import SKILLS
+from robobt.skills.aim.raters import RATERS
+from robobt.skills.ball.go_to_ball import POLICIES
+from tests.match.scripted import data
+
+COMMANDS = (
+    "match",
+    "replay",
+    "scenarios",
+    "plays",
+    "skills",
+    "raters",
+    "policies",
+    "tree",
+    "bench sim",
+    "bench match",
+    "bench tree",
+)
+MINE = """
+from robobt.plays import PLAYS
+from robobt.skills.base import Skill, skill
+
+
+@skill
+class Idle(Skill):
+    \"\"\"Does nothing.\"\"\"
+
+    def on_running(self):
+        return self.run()
+
+
+@PLAYS.register("idle")
+def idle():
+    \"\"\"Nothing at all.\"\"\"
+    return Idle()
+"""
+
+
+def robobt(*arguments: str | Path, code: int = 0) -> Result:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    return result
+
+
+def told(*arguments: str | Path) -> dict[str, Any]:
+    """What a command prints with --json: exactly one object."""
+    printed = json.loads(robobt(*arguments, "--json").stdout)
+    assert isinstance(printed, dict)
+    return printed
+
+
+def complaint(*arguments: str | Path, code: int = 1) -> str:
+    """The one line on stderr of a command that fails."""
+    result = robobt(*arguments, code=code)
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    if code == 1:
+        assert len(result.stderr.splitlines()) == 1
+    return result.stderr
+
+
+def help_of(command: str) -> str:
+    return " ".join(robobt(*command.split(), "--help").stdout.replace("│", " ").split())
+
+
+@pytest.fixture
+def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A Python file with a skill and a play, which are forgotten after the test."""
+    monkeypatch.setattr(python_files, "_imported", {})
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    path = tmp_path / "mine.py"
+    path.write_text(MINE)
+    with PLAYS.temporarily(), SKILLS.temporarily():
+        yield path
+
+
+@pytest.fixture
+def scenario(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data(ball={"position": {"center": [0, 0], "radius": 0.5}})))
+    return path
+
+
+class TestHelp:
+    def test_without_a_command_the_commands_are_listed(self):
+        listed = CliRunner().invoke(app, []).output
+        assert all(command.split()[0] in listed for command in COMMANDS)
+
+    @pytest.mark.parametrize("command", COMMANDS)
+    def test_every_command_has_help(self, command: str):
+        assert command.rpartition(" ")[2] in help_of(command)
+
+    def test_the_version(self):
+        assert robobt("--version").stdout == f"robobt {__version__}\n"
+
+    def test_nothing_heavy_is_loaded_for_help(self):
+        code = (
+            "import sys, robobt.cli; "
+            "print({'numpy', 'numba', 'torch', 'scipy', 'pymunk', 'pydantic'} & set(sys.modules))"
+        )
+        loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        assert loaded.stdout == "set()\n"
+
+
+class TestMatch:
+    def test_it_prints_outcomes_times_and_goals(self, scenario: Path):
+        printed = robobt("match", scenario, "--trials", "3").stdout
+        assert "3 trials, seed 0" in printed
+        assert "95 % interval" in printed
+        assert "blue 0" in printed
+        assert "Goals: blue" in printed
+
+    def test_json_is_one_object_with_the_keys_of_the_help(self, scenario: Path):
+        printed = told("match", scenario, "--trials", "3", "--seed", "4")
+        assert (printed["trials"], printed["requested"], printed["seed"]) == (3, 3, 4)
+        assert printed["interrupted"] is False
+        assert printed["replay"] is None
+        explained = help_of("match")
+        for key in (*printed, *printed["robots"]["blue 0"], *next(iter(printed["outcomes"].values()))):
+            assert key in explained
+
+    def test_the_same_seed_is_the_same_run(self, scenario: Path):
+        traces = [told("match", scenario, "-n", "3", "-s", seed)["trace"] for seed in ("1", "1", "2")]
+        assert traces[0] == traces[1] != traces[2]
+
+    def test_a_replay_can_be_a_page_at_once(self, scenario: Path, tmp_path: Path):
+        page = tmp_path / "replay.html"
+        assert told("match", scenario, "--replay", page)["replay"] == str(page)
+        assert page.read_text().startswith("<!doctype html>")
+
+    def test_a_trial_can_be_chosen_for_recording(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "second.robobt.jsonl.gz"
+        printed = robobt("match", scenario, "-n", "3", "--record", "1", "--replay", recording).stdout
+        assert f"Replay of trial 1: {recording}" in printed
+        assert load_recording(recording).header.trial == 1
+
+    def test_a_recording_has_a_name_of_its_own(
+        self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        monkeypatch.chdir(tmp_path)
+        robobt("match", scenario, "--record", "0")
+        assert (tmp_path / "test-0.robobt.jsonl.gz").exists()
+
+    def test_a_name_with_a_path_in_it_leads_nowhere_else(
+        self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        scenario.write_text(yaml.safe_dump({**data(), "name": "../elsewhere/mine"}))
+        inside = tmp_path / "inside"
+        inside.mkdir()
+        monkeypatch.chdir(inside)
+        robobt("match", scenario, "--record", "0")
+        assert [path.name for path in inside.iterdir()] == [".._elsewhere_mine-0.robobt.jsonl.gz"]
+
+    @pytest.mark.parametrize("name", ["mine.yaml", "results.jsonl", "replay.mp4", "replay"])
+    def test_a_replay_does_not_replace_a_file_that_is_none(self, scenario: Path, tmp_path: Path, name: str):
+        before = scenario.read_text()
+        complained = complaint("match", scenario, "--replay", tmp_path / name, code=2)
+        assert "takes a name that ends in" in complained
+        assert [path.name for path in tmp_path.iterdir()] == [scenario.name]
+        assert scenario.read_text() == before
+
+    def test_replay_and_results_are_two_files(self, scenario: Path, tmp_path: Path):
+        both = tmp_path / "both.robobt.jsonl"
+        assert "a file each" in complaint("match", scenario, "--replay", both, "--out", both, code=2)
+
+    @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
+    @pytest.mark.parametrize("name", ["full.html", "full.robobt.jsonl", "full.robobt.jsonl.gz"])
+    def test_a_full_disk_is_told_with_the_file(self, scenario: Path, tmp_path: Path, name: str):
+        path = tmp_path / name
+        path.symlink_to("/dev/full")
+        assert complaint("match", scenario, "--replay", path) == f"robobt: {path}: No space left on device\n"
+
+    def test_results_are_kept_and_a_run_goes_on_from_there(self, scenario: Path, tmp_path: Path):
+        out = tmp_path / "results.jsonl"
+        robobt("match", scenario, "-n", "2", "--out", out)
+        assert told("match", scenario, "-n", "4", "--out", out)["trials"] == 4
+        assert len(out.read_text().splitlines()) == 5
+
+    def test_a_tree_that_fails_is_told(self, scenario: Path):
+        broken = data()
+        broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
+        scenario.write_text(yaml.safe_dump({**broken, "ends": {"time_limit": 0.1}}))
+        result = robobt("match", scenario)
+        assert (
+            "blue 0: its tree failed in 5 ticks; the first: Scripted: RuntimeError: broken" in result.stderr
+        )
+
+    def test_a_tree_that_fails_can_end_the_run(self, scenario: Path):
+        broken = data()
+        broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
+        scenario.write_text(yaml.safe_dump(broken))
+        said = complaint("match", scenario, "--on-error", "raise")
+        assert said.startswith(
+            f"robobt: {scenario}: trial 0: TreeError: blue 0: Scripted: RuntimeError: broken"
+        )
+
+    def test_nodes_can_follow_a_script(self, scenario: Path):
+        substitute = ["--substitute", "blue 0:Scripted=RUNNING"]
+        assert told("match", scenario, *substitute)["robots"]["blue 0"]["kicks"]["mean"] == 0
+        assert told("match", scenario)["robots"]["blue 0"]["kicks"]["mean"] == 1
+
+    @pytest.mark.parametrize(
+        ("rule", "said"),
+        [
+            ("Scripted=RUNNING", "takes ROBOT:PATH=STATUS"),
+            ("blue 0:Scripted", "takes ROBOT:PATH=STATUS"),
+            ("blue 0:Scripted=[", "Scripted: line 1"),
+        ],
+    )
+    def test_a_rule_that_is_none_is_a_usage_error(self, scenario: Path, rule: str, said: str):
+        assert said in " ".join(
+            complaint("match", scenario, "--substitute", rule, code=2).replace("│", " ").split()
+        )
+
+    def test_a_play_of_the_users_own_file_is_played(self, mine: Path, scenario: Path):
+        own = data()
+        own["robots"]["blue"][0].update(play="idle", params={})
+        scenario.write_text(yaml.safe_dump({**own, "ends": {"time_limit": 0.1}}))
+        assert told("match", scenario, "--import", mine)["robots"]["blue 0"]["errors"] == 0
+
+
+class TestReplay:
+    def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "a.robobt.jsonl.gz"
+        robobt("match", scenario, "--replay", recording)
+        assert robobt("replay", recording).stdout == f"Replay: {tmp_path / 'a.html'}\n"
+        robobt("replay", recording, "--html", tmp_path / "b.html")
+        assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
+
+    def test_a_page_does_not_replace_its_recording(self, scenario: Path, tmp_path: Path):
+        recording = tmp_path / "a.robobt.jsonl.gz"
+        robobt("match", scenario, "--replay", recording)
+        before = recording.read_bytes()
+        assert "is the recording itself" in complaint("replay", recording, "--html", recording, code=2)
+        assert recording.read_bytes() == before
+
+    def test_a_folder_is_no_recording(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+        monkeypatch.chdir(tmp_path)
+        assert "Is a directory" in complaint("replay", ".")
+
+
+class TestLists:
+    def test_every_bundled_scenario_is_listed(self):
+        printed = robobt("scenarios").stdout
+        assert all(name in printed for name in bundled_scenarios())
+        listed = told("scenarios")["scenarios"]
+        assert [entry["name"] for entry in listed] == list(bundled_scenarios())
+        explained = help_of("scenarios")
+        assert all(key in explained for entry in listed for key in (*entry, *entry["robots"][0]))
+
+    def test_one_scenario_is_shown_with_its_robots(self, scenario: Path):
+        printed = " ".join(robobt("scenarios", scenario).stdout.split())
+        assert "blue 0 scripted(kick=4.0) at (-2, 0) m, heading 0 rad" in printed
+        assert "ball within 0.5 m of (0, 0) m" in printed
+        assert "Ends: time_limit 10.0" in printed
+
+    def test_every_play_is_listed_with_its_parameters(self):
+        printed = robobt("plays").stdout
+        assert "speed: float = 1.0" in printed
+        listed = {entry["name"]: entry for entry in told("plays")["plays"]}
+        assert list(listed) == list(PLAYS)
+        speed = listed["scripted"]["parameters"][0]
+        assert speed == {"name": "speed", "type": "float", "required": False, "default": 1.0}
+
+    def test_every_skill_is_listed_with_what_it_reads_and_writes(self):
+        robobt("skills")
+        listed = {entry["name"]: entry for entry in told("skills")["skills"]}
+        assert list(listed) == list(SKILLS)
+        assert listed["KickToTarget"]["reads"] == list(SKILLS["KickToTarget"].reads)
+        assert all(entry["description"] for entry in listed.values())
+
+    def test_every_rater_is_listed_with_its_settings_and_what_they_mean(self):
+        assert "full_angle: float = 0.3  free angle that scores 1 [rad]" in robobt("raters").stdout
+        listed = {entry["name"]: entry for entry in told("raters")["raters"]}
+        assert list(listed) == list(RATERS)
+        assert {"name": "spacing", "type": "float", "required": False, "default": 0.02} in listed["gaussian"][
+            "parameters"
+        ]
+
+    def test_every_policy_is_listed(self):
+        assert "Drive to the place beside the ball" in robobt("policies").stdout
+        assert [entry["name"] for entry in told("policies")["policies"]] == list(POLICIES)
+
+    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    def test_every_key_is_in_the_help(self, kind: str):
+        printed = told(kind)
+        explained = help_of(kind)
+        assert all(key in explained for key in (*printed, *printed[kind][0]))
+        assert printed["problems"] == []
+
+    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    def test_a_name_that_is_none_is_told_with_those_there_are(self, kind: str):
+        assert "is called 'nothing'; there are" in " ".join(
+            complaint(kind, "nothing", code=2).replace("│", " ").split()
+        )
+
+    def test_what_is_wrong_with_another_package_is_a_warning(self, monkeypatch: pytest.MonkeyPatch):
+        problem = "skill 'Bad' (bad:Bad) of the distribution bad cannot be used: RuntimeError: no"
+        monkeypatch.setitem(SKILLS._problems, "Bad", problem)
+        result = robobt("skills", "Stop")
+        assert result.stderr == f"robobt: {problem}\n"
+        assert "Stop" in result.stdout
+        assert told("skills")["problems"] == [problem]
+
+    def test_a_name_that_another_package_failed_to_bring_is_told_with_the_reason(
+        self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scenario: Path
+    ):
+        problem = "thing 'Bad' (bad:Bad) of the distribution bad cannot be used: RuntimeError: no"
+        for registry in (SKILLS, PLAYS):
+            monkeypatch.setitem(registry._problems, "Bad", problem)
+        tree = tmp_path / "tree.yaml"
+        tree.write_text("play: mine\ntree: Bad\n")
+        played = data()
+        played["robots"]["blue"][0].update(play="Bad", params={})
+        scenario.write_text(yaml.safe_dump(played))
+        for arguments, code in (
+            (("plays", "Bad"), 2),
+            (("tree", "Bad"), 2),
+            (("tree", tree), 1),
+            (("match", scenario), 1),
+        ):
+            said = " ".join(complaint(*arguments, code=code).replace("│", " ").split())
+            assert "of the distribution bad cannot be used: RuntimeError: no" in said, arguments
+
+    def test_what_a_file_of_the_users_registers_is_listed(self, mine: Path):
+        assert "Nothing at all." in robobt("plays", "idle", "--import", mine).stdout
+        (listed,) = told("skills", "Idle", "--import", mine)["skills"]
+        assert listed["description"] == "Does nothing."
+
+    def test_one_can_be_looked_at_alone(self):
+        assert len(told("plays", "goalkeeper")["plays"]) == 1
+        printed = robobt("skills", "KickToTarget").stdout
+        assert "KickToTarget" in printed
+        assert "DribbleTo" not in printed
+
+
+class TestTree:
+    def test_it_is_shown_as_text(self):
+        printed = robobt("tree", "goalkeeper").stdout
+        assert "ShotComing" in printed
+
+    def test_a_terminal_that_lacks_a_sign_is_shown_another(self):
+        result = CliRunner(charset="ascii").invoke(app, ["tree", "goalkeeper"])
+        assert result.exit_code == 0, result.output
+        assert "?" in result.stdout
+
+    def test_it_is_drawn(self, tmp_path: Path):
+        svg, dot = tmp_path / "tree.svg", tmp_path / "tree.dot"
+        robobt("tree", "goalkeeper", "--svg", svg, "--dot", dot, "--param", "speed=0.5")
+        assert svg.read_text().startswith("<svg")
+        assert dot.read_text().startswith("digraph")
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            (["nothing"], "no play is called 'nothing'; there are"),
+            (["scripted", "-p", "speed"], "takes name=value"),
+            (["scripted", "-p", "sped=1"], "scripted has no such parameter"),
+            (["scripted", "-p", "speed=fast"], "should be a valid number"),
+            (["scripted", "-p", "speed=["], "speed: line 1"),
+        ],
+    )
+    def test_usage_errors_say_what_there_is(self, arguments: list[str], said: str):
+        assert said in " ".join(complaint("tree", *arguments, code=2).replace("│", " ").split())
+
+    def test_it_is_one_object_in_json(self):
+        printed = told("tree", "goalkeeper")
+        assert printed["nodes"][0] == {"path": "goalkeeper", "type": "Selector", "depth": 0}
+        assert printed["nodes"][2]["path"] == "goalkeeper/aim/BallAimedAtGoal"
+        assert printed["nodes"][2]["depth"] == 2
+
+    def test_mistakes_are_looked_for(self, tmp_path: Path):
+        path = tmp_path / "mine.yaml"
+        children = ["HasBall", "KickToTarget"]
+        tree = {"Sequence": {"name": "shoot", "memory": True, "children": children}}
+        path.write_text(yaml.safe_dump({"play": "mine", "tree": tree}))
+        printed = robobt("tree", path, "--lint", code=1).stdout
+        assert "shoot/HasBall: is not asked again while 'KickToTarget' runs" in printed
+        assert (
+            "shoot/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
+        )
+        found = json.loads(robobt("tree", path, "--lint", "--json", code=1).stdout)
+        assert "reads 'shot' or 'pass_', but no other node" in robobt("tree", path).stderr
+        assert found["findings"][0]["rule"] == "forgotten-condition"
+        assert len(found["wiring"]) == 1
+        explained = help_of("tree")
+        assert all(key in explained for key in (*found, *found["findings"][0], *found["nodes"][0]))
+
+    def test_a_tree_without_mistakes_is_told_too(self):
+        assert robobt("tree", "goalkeeper", "--lint").stdout == "Nothing found.\n"
+
+    def test_what_its_nodes_do_in_a_match_is_counted(self, scenario: Path):
+        printed = robobt("tree", "scripted", "--statistics", scenario).stdout
+        assert printed.startswith("blue 0\nnode ")
+        counted = told("tree", "scripted", "--statistics", scenario, "--seed", "3")
+        assert (counted["scenario"], counted["seed"]) == ("test", 3)
+        (node,) = counted["robots"]["blue 0"]
+        assert node["runs"] == node["ticks"] > 0
+        explained = help_of("tree")
+        assert all(key in explained for key in (*counted, *node))
+
+    def test_counting_needs_a_robot_with_the_play(self, scenario: Path):
+        assert "no robot plays 'goalkeeper'" in complaint("tree", "goalkeeper", "--statistics", scenario)
+
+    def test_a_seed_is_for_counting(self):
+        assert "is for --statistics" in complaint("tree", "goalkeeper", "--seed", "1", code=2)
+
+    def test_a_play_of_the_users_own_file(self, mine: Path):
+        assert "Idle" in robobt("tree", "idle", "--import", mine).stdout
+
+    def test_what_is_wrong_with_that_file_is_told_with_its_line(self, mine: Path):
+        mine.write_text("x = 1\nx.y\n")
+        said = complaint("tree", "idle", "--import", mine)
+        assert said == f"robobt: {mine}:2: AttributeError: 'int' object has no attribute 'y'\n"
+
+
+class TestBench:
+    def test_the_simulator(self):
+        printed = told("bench", "sim", "--seconds", "0.1")
+        assert list(printed) == ["one_v_one", "six_v_six", "eleven_v_eleven"]
+        explained = help_of("bench sim")
+        for case, figures in printed.items():
+            assert case in explained
+            assert all(key in explained for key in figures)
+            assert figures["steps_per_s"] > 0
+
+    def test_a_match(self, scenario: Path):
+        printed = told("bench", "match", scenario, "--seconds", "1")
+        explained = help_of("bench match")
+        assert all(key in explained for key in printed)
+        assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["wall_s"])
+        assert printed["real_time_factor_py_trees"] > 0
+        assert printed["recording_share"] < 1
+        assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
+
+    def test_trees(self):
+        printed = told("bench", "tree")
+        explained = help_of("bench tree")
+        for key in ("speedup_vs_py_trees", "ratio_to_plain_classes", "store_speedup_vs_blackboard"):
+            assert key in explained
+            assert printed[key] > 0
+
+
+class TestErrors:
+    def test_a_missing_scenario_is_named_and_those_there_are(self):
+        assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
+
+    def test_a_wrong_field_is_named_with_its_file(self, scenario: Path):
+        scenario.write_text(yaml.safe_dump(data(period=5)))
+        assert complaint("match", scenario).startswith(f"robobt: {scenario}: period: input should be less")
+
+    @pytest.mark.parametrize(
+        ("simulator", "said"),
+        [
+            ("nothing", "simulator: no simulator preset is called 'nothing'; there are"),
+            ({"ball": {"mass": -1}}, "simulator.ball.mass: input should be greater"),
+            ({"bal": {}}, "simulator.bal: there is no such"),
+            ({"realism": "much"}, "simulator: no realism level is called 'much'; there are"),
+        ],
+    )
+    def test_wrong_settings_of_the_simulator_are_named(self, scenario: Path, simulator: Any, said: str):
+        scenario.write_text(yaml.safe_dump(data(simulator=simulator)))
+        assert complaint("match", scenario).startswith(f"robobt: {scenario}: {said}")
+
+    def test_square_brackets_survive(self, scenario: Path):
+        scenario.write_text("name: [red]\n")
+        assert "name" in complaint("match", scenario)
+
+    def test_a_file_that_is_no_recording(self, scenario: Path):
+        assert complaint("replay", scenario).startswith(f"robobt: {scenario}")
+
+    def test_a_file_that_is_not_there(self):
+        assert "nowhere.jsonl" in complaint("replay", "nowhere.jsonl")
+
+    def test_a_place_that_cannot_be_written(self, scenario: Path, tmp_path: Path):
+        (tmp_path / "file").write_text("")
+        assert str(tmp_path / "file") in complaint("match", scenario, "--out", tmp_path / "file" / "x.jsonl")
+
+    def test_a_trial_that_is_not_played_cannot_be_recorded(self, scenario: Path):
+        said = complaint("match", scenario, "-n", "2", "--record", "7", code=2)
+        assert "there is no trial 7; they are 0 to 1" in said
+
+    @pytest.mark.parametrize(
+        "arguments", [["--trials", "0"], ["--workers", "0"], ["--seed", "-1"], ["--what"]]
+    )
+    def test_wrong_options_are_usage_errors(self, scenario: Path, arguments: list[str]):
+        assert "Usage:" in complaint("match", scenario, *arguments, code=2)
+
+    def test_debug_shows_where(self):
+        result = CliRunner().invoke(app, ["--debug", "match", "nowhere"])
+        assert type(result.exception).__name__ == "ScenarioError"
+
+
+def test_models_lie_where_the_package_looks_for_them():
+    assert models_folder().is_dir()
+
+
+def test_the_package_runs_as_the_command_does():
+    run = subprocess.run([sys.executable, "-m", "robobt", "--version"], capture_output=True, text=True)
+    assert run.stdout == f"robobt {__version__}\n"
+    assert run.returncode == 0

@@ -1,0 +1,109 @@
+"""The league's commands: what they print, and one line when something is wrong."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.league.log.files import read_log
+from tests.league.served import free_endpoints
+
+ANY_PORT = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
+
+
+def robobt(*arguments: object, code: int = 0) -> str:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    return result.stdout if code == 0 else result.output
+
+
+def quiet() -> list[str]:
+    """Options that keep a server among itself."""
+    ends = free_endpoints()
+    return [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}", *ANY_PORT]
+
+
+def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
+    log = tmp_path / "game.log.gz"
+    printed = json.loads(
+        robobt(
+            "serve",
+            "--robots",
+            2,
+            *quiet(),
+            "--seconds",
+            0.3,
+            "--speed",
+            4,
+            "--referee",
+            "--log",
+            log,
+            "--json",
+        )
+    )
+    assert printed["frames"] >= 5
+    assert printed["simulated_s"] == pytest.approx(printed["frames"] / 60)
+    assert printed["packets"]["grsim"]["accepted"] == 0
+    assert {record.kind for record in read_log(log)} == {3, 4, 5}
+    page = tmp_path / "game.html"
+    assert robobt("replay", log) == f"Replay: {page}\n"
+    assert "<html" in page.read_text()
+
+
+def test_serve_takes_a_scenario() -> None:
+    assert "Serving 2 robots" in robobt("serve", "striker_vs_goalie", *quiet(), "--seconds", 0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "problem"),
+    [
+        (["serve", "--preset", "moon"], "no simulator preset is called 'moon'"),
+        (["serve", "--realism", "moon"], "no realism level is called 'moon'"),
+        (["serve", "--vision", "here"], "'here' is no address like 224.5.23.2:10006"),
+        (["serve", "--interface", "203.0.113.7"], "203.0.113.7"),
+        (
+            ["match", "striker_vs_goalie", "--world", "webots"],
+            "webots: a world of the league is league://SIMULATOR",
+        ),
+        (["match", "striker_vs_goalie", "--world", "nowhere.log"], "nowhere.log: No such file or directory"),
+        (["replay", "nowhere.log"], "nowhere.log: No such file or directory"),
+    ],
+)
+def test_what_is_wrong_is_one_plain_line(arguments: list[str], problem: str) -> None:
+    output = robobt(*arguments, code=1)
+    assert problem in output
+    assert output.count("\n") == 1
+
+
+def test_a_spoilt_log_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "spoilt.log"
+    path.write_bytes(b"nothing of the kind")
+    assert f"robobt: {path}: is no log" in robobt("replay", path, code=1)
+
+
+def test_log_writes_what_is_heard(tmp_path: Path) -> None:
+    ends = free_endpoints()
+    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee={ends.referee}"]
+    out = tmp_path / "heard.log"
+    printed = json.loads(robobt("log", out, "--seconds", 0.1, *where, "--json"))
+    assert printed == {"vision": 0, "tracker": 0, "referee": 0}
+    assert list(read_log(out)) == []
+    assert "ends in .log" in robobt("log", tmp_path / "heard.txt", code=2)
+
+
+def test_the_filter_is_measured() -> None:
+    play = json.loads(robobt("bench", "filter", "--seconds", 2, "--json"))["play"]
+    assert play["compensated"]["robot_position"] < play["uncompensated"]["robot_position"]
+    printed = robobt("bench", "filter", "--seconds", 2)
+    assert printed.count("at capture") == printed.count("uncompensated") == 2
+
+
+@pytest.mark.slow
+def test_the_league_is_measured_in_two_processes() -> None:
+    printed = json.loads(robobt("bench", "league", "--seconds", 6, "--json"))
+    assert printed["lost"] == printed["errors"] == printed["dropped"] == 0
+    assert printed["frame_rate"] == pytest.approx(60.0, rel=0.02)

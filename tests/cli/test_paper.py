@@ -1,0 +1,61 @@
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.shots.data.files import write_shots
+from tests.shots.made_up import made_up_table
+
+
+@pytest.fixture
+def shots(tmp_path: Path) -> str:
+    write_shots(made_up_table(160, split=True), tmp_path / "shots.parquet")
+    return str(tmp_path / "shots.parquet")
+
+
+def test_table_3_is_printed_as_a_table_and_as_json(shots: str, tmp_path: Path):
+    options = [
+        "--data",
+        shots,
+        "--seeds",
+        "2",
+        "--repeats",
+        "1",
+        "--model",
+        "table_one",
+        "--model",
+        "logistic",
+    ]
+    picture = tmp_path / "diagram.png"
+    shown = CliRunner().invoke(app, ["paper", "table3", *options, "--picture", str(picture)])
+    assert shown.exit_code == 0
+    assert "102, 20" in shown.output
+    assert "85.07 %" in shown.output
+    assert picture.is_file()
+    said = json.loads(CliRunner().invoke(app, ["paper", "table3", *options, "--json"]).output)
+    assert said["test"]["shots"] == 40
+    assert len(said["models"]["logistic"]["confusion"]) == 2
+
+
+def test_table_2_is_printed_as_a_table_and_as_json(shots: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)
+    monkeypatch.setattr("robobt.experiments.table2.HOLD_OUTS", (0.33,))
+    options = ["paper", "table2", "--data", shots, "--replications", "1"]
+    shown = CliRunner().invoke(app, options)
+    assert "87.40 %" in shown.output
+    assert "standardised" in shown.output
+    said = json.loads(CliRunner().invoke(app, [*options, "--json"]).output)
+    assert said["hold_outs"]["33%"]["paper"]["t"] == 1.9666
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [(["--data", "nowhere.csv"], "nowhere.csv"), (["--model", "crystal_ball"], "crystal_ball")],
+)
+def test_what_is_wrong_is_said_in_one_line(options: list[str], word: str):
+    result = CliRunner().invoke(app, ["paper", "table3", *options])
+    assert result.exit_code != 0
+    assert word in result.output
+    assert "Traceback" not in result.output

@@ -1,0 +1,63 @@
+from pathlib import Path
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.match import Match
+from robobt.match.regression_cases import check_case
+from robobt.match.scenario.scenario import load_scenario
+from robobt.plays import PLAYS, python_files
+from robobt.plays.python_files import import_file
+from robobt.resources import bundled_scenarios
+from robobt.worlds import sim_world
+from tests.match.recording.made_recording import record
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    path = tmp_path / "made.robobt.jsonl"
+    record(path)
+    return path
+
+
+def test_a_log_is_written_beside_the_recording_and_a_robot_without_a_tree_is_refused(recording: Path) -> None:
+    done = CliRunner().invoke(app, ["record", "export", "--btlog", str(recording), "--robot", "blue 1"])
+    assert done.exit_code == 0
+    assert (recording.parent / "made-blue-1.btlog").read_bytes().startswith(b"BTCPP4-FileLogger2\x01")
+    assert CliRunner().invoke(app, ["record", "export", "--btlog", str(recording)]).exit_code == 2
+    refused = CliRunner().invoke(app, ["record", "export", "--btlog", str(recording), "--robot", "blue 4"])
+    assert refused.exit_code == 2
+
+
+def test_a_tick_that_cannot_be_a_case_is_one_line_on_stderr(recording: Path) -> None:
+    out = recording.parent / "case.yaml"
+    given = ["record", "case", str(recording), "--tick", "3", "--robot", "blue 1", "--out", str(out)]
+    refused = CliRunner().invoke(app, given)
+    assert refused.exit_code == 1
+    assert not out.exists()
+
+
+def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: Path) -> None:
+    file = tmp_path / "own_play.py"
+    file.write_text(
+        "from robobt.plays import PLAYS\nfrom robobt.skills import Stop\n"
+        "PLAYS.register('stands_still')(lambda: Stop())\n"
+    )
+    scenario = yaml.safe_load(bundled_scenarios()["striker_vs_goalie"].read_text())
+    scenario["robots"]["blue"][0] |= {"play": "stands_still"}
+    (tmp_path / "still.yaml").write_text(yaml.safe_dump(scenario))
+    recorded, case = tmp_path / "still.robobt.jsonl", tmp_path / "case.yaml"
+    with PLAYS.temporarily():
+        import_file(file)
+        Match(load_scenario(tmp_path / "still.yaml").lasting(0.3), 3, sim_world, recorded).play()
+    wanted = ["record", "case", str(recorded), "--tick", "3", "--robot", "blue 0", "--out", str(case)]
+    refused = CliRunner().invoke(app, wanted)
+    assert refused.exit_code == 1
+    assert "stands_still" in refused.stderr
+    python_files._imported.clear()
+    with PLAYS.temporarily():
+        saved = CliRunner().invoke(app, [*wanted, "--import", str(file)])
+        assert saved.exit_code == 0, saved.stderr
+        check_case(case)

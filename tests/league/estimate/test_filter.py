@@ -1,0 +1,348 @@
+"""The filter: steady where nothing happens, quick where something does, and never at a loss."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, hypot, pi, sin, sqrt
+
+import numpy as np
+import pytest
+
+from robobt.league.bench_filter import bench_filter
+from robobt.league.estimate.ball_track import BallMotion, rolled
+from robobt.league.estimate.filter import VisionFilter
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
+from robobt.match import load_scenario
+from robobt.sim.settings import REALISM, BallSettings, SimSettings
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.game import Team
+from robobt.world.geometry import wrap_angle
+from robobt.world.state import Frame, RobotId
+
+PERIOD = 1 / 60
+ME, HER = RobotId(Team.BLUE, 2), RobotId(Team.YELLOW, 7)
+REALISTIC = SimSettings(realism=REALISM["realistic"])
+
+
+class Watched:
+    """A filter fed with frames of one camera, 60 a second."""
+
+    def __init__(self, noise: float = 0.0, camera: int = 0) -> None:
+        self.filter = VisionFilter(DIVISION_B, REALISTIC)
+        self.rng = np.random.default_rng(1)
+        self.noise, self.camera, self.number = noise, camera, 0
+        self.time = 100.0
+
+    def see(
+        self,
+        robots: list[tuple[RobotId, float, float, float]] | None = None,
+        balls: list[tuple[float, float]] | None = None,
+        confidence: float = 1.0,
+    ) -> None:
+        def spoilt(value: float) -> float:
+            return value + self.noise * float(self.rng.standard_normal())
+
+        self.number += 1
+        self.time += PERIOD
+        self.filter.add(
+            CameraFrame(
+                self.camera,
+                self.number,
+                self.time,
+                self.time,
+                [BallDetection(spoilt(x), spoilt(y), confidence) for x, y in balls or []],
+                [
+                    RobotDetection(r, spoilt(x), spoilt(y), wrap_angle(h), confidence)
+                    for r, x, y, h in robots or []
+                ],
+            )
+        )
+
+    def see_for(
+        self,
+        seconds: float,
+        robot: Callable[[float], tuple[float, float, float]] | None = None,
+        ball: Callable[[float], tuple[float, float]] | None = None,
+    ) -> None:
+        began = self.time
+        while self.time < began + seconds:
+            t = self.time + PERIOD - began
+            self.see([] if robot is None else [(ME, *robot(t))], [] if ball is None else [ball(t)])
+
+    def frame(self, ahead: float = 0.0) -> Frame:
+        return self.filter.frame_at(self.time + ahead)
+
+
+@pytest.fixture
+def watched() -> Watched:
+    return Watched()
+
+
+def test_at_constant_velocity_the_errors_are_within_the_bars() -> None:
+    figures = bench_filter(load_scenario("six_v_six"), seconds=8.0, seed=1)["constant_velocity"]["at_capture"]
+    noise = REALISM["realistic"]
+    # The figures are errors in the plane, the noise is that of an axis.
+    assert figures["robot_position"] / sqrt(2) <= noise.robot_noise / 2
+    assert figures["ball_position"] / sqrt(2) <= noise.ball_noise / 2
+    assert figures["robot_velocity"] <= 0.10
+    assert figures["ball_velocity"] <= 0.15
+    assert figures["robot_heading"] <= noise.heading_noise / 2
+    assert figures["missing_robots"] == 0.0
+
+
+@pytest.mark.parametrize("cameras", [1, 4])
+def test_in_a_match_prediction_with_the_sent_commands_beats_none(cameras: int) -> None:
+    play = bench_filter(load_scenario("six_v_six"), seconds=6.0, seed=2, cameras=cameras)["play"]
+    for figure in ("robot_position", "robot_heading", "robot_velocity", "robot_turn", "ball_position"):
+        assert play["compensated"][figure] < play["uncompensated"][figure] * 0.75
+    assert play["at_capture"]["robot_position"] < 0.003
+    assert play["compensated"]["missing_robots"] == 0.0
+
+
+def test_the_same_detections_give_the_same_frames() -> None:
+    frames = []
+    for _ in range(2):
+        watched = Watched(noise=0.002)
+        watched.see_for(0.5, lambda t: (t, 0.0, 0.0), lambda t: (0.0, t))
+        frames.append(watched.frame(0.03))
+    assert frames[0] == frames[1]
+
+
+def test_a_command_that_was_sent_is_predicted_with_before_it_is_seen(watched: Watched) -> None:
+    watched.see_for(0.5, lambda _: (0.0, 0.0, pi / 2))
+    watched.filter.sent(watched.time, {ME: RobotCommand(2.0, 0.0, 1.0)})
+    (robot,) = watched.frame(0.1).own
+    # 3 m/s^2 along the heading, which is +y here.
+    assert robot.vy == pytest.approx(0.3, abs=0.02)
+    assert robot.y == pytest.approx(0.015, abs=0.003)
+    assert robot.omega == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_turn_through_half_a_circle_has_no_seam(watched: Watched) -> None:
+    for t in np.arange(0.0, 3.0, PERIOD):
+        heading = wrap_angle(3.0 * t)
+        watched.see([(ME, 0.0, 0.0, heading)])
+        if t > 0.5:
+            (robot,) = watched.frame().own
+            assert abs(wrap_angle(robot.heading - heading)) < 0.03
+            assert robot.omega == pytest.approx(3.0, abs=0.3)
+
+
+def test_missing_detections_are_bridged(watched: Watched) -> None:
+    watched.see_for(0.5, lambda t: (t, 0.0, 0.0), lambda t: (-t, 1.0))
+    for _ in range(6):
+        watched.see()
+    frame = watched.frame()
+    assert frame.own[0].x == pytest.approx(0.6, abs=0.02)
+    assert frame.ball.x == pytest.approx(-0.6, abs=0.03)
+
+
+def test_a_robot_that_has_left_is_gone_after_a_second(watched: Watched) -> None:
+    watched.see_for(0.5, lambda _: (0.0, 0.0, 0.0))
+    for _ in range(50):
+        watched.see()
+    assert watched.filter.robots() == [ME]
+    for _ in range(15):
+        watched.see()
+    assert watched.filter.robots() == []
+
+
+def test_a_robot_seen_once_is_no_robot(watched: Watched) -> None:
+    watched.see([(ME, 0.0, 0.0, 0.0)])
+    for _ in range(5):
+        watched.see([(HER, 1.0, 0.0, 0.0)])
+    assert watched.filter.robots() == [HER]
+
+
+def test_of_two_robots_with_one_number_the_nearer_to_where_it_was_is_meant(watched: Watched) -> None:
+    watched.see_for(0.5, lambda _: (0.0, 0.0, 0.0))
+    for _ in range(20):
+        watched.see([(ME, 2.0, 1.0, 1.0), (ME, 0.0, 0.0, 0.0)])
+    (robot,) = watched.frame().own
+    assert robot.position == (pytest.approx(0.0, abs=1e-3), pytest.approx(0.0, abs=1e-3))
+
+
+def test_detections_of_no_confidence_are_left_out(watched: Watched) -> None:
+    for _ in range(10):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(1.0, 1.0)], confidence=0.05)
+    assert watched.filter.robots() == []
+    assert not watched.filter.sees_ball()
+
+
+def test_a_false_ball_is_ignored_and_a_real_one_believed_after_three_frames(watched: Watched) -> None:
+    watched.see_for(0.5, ball=lambda _: (0.0, 0.0))
+    watched.see(balls=[(3.0, 2.0)])
+    assert watched.frame().ball.x == pytest.approx(0.0, abs=1e-3)
+    for _ in range(3):
+        watched.see(balls=[(3.0, 2.0)])
+    assert watched.frame().ball.position == (3.0, 2.0)
+
+
+def test_of_two_balls_the_one_in_play_is_followed(watched: Watched) -> None:
+    watched.see_for(0.5, ball=lambda t: (t, 0.0))
+    for i in range(30):
+        watched.see(balls=[(-2.0, -2.0), (0.5 + (i + 1) * PERIOD, 0.0)])
+    assert watched.frame().ball.x == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_robot_that_is_carried_elsewhere_is_found_there_at_rest(watched: Watched) -> None:
+    watched.see_for(0.5, lambda t: (t, 0.0, 0.0))
+    watched.see_for(0.3, lambda _: (-3.0, 2.0, 1.0))
+    (robot,) = watched.frame().own
+    assert robot.position == (pytest.approx(-3.0, abs=0.01), pytest.approx(2.0, abs=0.01))
+    assert robot.speed < 0.05
+
+
+def test_a_kick_is_noticed_within_three_frames(watched: Watched) -> None:
+    watched.see_for(0.5, ball=lambda _: (0.0, 0.0))
+    watched.see_for(3 * PERIOD, ball=lambda t: (6.0 * t, 0.0))
+    ball = watched.frame().ball
+    assert ball.vx == pytest.approx(6.0, rel=0.1)
+    assert ball.x == pytest.approx(6.0 * 3 * PERIOD, abs=0.02)
+
+
+def test_the_speed_of_a_kick_is_known_from_the_first_sight_of_it(watched: Watched) -> None:
+    for _ in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11, 0.0)])
+    watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11 + 6.0 * PERIOD, 0.0)])
+    assert watched.frame().ball.vx == pytest.approx(6.0, abs=0.3)
+    assert watched.frame().ball.vy == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_ball_that_jumps_where_no_robot_is_has_not_been_kicked(watched: Watched) -> None:
+    for _ in range(30):
+        watched.see([(ME, -2.0, 0.0, 0.0)], [(0.11, 0.0)])
+    watched.see([(ME, -2.0, 0.0, 0.0)], [(0.16, 0.0)])
+    assert watched.frame().ball.speed < 0.1
+
+
+def test_cameras_that_disagree_about_a_ball_in_the_mouth_kick_nothing(watched: Watched) -> None:
+    for i in range(60):
+        watched.camera = i // 30
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.11 + 0.02 * watched.camera, 0.0)])
+        assert watched.frame().ball.speed < 0.1
+
+
+def test_a_commanded_velocity_turns_with_the_robot(watched: Watched) -> None:
+    speed, turn = 1.0, 2.0
+    circle = speed / turn
+
+    def driven(t: float) -> tuple[float, float, float]:
+        return circle * sin(turn * t), circle * (1.0 - cos(turn * t)), wrap_angle(turn * t)
+
+    watched.filter.sent(watched.time, {ME: RobotCommand(speed, 0.0, turn)})
+    watched.see_for(1.0, driven)
+    (me,) = watched.frame(0.1).own
+    assert hypot(me.vx - speed * cos(me.heading), me.vy - speed * sin(me.heading)) < 0.015
+
+
+def test_a_kicked_ball_is_predicted_to_slide_and_then_to_roll() -> None:
+    watched = Watched(noise=0.0014)
+    settings = REALISTIC.ball
+    start = BallMotion(-4.0, 0.0)
+    kicked = BallMotion(-4.0, 0.0, 4.0, 0.0, settings.switch_share * 4.0)
+
+    def place(t: float) -> tuple[float, float]:
+        motion = start if t < 0.3 else rolled(kicked, t - 0.3, settings)
+        return motion.x, motion.y
+
+    began = watched.time
+    watched.see_for(0.6, ball=place)
+    for ahead in (0.0, 0.05, 0.2, 0.6):
+        real = rolled(kicked, watched.time - began - 0.3 + ahead, settings)
+        seen = watched.frame(ahead).ball
+        assert (seen.x, seen.vx) == (pytest.approx(real.x, abs=0.02), pytest.approx(real.vx, abs=0.05))
+
+
+def test_a_hidden_ball_goes_with_the_robot_that_has_it(watched: Watched) -> None:
+    mouth = REALISTIC.body.face + 0.0215
+
+    def robot(t: float) -> tuple[float, float, float]:
+        return (0.5 * t, 0.0, 0.4 * t)
+
+    def ball(t: float) -> tuple[float, float]:
+        x, y, heading = robot(t)
+        return (x + mouth * cos(heading), y + mouth * sin(heading))
+
+    watched.see_for(1.0, robot, ball)
+    began = watched.time - 1.0
+    for _ in range(60):
+        watched.see([(ME, *robot(watched.time + PERIOD - began))])
+    frame = watched.frame()
+    x, y = ball(watched.time - began)
+    assert hypot(frame.ball.x - x, frame.ball.y - y) < 0.02
+    assert frame.own[0].ball_contact
+    assert watched.filter.ball_unseen() == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_hidden_ball_that_nobody_has_rolls_on_to_rest(watched: Watched) -> None:
+    watched.see_for(0.5, ball=lambda t: (0.4 * t, 0.0))
+    for _ in range(120):
+        watched.see()
+    frame = watched.frame()
+    assert frame.ball.speed == 0.0
+    assert 0.2 < frame.ball.x < 0.6
+
+
+def test_a_prediction_ends_at_the_robot_in_the_way(watched: Watched) -> None:
+    for i in range(30):
+        watched.see([(HER, 1.0, 0.0, pi)], [(-1.0 + 3.0 * i * PERIOD, 0.0)])
+    assert watched.frame(0.3).ball.x == pytest.approx(1.0 - 0.09 - 0.0215, abs=0.01)
+
+
+def test_a_robots_own_sensor_decides_who_has_the_ball(watched: Watched) -> None:
+    for _ in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.1, 0.0)])
+    assert watched.frame().own[0].ball_contact
+    assert watched.frame().last_touch == ME
+    watched.filter.feedback(ME, False)
+    assert not watched.frame().own[0].ball_contact
+    watched.filter.feedback(ME, True)
+    for _ in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(0.5, 0.0)])
+    assert not watched.frame().own[0].ball_contact
+
+
+def test_cameras_that_overlap_agree_on_one_robot() -> None:
+    filter_ = VisionFilter(DIVISION_B, REALISTIC)
+    for i in range(60):
+        time = i * PERIOD
+        for camera, late in ((0, 0.0), (1, 0.002)):
+            x = 1.0 * (time - late)
+            seen = [RobotDetection(ME, x, 0.0, 0.0)]
+            filter_.add(CameraFrame(camera, i, time - late, time, [BallDetection(x, 1.0)], seen))
+    frame = filter_.frame_at(59 * PERIOD)
+    assert len(frame.own) == 1
+    assert frame.own[0].x == pytest.approx(59 * PERIOD, abs=0.003)
+    assert frame.own[0].vx == pytest.approx(1.0, abs=0.05)
+
+
+def test_repeated_and_late_frames_change_nothing(watched: Watched) -> None:
+    watched.see_for(0.5, lambda t: (t, 0.0, 0.0))
+    before = watched.frame()
+    old = CameraFrame(0, 3, watched.time - 0.1, watched.time, [], [RobotDetection(ME, -1.0, 0.0, 0.0)])
+    assert not watched.filter.add(old)
+    assert watched.frame() == before
+    assert watched.filter.duplicates == 1
+
+
+def test_a_source_that_starts_anew_is_followed_from_there(watched: Watched) -> None:
+    watched.see_for(0.5, lambda _: (1.0, 0.0, 0.0))
+    watched.time = 0.0
+    watched.see_for(0.2, lambda _: (-2.0, 0.0, 0.0))
+    assert watched.filter.captured == pytest.approx(0.2, abs=PERIOD)
+    assert watched.frame().own[0].x == pytest.approx(-2.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("speed", [0.5, 2.0, 6.5])
+def test_the_balls_closed_form_is_that_of_its_two_phases(speed: float) -> None:
+    settings = BallSettings()
+    motion = BallMotion(0.0, 0.0, speed, 0.0, settings.switch_share * speed)
+    t_slide = speed * (1 - settings.switch_share) / settings.slide_deceleration
+    v_roll = settings.switch_share * speed
+    total = (speed + v_roll) / 2 * t_slide + v_roll**2 / (2 * settings.roll_deceleration)
+    end = rolled(motion, 1000.0, settings)
+    assert (end.x, end.vx) == (pytest.approx(total), 0.0)
+    halves = rolled(rolled(motion, 0.3, settings), 0.4, settings)
+    assert halves.x == pytest.approx(rolled(motion, 0.7, settings).x)

@@ -1,0 +1,66 @@
+"""A published match is the same match, and everybody hears it."""
+
+from __future__ import annotations
+
+import pytest
+
+from robobt.league.serve.publishing import PublishedWorld, PublishingFactory
+from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.sockets import PacketCounts, Receiver
+from robobt.league.wire.tracker import read_tracked
+from robobt.league.wire.vision import read_vision
+from robobt.match import Match, load_scenario
+from robobt.world import World
+from robobt.worlds import sim_world
+from tests.league.served import free_endpoints
+
+
+def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
+    endpoints = free_endpoints()
+    scenario = load_scenario("three_v_three").lasting(0.8)
+    factory = PublishingFactory(sim_world, endpoints, speed=10.0)
+    follower = RefereeFollower()
+    with (
+        Receiver(*endpoints.vision) as vision,
+        Receiver(*endpoints.tracker) as tracker,
+        Receiver(*endpoints.referee) as referee,
+    ):
+        match = Match(scenario, 1, factory)
+        result = match.play()
+        factory.close()
+        seen = [read_vision(packet.data, PacketCounts()) for packet in vision.receive()]
+        tracked = [read_tracked(packet.data, scenario.field, PacketCounts()) for packet in tracker.receive()]
+        words = [follower.read(packet.data) for packet in referee.receive()]
+    assert len(seen) == len(tracked) == len(words) == result.ticks - 1
+    assert all(words)
+    assert follower.game == match.game
+    first = seen[0]
+    assert first is not None
+    assert first.field == scenario.field
+    assert first.frame is not None
+    assert len(first.frame.robots) == 6
+    assert result.trace == Match(scenario, 1, sim_world).play().trace
+
+
+def test_it_waits_for_the_clock_and_no_longer() -> None:
+    scenario = load_scenario("striker_vs_goalie").lasting(0.5)
+    now = [0.0]
+    naps: list[float] = []
+
+    def nap(seconds: float) -> None:
+        naps.append(seconds)
+        now[0] += seconds
+
+    def world(scenario: object) -> PublishedWorld:
+        return PublishedWorld(
+            sim_world(scenario),
+            free_endpoints(),
+            clock=lambda: now[0],
+            sleep=nap,  # type: ignore[arg-type]
+        )
+
+    match = Match(scenario, 1, world)
+    assert isinstance(match.world, World)
+    match.play()
+    match.world.close()  # type: ignore[attr-defined]
+    assert sum(naps) == pytest.approx(0.5, abs=0.03)

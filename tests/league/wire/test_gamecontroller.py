@@ -1,0 +1,180 @@
+"""The game controller's commands become game states, and ours become its messages."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from robobt.league.wire.gamecontroller import RefereeFollower, RefereePublisher
+from robobt.league.wire.messages import Referee
+from robobt.world.field import DIVISION_B
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.state import BallState, Frame
+
+
+class Controller:
+    """A game controller in miniature."""
+
+    def __init__(self) -> None:
+        self.follower = RefereeFollower()
+        self.message = Referee(
+            packet_timestamp=1, stage="NORMAL_FIRST_HALF", command="HALT", command_counter=0
+        )
+        self.message.command_timestamp = 0
+        for info in (self.message.yellow, self.message.blue):
+            info.name = "team"
+            info.score = info.red_cards = info.yellow_cards = info.timeouts = info.timeout_time = 0
+            info.goalkeeper = 0
+
+    def say(
+        self, command: str, upcoming: str | None = None, at: tuple[float, float] | None = None
+    ) -> GameState:
+        self.message.command = Referee.Command.Value(command)
+        self.message.command_counter += 1
+        self.message.ClearField("next_command")
+        self.message.ClearField("designated_position")
+        if upcoming is not None:
+            self.message.next_command = Referee.Command.Value(upcoming)
+        if at is not None:
+            self.message.designated_position.x, self.message.designated_position.y = at
+        return self.repeat()
+
+    def repeat(self) -> GameState:
+        assert self.follower.read(self.message.SerializeToString())
+        return self.follower.game
+
+    def ball(self, x: float, y: float, time: float) -> GameState:
+        return self.follower.watch(Frame(time, DIVISION_B, BallState(x, y)))
+
+
+@pytest.fixture
+def controller() -> Controller:
+    return Controller()
+
+
+def test_nothing_moves_before_the_first_packet() -> None:
+    assert RefereeFollower().game.halted
+
+
+def test_halt_and_timeouts_stop_everybody(controller: Controller) -> None:
+    for command in ("HALT", "TIMEOUT_BLUE", "TIMEOUT_YELLOW"):
+        assert controller.say(command).halted
+
+
+def test_a_stop_tells_what_comes_next_and_where(controller: Controller) -> None:
+    game = controller.say("STOP", "DIRECT_FREE_YELLOW", (1500.0, -2000.0))
+    assert game.stopped
+    assert not game.may_touch
+    assert (game.restart, game.restart_team) == (Restart.FREE_KICK, Team.YELLOW)
+    assert game.placement == (1.5, -2.0)
+
+
+def test_a_kickoff_is_prepared_then_allowed_then_over_when_the_ball_has_moved(controller: Controller) -> None:
+    controller.say("STOP", "PREPARE_KICKOFF_BLUE")
+    prepared = controller.say("PREPARE_KICKOFF_BLUE")
+    assert (prepared.restart, prepared.restart_team, prepared.may_touch) == (
+        Restart.KICKOFF,
+        Team.BLUE,
+        False,
+    )
+    assert prepared.placement == (0.0, 0.0)
+    controller.say("NORMAL_START")
+    assert controller.ball(0.0, 0.0, 1.0).may_touch
+    assert not controller.ball(0.04, 0.0, 1.5).in_play
+    assert controller.ball(0.06, 0.0, 2.0).in_play
+
+
+def test_a_restart_that_nobody_takes_is_over_after_ten_seconds(controller: Controller) -> None:
+    controller.say("DIRECT_FREE_BLUE")
+    game = controller.ball(1.0, 1.0, 5.0)
+    assert (game.restart, game.may_touch, game.placement) == (Restart.FREE_KICK, True, (1.0, 1.0))
+    assert not controller.ball(1.0, 1.0, 14.9).in_play
+    assert controller.ball(1.0, 1.0, 15.1).in_play
+
+
+def test_a_penalty_kick_waits_for_its_normal_start(controller: Controller) -> None:
+    assert not controller.say("PREPARE_PENALTY_YELLOW").may_touch
+    game = controller.say("NORMAL_START")
+    assert (game.restart, game.restart_team, game.may_touch) == (Restart.PENALTY, Team.YELLOW, True)
+
+
+def test_ball_placement_names_the_team_and_the_place(controller: Controller) -> None:
+    game = controller.say("BALL_PLACEMENT_BLUE", "DIRECT_FREE_BLUE", (-3000.0, 250.0))
+    assert (game.restart, game.restart_team, game.placement) == (
+        Restart.BALL_PLACEMENT,
+        Team.BLUE,
+        (-3.0, 0.25),
+    )
+
+
+def test_force_start_frees_the_ball(controller: Controller) -> None:
+    controller.say("STOP", "PREPARE_KICKOFF_BLUE")
+    game = controller.say("FORCE_START")
+    assert game.in_play
+    assert game.placement is None
+
+
+def test_repeated_packets_change_nothing_about_a_restart(controller: Controller) -> None:
+    controller.say("DIRECT_FREE_BLUE")
+    controller.ball(1.0, 1.0, 5.0)
+    assert controller.ball(1.2, 1.0, 6.0).in_play
+    assert controller.repeat().in_play
+
+
+def test_score_and_stage_are_followed(controller: Controller) -> None:
+    controller.message.blue.score = 3
+    controller.message.stage = Referee.Stage.Value("PENALTY_SHOOTOUT")
+    game = controller.repeat()
+    assert (game.blue_score, game.yellow_score, game.stage) == (3, 0, Stage.PENALTY_SHOOTOUT)
+
+
+def test_outdated_commands_of_old_logs_are_understood(controller: Controller) -> None:
+    assert controller.say("INDIRECT_FREE_YELLOW").command is RefereeCommand.DIRECT_FREE_YELLOW
+    assert controller.say("GOAL_BLUE").stopped
+
+
+def test_a_place_that_is_none_is_dropped(controller: Controller) -> None:
+    controller.say("STOP")
+    controller.message.designated_position.x = float("nan")
+    controller.message.designated_position.y = 0.0
+    assert not controller.follower.read(controller.message.SerializeToString())
+    assert controller.follower.counts.implausible == 1
+
+
+def test_noise_is_counted(controller: Controller) -> None:
+    assert not controller.follower.read(b"\xff\xff")
+    assert not controller.follower.read(b"")
+    assert controller.follower.counts.dropped == 2
+
+
+STOPPED = GameState(
+    RefereeCommand.STOP,
+    Stage.NORMAL_FIRST_HALF,
+    blue_score=2,
+    yellow_score=1,
+    restart=Restart.FREE_KICK,
+    restart_team=Team.BLUE,
+    may_touch=False,
+    placement=(1.0, -2.0),
+)
+
+
+def test_what_is_published_is_followed_to_the_same_state() -> None:
+    publisher, follower = RefereePublisher(), RefereeFollower()
+    assert follower.read(publisher.write(STOPPED, 1.0))
+    assert follower.game == STOPPED
+    kick = replace(STOPPED, command=RefereeCommand.DIRECT_FREE_BLUE, may_touch=True)
+    assert follower.read(publisher.write(kick, 2.0))
+    assert follower.game == kick
+
+
+def test_the_counter_grows_with_each_command_and_only_then() -> None:
+    publisher = RefereePublisher(keepers={Team.BLUE: 5})
+    first = Referee.FromString(publisher.write(STOPPED, 1.0))
+    again = Referee.FromString(publisher.write(STOPPED, 1.5))
+    halt = Referee.FromString(publisher.write(replace(STOPPED, command=RefereeCommand.HALT), 2.0))
+    assert [m.command_counter for m in (first, again, halt)] == [0, 0, 1]
+    assert [m.command_timestamp for m in (first, again, halt)] == [1_000_000, 1_000_000, 2_000_000]
+    assert (first.blue.goalkeeper, first.yellow.score) == (5, 1)
+    assert Referee.Command.Name(first.next_command) == "DIRECT_FREE_BLUE"

@@ -1,0 +1,135 @@
+"""Vision packets become detections in metres, and nothing impossible gets through."""
+
+from __future__ import annotations
+
+from math import inf, nan, pi
+
+import pytest
+
+from robobt.league.wire.messages import SSL_GeometryFieldSize, SSL_WrapperPacket
+from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.vision import (
+    BallDetection,
+    CameraFrame,
+    RobotDetection,
+    read_field,
+    read_vision,
+    write_field,
+    write_frame,
+    write_vision,
+)
+from robobt.world.field import DIVISION_A, DIVISION_B, FIELDS
+from robobt.world.game import Team
+from robobt.world.state import RobotId
+
+BLUE, YELLOW = RobotId(Team.BLUE, 3), RobotId(Team.YELLOW, 11)
+
+
+def frame() -> CameraFrame:
+    return CameraFrame(
+        camera=2,
+        number=77,
+        captured=100.5,
+        sent=100.535,
+        balls=[BallDetection(0.25, -1.5, 0.75)],
+        robots=[RobotDetection(BLUE, -1.0, 2.0, 1.5, 0.5), RobotDetection(YELLOW, 4.0, -0.5, None, 0.5)],
+    )
+
+
+def read(data: bytes) -> CameraFrame:
+    packet = read_vision(data, PacketCounts())
+    assert packet is not None
+    assert packet.frame is not None
+    return packet.frame
+
+
+def test_a_frame_comes_back_as_it_was() -> None:
+    assert read(write_vision(frame())) == frame()
+
+
+def test_lengths_are_millimetres_in_the_packet() -> None:
+    assert write_frame(frame()).balls[0].x == 250.0
+
+
+@pytest.mark.parametrize("field", FIELDS.values(), ids=list(FIELDS))
+def test_a_field_comes_back_as_it_was(field: object) -> None:
+    packet = read_vision(write_vision(None, write_field(field)), PacketCounts())  # type: ignore[arg-type]
+    assert packet is not None
+    assert packet.field == field
+
+
+def test_defence_area_and_circle_are_read_from_the_lines_where_the_sizes_are_left_out() -> None:
+    size = write_field(DIVISION_A).field
+    for name in ("penalty_area_depth", "penalty_area_width", "center_circle_radius"):
+        size.ClearField(name)
+    found = read_field(size)
+    assert found is not None
+    assert found.defense_depth == pytest.approx(1.8)
+    assert found.defense_width == pytest.approx(3.6)
+    assert found.center_radius == 0.5
+
+
+def test_without_lines_the_nearest_divisions_sizes_are_taken() -> None:
+    bare = SSL_GeometryFieldSize(
+        field_length=9050, field_width=6020, goal_width=1000, goal_depth=180, boundary_width=300
+    )
+    found = read_field(bare)
+    assert found is not None
+    assert (found.length, found.width) == (9.05, 6.02)
+    assert found.defense_depth == DIVISION_B.defense_depth
+
+
+@pytest.mark.parametrize("length", [0, -9000, 10**9])
+def test_a_field_that_cannot_be_is_dropped(length: int) -> None:
+    geometry = write_field(DIVISION_B)
+    geometry.field.field_length = length
+    counts = PacketCounts()
+    assert read_vision(write_vision(None, geometry), counts) is None
+    assert counts.implausible == 1
+
+
+@pytest.mark.parametrize("value", [nan, inf, -inf, 1e30, 40_000.0])
+def test_detections_that_cannot_be_are_left_out(value: float) -> None:
+    packet = SSL_WrapperPacket(detection=write_frame(frame()))
+    packet.detection.balls[0].x = value
+    packet.detection.robots_blue[0].y = value
+    found = read(packet.SerializeToString())
+    assert found.balls == []
+    assert [robot.robot for robot in found.robots] == [YELLOW]
+
+
+def test_a_robot_without_a_number_or_with_an_impossible_one_is_left_out() -> None:
+    packet = SSL_WrapperPacket(detection=write_frame(frame()))
+    packet.detection.robots_blue[0].ClearField("robot_id")
+    packet.detection.robots_yellow[0].robot_id = 4_000_000_000
+    assert read(packet.SerializeToString()).robots == []
+
+
+def test_headings_are_wrapped() -> None:
+    packet = SSL_WrapperPacket(detection=write_frame(frame()))
+    packet.detection.robots_blue[0].orientation = 3 * pi / 2
+    assert read(packet.SerializeToString()).robots[0].heading == pytest.approx(-pi / 2)
+
+
+@pytest.mark.parametrize("time", [nan, inf])
+def test_a_frame_of_no_time_is_dropped(time: float) -> None:
+    packet = SSL_WrapperPacket(detection=write_frame(frame()))
+    packet.detection.t_capture = time
+    counts = PacketCounts()
+    assert read_vision(packet.SerializeToString(), counts) is None
+    assert counts.implausible == 1
+
+
+def test_a_crowd_is_dropped() -> None:
+    crowded = frame()
+    crowded.balls = [BallDetection(0.0, 0.0)] * 65
+    counts = PacketCounts()
+    assert read_vision(write_vision(crowded), counts) is None
+    assert counts.implausible == 1
+
+
+def test_an_empty_packet_is_counted_not_used() -> None:
+    counts = PacketCounts()
+    assert read_vision(b"", counts) is None
+    assert counts.implausible == 1
+    assert counts.accepted == 0

@@ -1,0 +1,146 @@
+"""A finished run becomes a model whose card says where it comes from and what it can do."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from robobt import __version__
+from robobt.cli import app
+from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.export_run import export_run, held_out
+from robobt.learning.training.run_folder import RunFolderError, load_run
+from robobt.learning.training.settings import load_settings
+from robobt.learning.training.train import train
+from robobt.models.file import ModelError, read_model_file
+from robobt.models.policy import load_policy
+from robobt.skills import GoToBall, LearnedSkill, Shoot
+
+TINY = {
+    "steps": 512,
+    "seed": 3,
+    "tensorboard": False,
+    "collection.random_steps": 128,
+    "agent.hidden": [8],
+    "evaluation.every": 256,
+    "evaluation.starts": 4,
+    "evaluation.held_out": 20,
+    "rebuild_every": 256,
+    "environment": {"time_limit": 40, "period": 0.025, "simulator": "grsim"},
+}
+
+
+@pytest.fixture(scope="module", params=["go_to_ball", "shoot"])
+def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / str(request.param)
+    train(load_settings(str(request.param), "fast", TINY), folder)
+    return folder
+
+
+def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
+    (path,) = export_run(run, folder=tmp_path)
+    task = run.name
+    card = read_model_file(path).card
+    result = load_run(run)
+    assert path == tmp_path / f"{task}_ddpg.pt"
+    assert card.skill == {"go_to_ball": "GoToBall", "shoot": "Shoot"}[task]
+    assert card.observation.name == task
+    assert card.environment == result.settings.environment
+    assert card.action is not None
+    assert card.action.model_dump() == result.settings.environment["action"]
+    assert card.period == 0.025
+    assert card.limits is not None
+    assert card.limits.max_speed == 5.0
+    assert card.seed == 3
+    assert card.code_version == __version__
+    assert card.training["settings"]["agent"]["hidden"] == [8]
+    assert card.training["figures"]["steps"] == result.figures["steps"]
+    success, told = card.held_out["success"], result.figures["held_out"]
+    assert (success.value, success.low, success.high, success.n) == (
+        told["success"],
+        told["low"],
+        told["high"],
+        20,
+    )
+
+
+def test_the_exported_policy_is_the_runs_best_actor(run: Path, tmp_path: Path) -> None:
+    from robobt.learning.agents.networks import policy_of
+
+    inputs = np.random.default_rng(1).normal(0.0, 2.0, (100, 6 if run.name == "go_to_ball" else 10))
+    wanted = policy_of(load_run(run).actor)(inputs)
+    for path in export_run(run, "both", tmp_path, ("torchscript", "onnx"), starts=5):
+        np.testing.assert_allclose(load_policy(path)(inputs), wanted, atol=1e-6)
+
+
+def test_it_is_a_skill_at_once(run: Path, tmp_path: Path) -> None:
+    (path,) = export_run(run, "mine", tmp_path, starts=5)
+    leaf = GoToBall if run.name == "go_to_ball" else Shoot
+    assert leaf(policy=str(path)).policy == str(path)
+    assert LearnedSkill(model=str(path)).model == str(path)
+
+
+def test_of_several_seeds_the_best_is_taken(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "seed_7").symlink_to(run)
+    (tmp_path / "result.json").write_text('{"best_seed": 7}')
+    (path,) = export_run(tmp_path, "best", tmp_path / "models", starts=5)
+    assert read_model_file(path).card.seed == 3
+
+
+def test_a_folder_that_holds_no_finished_run_is_one_error(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="not the folder of a run that has ended"):
+        export_run(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["bad name", "../mine", "mine.pt", "x" * 65])
+def test_a_name_that_is_none_is_one_error(run: Path, tmp_path: Path, name: str) -> None:
+    with pytest.raises(ModelError, match="is no name for a model"):
+        export_run(run, name, tmp_path, starts=5)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_held_out_figures_carry_their_intervals() -> None:
+    success = np.array([True, True, True, False])
+    times = np.array([1.0, 2.0, 3.0, np.nan])
+    told = held_out(Evaluation(success, times, np.array([1.0, 1.5, 2.5, 1.0]), np.zeros(4)))
+    assert told["success"].value == 0.75
+    assert told["time"].value == 2.0
+    assert told["time"].n == 3
+    assert told["time_ratio"].value == pytest.approx(6.0 / 5.0)
+    for one in told.values():
+        assert one.low is not None
+        assert one.high is not None
+        assert one.low < one.value < one.high
+    nothing = held_out(Evaluation(~success & success, times * np.nan, times * np.nan, np.zeros(4)))
+    assert list(nothing) == ["success"]
+
+
+def test_the_commands_write_list_and_show_models(run: Path, tmp_path: Path) -> None:
+    def robobt(*arguments: str, code: int = 0) -> str:
+        done = CliRunner().invoke(app, list(arguments))
+        assert done.exit_code == code, done.output
+        return done.output
+
+    out = str(tmp_path / "models")
+    written = json.loads(robobt("export", str(run), "--name", "mine", "--onnx", "--out", out, "--json"))
+    assert [file["format"] for file in written["files"]] == ["torchscript", "onnx"]
+    assert all(file["listed"] for file in written["files"])
+    assert "held-out result" in robobt("export", str(run), "--name", "mine", "--onnx", "--out", out)
+    listed = json.loads(robobt("models", "--path", out, "--json"))
+    own = [file for file in listed["models"] if file["card"]["name"] == "mine"]
+    assert own == [written["files"][1], written["files"][0]]
+    assert listed["problems"] == []
+    assert "mine" in robobt("models", "--path", out)
+    assert "sin_" in robobt("models", str(tmp_path / "models" / "mine.pt"))
+    (tmp_path / "models" / "mine.pt").write_bytes(b"broken")
+    assert "manifest" in robobt("models", "--path", out, code=1)
+    assert (
+        "manifest"
+        in json.loads(robobt("models", "--path", out, "--json", code=1).partition("\nrobobt")[0])["problems"][
+            0
+        ]
+    )

@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from robobt.learning.training.compare import variants
+from robobt.learning.training.settings import (
+    ENVIRONMENTS,
+    AgentSettings,
+    SettingsError,
+    TrainSettings,
+    environment_of,
+    load_settings,
+    presets,
+)
+
+ALL = [(task, preset) for task in ENVIRONMENTS for preset in presets(task)]
+
+
+@pytest.mark.parametrize(("task", "preset"), ALL)
+def test_every_shipped_preset_is_valid(task, preset):
+    settings = load_settings(task, preset)
+    assert settings.task == task
+    assert settings.preset == preset
+    assert isinstance(environment_of(settings), ENVIRONMENTS[task])
+
+
+def test_the_presets_of_both_tasks():
+    for task in ENVIRONMENTS:
+        assert {"fast", "paper", "td3", "d4pg", "ddpgfd", "cmu"} <= set(presets(task))
+
+
+@pytest.mark.parametrize("task", ENVIRONMENTS)
+def test_the_papers_preset_is_spinning_up_to_the_letter(task):
+    settings = load_settings(task, "paper")
+    agent, collection = settings.agent, settings.collection
+    assert agent.hidden == (256, 256)
+    assert (agent.gamma, agent.tau) == (0.99, pytest.approx(1 - 0.995))
+    assert (agent.actor_rate, agent.critic_rate, settings.replay.batch) == (1e-3, 1e-3, 100)
+    assert settings.replay.capacity == 1_000_000
+    assert (collection.environments, collection.random_steps, collection.update_after) == (1, 10_000, 1_000)
+    assert (collection.update_every, collection.updates, collection.noise) == (50, 50, 0.1)
+    switched_off = AgentSettings().model_dump() | {"scale_observations": False}
+    assert agent.model_dump() == switched_off
+
+
+def test_later_papers_switch_on_what_they_are_known_for():
+    td3 = load_settings("go_to_ball", "td3").agent
+    assert td3.twin
+    assert td3.actor_every == 2
+    assert td3.smoothing > 0
+    d4pg = load_settings("go_to_ball", "d4pg")
+    assert d4pg.agent.atoms > 0
+    assert d4pg.agent.n_step == 5
+    assert d4pg.replay.priority.enabled
+    fd = load_settings("shoot", "ddpgfd")
+    assert fd.replay.demonstrations.keep
+    assert fd.replay.demonstrations.bonus > 0
+    assert fd.agent.one_step_weight > 0
+    cmu = load_settings("shoot", "cmu")
+    assert cmu.replay.demonstrations.episodes > 0
+    assert not cmu.replay.demonstrations.keep
+    assert cmu.collection.random_steps == 0
+
+
+@pytest.mark.parametrize("task", ENVIRONMENTS)
+def test_a_comparison_changes_one_switch_at_a_time_on_one_budget(task):
+    found = variants(task)
+    fast = found["fast"]
+    assert fast == load_settings(task, "fast")
+    assert len({settings.model_dump_json() for settings in found.values()}) == len(found)
+    for name, settings in found.items():
+        if name != "paper":
+            assert settings.steps == fast.steps
+            assert settings.evaluation == fast.evaluation
+
+
+def test_a_preset_may_be_a_file_that_extends_another(tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("extends: fast\nagent: {n_step: 7}\n")
+    settings = load_settings("go_to_ball", str(file), {"agent.tau": 0.5, "seed": 3})
+    assert (settings.agent.n_step, settings.agent.tau, settings.seed) == (7, 0.5, 3)
+    assert settings.agent.hidden == load_settings("go_to_ball", "fast").agent.hidden
+
+
+def test_settings_survive_being_written_and_read():
+    settings = load_settings("shoot", "ddpgfd", {"environment.simulator": "robobulls"})
+    text = yaml.safe_dump(settings.model_dump(mode="json"))
+    assert TrainSettings.model_validate(yaml.safe_load(text)) == settings
+    assert environment_of(settings).simulator.dribbler.kind == "glue"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"agent.gamma": 1.0}, r"fast\.yaml, with agent\.gamma changed: agent\.gamma: .*less than 1"),
+        ({"agent.tauu": 1.0}, r"agent\.tauu: there is no such field; there are hidden"),
+        ({"agent.atoms": 1}, r"agent: .*atoms must be 0 or at least 2"),
+        (
+            {"evaluation.every": 100},
+            r"evaluation\.every must be a multiple of collection\.environments \(64\)",
+        ),
+        (
+            {"environment.simulator": "gazebo"},
+            r"environment\.simulator: no simulator preset is called 'gazebo'",
+        ),
+        ({"environment.periodd": 1}, r"environment\.periodd: there is no such field"),
+        ({"replay.demonstrations.bonus": 1.0}, r"replay: demonstrations get a bonus only with"),
+        ({"seed.x": 1}, r"there is no such field|seed: .*integer"),
+    ],
+)
+def test_wrong_settings_are_one_line_that_names_file_and_field(changes, said):
+    with pytest.raises(SettingsError, match=said) as caught:
+        load_settings("go_to_ball", changes=changes)
+    assert "\n" not in str(caught.value)
+    # The fault may be the change's, not the file's.
+    assert f"with {next(iter(changes))} changed: " in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("[1, 2]", "must hold a mapping"),
+        ("extends: [a]", "extends: must name another preset"),
+        ("{extends: fast, agent: {tau: -1}}", r"mine.yaml: agent\.tau: .*greater than 0"),
+        ("agent: {tau: ", "line 1"),
+        ("extends: nothing", "no preset of go_to_ball is called 'nothing'"),
+    ],
+)
+def test_a_wrong_file_is_one_line_too(tmp_path, content, said):
+    (tmp_path / "mine.yaml").write_text(content)
+    with pytest.raises(SettingsError, match=said):
+        load_settings("go_to_ball", str(tmp_path / "mine.yaml"))
+
+
+def test_what_does_not_exist_is_told_with_what_does():
+    with pytest.raises(SettingsError, match="there are go_to_ball, shoot"):
+        load_settings("dance")
+    with pytest.raises(SettingsError, match="there are cmu, d4pg, ddpgfd, fast, paper"):
+        load_settings("shoot", "slow")
+    with pytest.raises(SettingsError, match="cannot be read"):
+        load_settings("shoot", "slow.yaml")

@@ -1,0 +1,704 @@
+import base64
+import gzip
+import json
+import random
+import re
+import signal
+import subprocess
+import sys
+import zlib
+from dataclasses import replace
+from itertools import pairwise
+from math import inf, nan
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from py_trees.visitors import VisitorBase
+from pydantic import ValidationError
+
+from robobt.match import Match
+from robobt.match.recording import (
+    Event,
+    RecordedNode,
+    RecordedRobot,
+    Recorder,
+    RecordingError,
+    RobotFlag,
+    load_recording,
+    reader,
+)
+from robobt.match.scenario.scenario import load_scenario, scenario_from
+from robobt.skills.store import Store
+from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
+from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
+from robobt.worlds import sim_world
+from tests.match.recording.made_recording import (
+    BLUE_1,
+    BLUE_4,
+    PERIOD,
+    YELLOW_0,
+    Every,
+    Raises,
+    Wait,
+    frame,
+    header,
+    record,
+    runners,
+)
+from tests.tree.random_trees import random_tree
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "match.robobt.jsonl"
+
+
+def record_frames(path: Path, frames: list[Frame]) -> None:
+    with Recorder(path, header()) as recorder:
+        for each in frames:
+            recorder.tick(each)
+        recorder.close({})
+
+
+def test_a_recording_gives_the_match_back_to_the_rounding(path: Path) -> None:
+    record(path)
+    recording = load_recording(path)
+    assert len(recording) == 120
+    for tick in range(120):
+        told, true = recording.frame(tick), frame(tick, score=int(tick >= 50))
+        assert told.time == pytest.approx(true.time, abs=1e-6)
+        assert told.ball.position == pytest.approx(true.ball.position, abs=5.1e-5)
+        assert (told.ball.vx, told.ball.vy) == pytest.approx((true.ball.vx, true.ball.vy), abs=5.1e-4)
+        for robot, real in zip(told.own + told.opponents, true.own + true.opponents, strict=True):
+            assert robot.position == pytest.approx(real.position, abs=5.1e-5)
+            fine = (robot.heading, robot.vx, robot.vy, robot.omega)
+            assert fine == pytest.approx((real.heading, real.vx, real.vy, real.omega), abs=5.1e-4)
+            assert (robot.id, robot.ball_contact) == (real.id, real.ball_contact)
+        assert (told.game, told.last_touch) == (true.game, true.last_touch)
+        assert (told.field, told.period, told.team) == (true.field, true.period, Team.BLUE)
+
+
+def test_the_header_holds_robots_and_their_trees(path: Path) -> None:
+    record(path)
+    told = load_recording(path).header
+    assert told.model_copy(update={"robots": ()}) == header().model_copy(update={"robots": ()})
+    assert [robot.id for robot in told.robots] == [BLUE_1, BLUE_4, YELLOW_0]
+    assert told.robots[1].tree == ()
+    assert [(node.name, node.type, node.depth) for node in told.robots[0].tree] == [
+        ("play", "Selector", 0),
+        ("now and then", "Sequence", 1),
+        ("Every", "Every", 2),
+        ("Wait", "Wait", 2),
+        ("idle", "Wait", 1),
+    ]
+    assert told.robots[0].tree[2].detail == "count=7"
+
+
+def test_every_status_and_every_word_is_there_at_its_tick(path: Path) -> None:
+    seen = record(path)
+    recording = load_recording(path)
+    for tick, trees in enumerate(seen):
+        for robot, (statuses, words) in trees.items():
+            assert recording.statuses_at(robot, tick) == statuses
+            said = recording.feedback_at(robot, tick)
+            assert [said.get(place, "") for place in range(len(words))] == words
+
+
+class Ticked(VisitorBase):
+    """Notes the places of the nodes a tick reached."""
+
+    def __init__(self, nodes: list[Behaviour]) -> None:
+        super().__init__(full=False)
+        self.places = {id(node): place for place, node in enumerate(nodes)}
+        self.reached: set[int] = set()
+
+    def initialise(self) -> None:
+        self.reached = set()
+
+    def run(self, behaviour: Behaviour) -> None:
+        self.reached.add(self.places[id(behaviour)])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_whatever_a_tree_does_is_recorded_as_it_was_seen(path: Path, seed: int) -> None:
+    rng = random.Random(seed)
+    runner, twin = (
+        TreeRunner(
+            random_tree(random.Random(seed), f"{name}{seed}")([], "once"), Store(frame(0), frame(0).own[0])
+        )
+        for name in ("recorded", "watched")
+    )
+    ticked = Ticked(twin.nodes)
+    twin.show_to(ticked)
+    if seed % 4 == 0:
+        runner.tick_by_py_trees()
+    seen = []
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(60):
+            now = frame(tick)
+            for node in runner.nodes + twin.nodes:
+                if isinstance(node, Leaf):
+                    node.store.frame = now
+            ticked.reached = set()
+            if rng.random() < 0.8:
+                runner.tick()
+                twin.tick()
+            if rng.random() < 0.1:
+                runner.stop()
+                twin.stop()
+            recorder.tick(now)
+            words = [node.feedback_message for node in runner.nodes]
+            seen.append((runner.statuses(), words, ticked.reached, twin.statuses()))
+        recorder.close({})
+    recording = load_recording(path)
+    nodes = recording.header.robots[0].tree
+    for tick, (statuses, words, reached, same) in enumerate(seen):
+        assert statuses == same
+        assert recording.statuses_at(BLUE_1, tick) == statuses
+        said = recording.feedback_at(BLUE_1, tick)
+        for place, letter in enumerate(statuses):
+            if letter != "-" and nodes[place].type not in ("Selector", "Sequence", "Parallel"):
+                assert said.get(place, "") == words[place]
+        told = [nodes[place].path for place in sorted(reached) if statuses[place] != "-"]
+        assert recording.ticked_path(BLUE_1, tick) == told
+
+
+def test_a_robot_too_far_away_for_the_file_is_nowhere(path: Path) -> None:
+    far = frame(0)
+    far.own = (replace(far.own[0], x=2.0**70), replace(far.own[1], x=1e307))
+    record_frames(path, [far, frame(1)])
+    assert [len(load_recording(path).frame(tick).own) for tick in range(2)] == [0, 2]
+
+
+def test_trees_are_written_only_when_they_change(path: Path) -> None:
+    record(path)
+    changes = load_recording(path).statuses[0]
+    assert 20 < len(changes) < 60
+    assert all(one[1] != other[1] for one, other in pairwise(changes))
+
+
+def test_a_robot_without_a_tree_has_no_statuses(path: Path) -> None:
+    record(path)
+    recording = load_recording(path)
+    assert recording.statuses_at(BLUE_4, 10) == ""
+    with pytest.raises(KeyError, match="yellow 9"):
+        recording.statuses_at(RobotId(Team.YELLOW, 9), 0)
+
+
+def test_events_and_outcome_come_back(path: Path) -> None:
+    record(path)
+    recording = load_recording(path)
+    assert recording.events[1] == Event(pytest.approx(50 / 60, abs=1e-6), "goal", Team.BLUE, None, "1 : 0")
+    kicks = [event for event in recording.events if event.kind == "kick"]
+    assert [(event.team, event.robot) for event in kicks] == [(Team.YELLOW, YELLOW_0)] * 3
+    assert recording.outcome == {"outcome": "goal_blue", "blue": 1}
+    assert recording.complete
+
+
+def test_flags_tell_contact_dribbler_and_kick(path: Path) -> None:
+    record(path)
+    flags = load_recording(path).flags
+    sent = RobotFlag.COMMANDED
+    assert flags[10].tolist() == [
+        sent | RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER,
+        0,
+        sent | RobotFlag.KICK,
+    ]
+    assert flags[11].tolist() == [sent | RobotFlag.DRIBBLER, 0, sent | RobotFlag.KICK]
+
+
+def test_yellows_view_of_a_match_is_recorded_as_blues(path: Path, tmp_path: Path) -> None:
+    record_frames(path, [frame(tick) for tick in range(30)])
+    record_frames(tmp_path / "mirrored", [frame(tick).mirrored() for tick in range(30)])
+    one, other = load_recording(path), load_recording(tmp_path / "mirrored")
+    np.testing.assert_allclose(one.robots, other.robots, atol=1.1e-3)
+    np.testing.assert_allclose(one.ball, other.ball, atol=1e-9)
+
+
+def test_the_placement_is_recorded_in_world_coordinates(path: Path) -> None:
+    placed = replace(frame(0).game, command=RefereeCommand.BALL_PLACEMENT_BLUE, placement=(1.5, -2.0))
+    record_frames(path, [replace(frame(0), game=placed).mirrored()])
+    assert load_recording(path).frame(0).game == placed
+
+
+def test_a_robot_off_the_field_is_nowhere_until_it_is_back(path: Path) -> None:
+    frames = [frame(tick) for tick in range(3)]
+    frames[1].own = frames[1].own[1:]
+    record_frames(path, frames)
+    recording = load_recording(path)
+    assert [[robot.id for robot in recording.frame(tick).own] for tick in range(3)] == [[1, 4], [4], [1, 4]]
+    assert np.isnan(recording.robots[1, 0]).all()
+
+
+def test_a_robot_the_header_does_not_list_is_left_out(path: Path) -> None:
+    stranger = frame(0)
+    stranger.own = (*stranger.own, RobotState(9, 0.0, 0.0))
+    record_frames(path, [stranger])
+    assert [robot.id for robot in load_recording(path).frame(0).own] == [1, 4]
+
+
+def test_a_position_that_is_no_number_does_not_stop_the_recording(path: Path) -> None:
+    broken = frame(0)
+    broken.own = (replace(broken.own[0], x=nan), replace(broken.own[1], vy=inf))
+    record_frames(path, [broken, replace(frame(1), ball=BallState(nan, 0.0)), frame(2)])
+    recording = load_recording(path)
+    assert recording.frame(0).own == ()
+    assert np.isnan(recording.ball[1]).all()
+    assert len(recording.frame(2).own) == 2
+
+
+def test_a_tree_that_raises_leaves_one_event_a_fault(path: Path) -> None:
+    trees = {BLUE_1: TreeRunner(Selector("play", memory=False, children=[Raises("bad")]), None)}
+    with Recorder(path, header(), trees) as recorder:
+        for tick in range(5):
+            trees[BLUE_1].tick()
+            recorder.tick(frame(tick))
+        recorder.close({})
+    (event,) = load_recording(path).events
+    assert (event.kind, event.robot, event.time) == ("error", BLUE_1, 0.0)
+    assert event.text.startswith("play/bad: RuntimeError: broken on purpose (made_recording.py:")
+
+
+def test_the_same_match_gives_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a.robobt.jsonl", "b.robobt.jsonl", "a.robobt.jsonl.gz", "b.robobt.jsonl.gz"):
+        record(tmp_path / name)
+    assert (tmp_path / "a.robobt.jsonl").read_bytes() == (tmp_path / "b.robobt.jsonl").read_bytes()
+    assert (tmp_path / "a.robobt.jsonl.gz").read_bytes() == (tmp_path / "b.robobt.jsonl.gz").read_bytes()
+
+
+def test_a_compressed_recording_is_smaller_and_the_same(tmp_path: Path, path: Path) -> None:
+    packed = tmp_path / "match.robobt.jsonl.gz"
+    record(path)
+    record(packed)
+    assert packed.stat().st_size < path.stat().st_size / 2
+    np.testing.assert_array_equal(load_recording(packed).robots, load_recording(path).robots)
+    assert load_recording(packed).complete
+
+
+def test_a_recorder_that_was_not_closed_leaves_an_incomplete_recording(path: Path) -> None:
+    record(path, close=False)
+    recording = load_recording(path)
+    assert len(recording) == 120
+    assert not recording.complete
+    assert recording.outcome is None
+
+
+@pytest.mark.parametrize("ending", ["", ".gz"])
+def test_a_second_of_play_is_on_disk_while_the_match_goes_on(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"match.robobt.jsonl{ending}"
+    with Recorder(path, header(), runners()) as recorder:
+        assert len(load_recording(path)) == 0
+        for tick in range(130):
+            recorder.tick(frame(tick))
+        held = load_recording(path)
+        assert 120 <= len(held) <= 130
+        assert not held.complete
+
+
+def test_a_file_cut_anywhere_loads_up_to_its_last_whole_line(path: Path, tmp_path: Path) -> None:
+    record(path, ticks=200)
+    data = path.read_bytes()
+    first = data.index(b"\n") + 1
+    cut = tmp_path / "cut"
+    ends = [i + 1 for i, byte in enumerate(data) if byte == ord("\n")]
+    ticks = {json.loads(line).get("n", 0) for line in data.splitlines()[1:]}
+    assert max(ticks) == round(1 / PERIOD)
+    for size in [*range(first, len(data), 997), *ends[:-1], *[end - 1 for end in ends[1:]]]:
+        cut.write_bytes(data[:size])
+        recording = load_recording(cut)
+        assert not recording.complete
+        whole = data[: data.rindex(b"\n", 0, size) + 1].splitlines()[1:]
+        assert len(recording) == sum(json.loads(line).get("n", 0) for line in whole)
+
+
+def test_a_compressed_file_cut_anywhere_loads_too(tmp_path: Path) -> None:
+    path, cut = tmp_path / "match.robobt.jsonl.gz", tmp_path / "cut"
+    record(path)
+    data = path.read_bytes()
+    sizes = range(len(data) // 3, len(data) - 12, 97)
+    ticks = []
+    for size in sizes:
+        cut.write_bytes(data[:size])
+        ticks.append(len(load_recording(cut)))
+    assert ticks == sorted(ticks)
+    assert ticks[-1] >= 60
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"", "is empty"),
+        (b"PNG\r\n\x1a\n\x00\x00", "line 1: is not a robobt recording"),
+        (b"just words", "line 1: is not a robobt recording"),
+        (b'{"name": "something else"}\n', "line 1: format: must be 'robobt-recording'"),
+        (b'{"format":"robobt-recording","version":7}\n', "line 1: version: 7 cannot be read by"),
+        (b'{"format":"robobt-recording","version":1}\n', "line 1: version: 1 cannot be read by"),
+        (b'{"format":"robobt-recording","version":2,"sce', "line 1: is cut off inside its header"),
+        (b'{"format":"robobt-recording","version":2}\n', "line 1: period: Field required"),
+        (b"\x1f\x8b\x08\x00 not really compressed", "compressed data are damaged"),
+        (b"[" * 100_000 + b"\n", "line 1: is not a robobt recording"),
+    ],
+)
+def test_a_foreign_file_is_refused_in_one_clear_line(path: Path, content: bytes, problem: str) -> None:
+    path.write_bytes(content)
+    with pytest.raises(RecordingError, match=re.escape(problem)) as caught:
+        load_recording(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_not_there_is_a_recording_error(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="No such file"):
+        load_recording(tmp_path / "none")
+    with pytest.raises(RecordingError, match="directory"):
+        load_recording(tmp_path)
+
+
+def edited(path: Path, keys: dict[str, object], changes: bool) -> None:
+    """Change keys of the first ticks, or of what changed at the third of them."""
+    lines = path.read_text().splitlines()
+    entry = json.loads(lines[1])
+    (entry["c"].setdefault("2", {}) if changes else entry).update(keys)
+    lines[1] = json.dumps(entry)
+    path.write_text("\n".join(lines) + "\n")
+
+
+GAME = {"command": "STOP", "stage": "POST_GAME", "blue": 0, "yellow": 0, "restart": None, "team": None}
+FULL_GAME = GAME | {"may_touch": True, "placement": None}
+
+
+@pytest.mark.parametrize(
+    ("keys", "field", "problem"),
+    [
+        ({"t": "soon"}, "t", "must be a list of as many times as n says"),
+        ({"n": 7}, "t", "must be a list of as many times as n says"),
+        ({"t": [nan] * 10}, "t", "must be a finite number"),
+        ({"t": [*range(9), 3]}, "t", "runs backwards"),
+        ({"x": 3}, "x", "must be a text"),
+        ({"x": "?"}, "x", "cannot be decoded"),
+        ({"x": "AAAA"}, "x", "must hold 10 x 40 numbers"),
+        ({"x": base64.b64encode(b"\xff" * (4 + 2 * 9) * 40).decode()}, "x", "are no flags"),
+        ({"o": "AAAA"}, "o", "must hold 10 x 40 numbers"),
+        ({"c": []}, "c", "must be an object"),
+        ({"c": {"10": {}}}, "c", "there is no tick '10'"),
+        ({"c": {"3": {}, "2": {}}}, "c", "runs backwards"),
+        ({"c": {"3": []}}, "c.3", "must be an object"),
+    ],
+)
+def test_spoiled_ticks_are_named_with_their_field(
+    path: Path, keys: dict[str, object], field: str, problem: str
+) -> None:
+    record(path, ticks=10)
+    edited(path, keys, changes=False)
+    with pytest.raises(RecordingError, match=re.escape(problem)) as caught:
+        load_recording(path)
+    assert (caught.value.path, caught.value.line, caught.value.field) == (path, 2, field)
+    assert f"line 2: {field}: " in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("keys", "field", "problem"),
+    [
+        ({"s": {"0": "SS"}}, "s.0", "must be 5 letters out of S, F, R, s, f, r, -"),
+        ({"s": {"0": "SSSSX"}}, "s.0", "must be 5 letters out of S, F, R, s, f, r, -"),
+        ({"s": {"7": "SSSSS"}}, "s", "there is no robot '7'"),
+        ({"s": []}, "s", "must be an object"),
+        ({"f": {"0": {"5": "hi"}}}, "f.0", "there is no node '5'"),
+        ({"f": {"0": {"1": 3}}}, "f.0.1", "must be a text"),
+        ({"w": []}, "w", "must be an object"),
+        ({"w": {"0": 1}}, "w.0", "must be an object"),
+        ({"w": {"9": {}}}, "w", "there is no robot '9'"),
+        ({"g": FULL_GAME | {"command": "DANCE"}}, "g", "'DANCE' is missing or unknown"),
+        ({"g": GAME}, "g", "'placement' is missing or unknown"),
+        ({"g": FULL_GAME | {"restart": "walk"}}, "g", "'walk' is not a valid Restart"),
+        ({"l": ["green", 1]}, "l", "'green' is not a team"),
+        ({"l": "blue"}, "l", "must be a team and a number"),
+    ],
+)
+def test_a_spoiled_change_is_named_with_its_field(
+    path: Path, keys: dict[str, object], field: str, problem: str
+) -> None:
+    record(path, ticks=10)
+    edited(path, keys, changes=True)
+    with pytest.raises(RecordingError, match=re.escape(problem)) as caught:
+        load_recording(path)
+    assert (caught.value.path, caught.value.line, caught.value.field) == (path, 2, f"c.2.{field}")
+
+
+def test_lines_that_are_none_of_ours_are_refused(path: Path) -> None:
+    record(path, ticks=3)
+    whole = path.read_text()
+    path.write_text(whole + '{"e":"goal","t":1}\n')
+    with pytest.raises(RecordingError, match="line 4: stands after the last line"):
+        load_recording(path)
+    path.write_text(whole.splitlines()[0] + "\n{}\n")
+    with pytest.raises(RecordingError, match="line 2: is neither ticks nor an event nor the end"):
+        load_recording(path)
+
+
+def test_spoiled_files_never_raise_anything_else(path: Path) -> None:
+    record(path, ticks=8)
+    data = path.read_bytes()
+    rng = random.Random(3)
+    tokens = [match.span() for match in re.finditer(rb'-?\d+(?:\.\d+)?|"[^"]*"|null|true|[\[\]{}]', data)]
+    swaps = [b"null", b"1e999", b"NaN", b"-1", b"9" * 30, b'"x"', b"[]", b"{}", b"true", b"1.5", b'"\\ud800"']
+    refused = 0
+    for _ in range(600):
+        start, end = rng.choice(tokens)
+        path.write_bytes(data[:start] + rng.choice(swaps) + data[end:])
+        try:
+            load_recording(path)
+        except RecordingError:
+            refused += 1
+    assert refused > 100
+
+
+def test_the_header_is_checked_when_it_is_made() -> None:
+    with pytest.raises(ValidationError, match="robot blue 1 is listed twice"):
+        header(robots=[RecordedRobot(team=Team.BLUE, number=1)] * 2)
+    orphan = RecordedNode(name="a", type="A", kind="leaf", depth=1)
+    with pytest.raises(ValidationError, match="node 0 of the tree cannot have depth 1"):
+        RecordedRobot(team=Team.BLUE, number=1, tree=(orphan,))
+
+
+def test_a_recording_of_no_robots_and_no_ticks_is_one(path: Path) -> None:
+    with Recorder(path, header(robots=())) as recorder:
+        recorder.close({})
+    recording = load_recording(path)
+    assert (len(recording), recording.robots.shape, recording.complete) == (0, (0, 0, 6), True)
+    with pytest.raises(IndexError):
+        recording.frame(0)
+
+
+def test_frames_can_be_counted_from_the_end(path: Path) -> None:
+    record(path)
+    assert load_recording(path).frame(-1).time == pytest.approx(119 * PERIOD, abs=1e-6)
+
+
+def test_commands_of_robots_that_are_not_recorded_do_no_harm(path: Path) -> None:
+    with Recorder(path, header()) as recorder:
+        recorder.tick(frame(0), {RobotId(Team.YELLOW, 9): RobotCommand(kick_speed=1.0)})
+    assert load_recording(path).flags[0].tolist() == [RobotFlag.BALL_CONTACT, 0, 0]
+
+
+def test_a_compressed_file_is_plain_gzip(tmp_path: Path, path: Path) -> None:
+    packed = tmp_path / "match.robobt.jsonl.gz"
+    record(path)
+    record(packed)
+    assert zlib.decompress(packed.read_bytes(), wbits=31) == path.read_bytes()
+
+
+KILLED = """
+import sys
+from robobt.match.recording import Recorder
+from tests.match.recording.made_recording import frame, header, runners
+trees = runners()
+recorder = Recorder(sys.argv[1], header(), trees)
+tick = 0
+while True:
+    for runner in trees.values():
+        runner.tick()
+    recorder.tick(frame(tick))
+    tick += 1
+    if tick % 200 == 0:
+        print(tick, flush=True)
+"""
+
+
+@pytest.mark.parametrize("ending", ["", ".gz"])
+def test_a_process_that_is_killed_leaves_all_but_its_last_second(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"match.robobt.jsonl{ending}"
+    with subprocess.Popen([sys.executable, "-c", KILLED, path], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        done = int(process.stdout.readline())
+        process.kill()
+    assert process.returncode == -signal.SIGKILL
+    recording = load_recording(path)
+    assert not recording.complete
+    assert len(recording) > done - 1 / PERIOD
+    assert recording.statuses_at(BLUE_1, done - 62) == "RFF-R"
+
+
+def test_a_packed_bomb_is_refused_before_it_fills_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reader, "MOST_BYTES", 2**22)
+    path = tmp_path / "bomb.robobt.jsonl.gz"
+    path.write_bytes(gzip.compress(b" " * 2**25))
+    with pytest.raises(RecordingError, match="is longer than 4 MiB, as no match is"):
+        load_recording(path)
+    record(path)
+    monkeypatch.setattr(reader, "MOST_NUMBERS", 1000)
+    with pytest.raises(RecordingError, match=r"line \d+: holds more ticks than any match has"):
+        load_recording(path)
+
+
+def test_what_skills_write_is_recorded_whenever_it_changes(path: Path) -> None:
+    scenario = load_scenario("striker_vs_goalie").lasting(1.5)
+    match = Match(scenario, 3, sim_world, path)
+    striker = match.players[0]
+    seen = []
+    with match:
+        while match.tick():
+            seen.append((striker.store.shot, striker.store.command))
+    recording = load_recording(path)
+    assert len({shot for shot, _ in seen}) > 2
+    for tick, (shot, command) in enumerate(seen):
+        told = recording.outputs_at(striker.robot, tick)
+        if shot is not None:
+            target = pytest.approx(list(shot.target), abs=1e-5)
+            assert told["shot"]["target"] == target
+            assert told["shot"]["score"] == pytest.approx(shot.score, abs=1e-5)
+        sent = recording.command(striker.robot, tick)
+        assert sent is not None
+        assert (sent.vx, sent.vy, sent.omega) == pytest.approx(
+            (command.vx, command.vy, command.omega), abs=5.1e-4
+        )
+        assert (sent.dribbler, sent.kick_speed > 0) == (command.dribbler, command.kick_speed > 0)
+    changes = recording.outputs[0]
+    assert all(one != other for (_, one), (_, other) in pairwise(changes))
+    assert recording.header.seed == 3
+    assert scenario_from(recording.header.played, "again").model_dump() == scenario.model_dump()
+
+
+def test_why_nodes_failed_is_there_by_their_ids(path: Path) -> None:
+    record(path)
+    recording = load_recording(path)
+    assert recording.failures_at(BLUE_1, 0) == {"play/now and then": "", "play/now and then/Every": "1 of 7"}
+    assert recording.ticked_path(BLUE_1, 6) == [
+        "play",
+        "play/now and then",
+        "play/now and then/Every",
+        "play/now and then/Wait",
+    ]
+
+
+class Writes(Leaf[Store]):
+    """Writes whatever it is given."""
+
+    writes: ClassVar = ("target",)
+
+    def __init__(self, values: list[object]) -> None:
+        super().__init__()
+        self.values = values
+
+    def on_running(self) -> Status:
+        self.store.target = self.values.pop(0)  # type: ignore[assignment]
+        return self.succeed()
+
+
+class Rude:
+    def __eq__(self, other: object) -> bool:
+        raise RuntimeError("not comparable")
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+    __repr__ = __str__
+
+
+def test_whatever_a_skill_writes_can_be_recorded(path: Path) -> None:
+    shared = [1, 2]
+    values = [
+        (1.0, nan),
+        shared,
+        shared,
+        {"a": {2, 1}},
+        Rude(),
+        Rude(),
+        np.array([1.5, 2.0]),
+        "x" * 999,
+        object(),
+    ]
+    told = [
+        [1.0, None],
+        [1, 2],
+        [1, 2, 3],
+        {"a": [1, 2]},
+        *["a Rude whose text is a RuntimeError"] * 2,
+        [1.5, 2.0],
+    ]
+    store = Store(frame(0), frame(0).own[0])
+    runner = TreeRunner(Writes(list(values)), store)
+    with Recorder(path, header(), {BLUE_1: runner}, {BLUE_1: store}) as recorder:
+        for tick in range(len(values)):
+            runner.tick()
+            if tick == 2:
+                shared.append(3)
+            recorder.tick(frame(tick))
+    recording = load_recording(path)
+    assert [recording.outputs_at(BLUE_1, tick)["target"] for tick in range(7)] == told
+    assert len(recording.outputs_at(BLUE_1, 7)["target"]) == 200
+    assert recording.outputs_at(BLUE_1, 8)["target"] == "a object"
+
+
+class MuteError(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+
+class Ends(Leaf[None]):
+    def __init__(self, error: BaseException) -> None:
+        super().__init__()
+        self.error = error
+
+    def on_running(self) -> Status:
+        self.feedback_message = MuteError()  # type: ignore[assignment]
+        raise self.error
+
+
+@pytest.mark.parametrize("error", [SystemExit(3), MuteError("x"), RuntimeError(MuteError())])
+def test_leaving_the_program_or_an_error_without_a_text_fails_one_robot(
+    path: Path, error: BaseException
+) -> None:
+    runner: TreeRunner = TreeRunner(Ends(error), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(3):
+            assert runner.tick() is Status.INVALID
+            recorder.tick(frame(tick))
+    (event,) = load_recording(path).events
+    assert event.text.startswith(f"Ends: {type(error).__name__}: ")
+    assert re.search(r"\(test_recording\.py:\d+\)$", event.text)
+
+
+def test_ctrl_c_in_a_skill_ends_the_program() -> None:
+    runner: TreeRunner = TreeRunner(Ends(KeyboardInterrupt()), None)
+    with pytest.raises(KeyboardInterrupt):
+        runner.tick()
+
+
+def test_words_without_a_text_are_recorded_as_such(path: Path) -> None:
+    class Odd(Wait):
+        def on_running(self) -> Status:
+            return self.run(MuteError())  # type: ignore[arg-type]
+
+    runner: TreeRunner = TreeRunner(Odd(), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        runner.tick()
+        recorder.tick(frame(0))
+    assert load_recording(path).feedback_at(BLUE_1, 0) == {0: "a MuteError whose text is a RuntimeError"}
+
+
+def test_a_very_deep_or_very_wide_tree_is_recorded_too(path: Path) -> None:
+    deep: Behaviour = Wait("leaf")
+    for _ in range(150):
+        deep = Sequence("deep", False, [deep])
+    wide = Sequence("wide", False, [Every(1, f"{place}") for place in range(400)])
+    runner: TreeRunner = TreeRunner(Selector("both", False, [Inverter("not", wide), deep]), None)
+    with Recorder(path, header(), {BLUE_1: runner}) as recorder:
+        for tick in range(3):
+            runner.tick()
+            recorder.tick(frame(tick))
+    recording = load_recording(path)
+    assert recording.statuses_at(BLUE_1, 2) == runner.statuses()
+    assert len(set(recording.ticked_path(BLUE_1, 2))) == 554
+
+
+def test_recording_changes_nothing_of_what_is_played(path: Path) -> None:
+    scenario = load_scenario("three_v_three").lasting(4.0)
+    bare = Match(scenario, 5, sim_world).play()
+    assert Match(scenario, 5, sim_world, path).play().trace == bare.trace

@@ -1,0 +1,272 @@
+import base64
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
+from robobt.match.recording import replay_html as module
+from robobt.match.recording.replay_html import page_data, replay_html, write_html
+from robobt.skills import SelectShot, Store
+from robobt.tree import Selector, TreeRunner
+from robobt.world import DIVISION_A, RobotId, Team
+from tests.match.recording.made_recording import BLUE_1, YELLOW_0, Wait, frame, header, record
+from tests.skills import fixed_world
+
+EVIL = "</script><script>alert(1)</script><img src=x onerror='alert(2)'>&lt;{{data}}{{title}}<!--"
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Recording:
+    record(tmp_path / "match.robobt.jsonl")
+    return load_recording(tmp_path / "match.robobt.jsonl")
+
+
+class Tags(HTMLParser):
+    """The elements of a page and the text of its data script."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.data = self.title = ""
+        self._inside = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        self._inside = dict(attrs).get("id") or tag
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._inside == "recording":
+            self.data += data
+        elif self._inside == "title":
+            self.title += data
+
+
+def parse(page: str) -> Tags:
+    tags = Tags()
+    tags.feed(page)
+    tags.close()
+    return tags
+
+
+def numbers(text: str, kind: str, width: int) -> Any:
+    return np.frombuffer(base64.b64decode(text), dtype=kind).reshape(-1, width).astype(float)
+
+
+def unroll(flat: list[Any], frames: int, start: Any) -> list[Any]:
+    """The value at every frame of a list of (frames since the last change, value)."""
+    values, frame = [start] * frames, 0
+    for step, value in zip(flat[::2], flat[1::2], strict=True):
+        frame += step
+        values[frame:] = [value] * (frames - frame)
+    return values
+
+
+def test_the_page_holds_the_positions_to_the_millimetre(recording: Recording) -> None:
+    data = json.loads(parse(replay_html(recording)).data)
+    assert data["frames"] == 120
+    np.testing.assert_allclose(numbers(data["times"], "<f4", 1)[:, 0], recording.times, atol=1e-6)
+    ball = numbers(data["ball"], "<i2", 3) / 1000
+    np.testing.assert_allclose(ball[:, :2], recording.ball[:, :2], atol=5.1e-4)
+    np.testing.assert_allclose(ball[:, 2], np.hypot(0.74, 0.012), atol=1e-3)
+    for slot, robot in enumerate(data["robots"]):
+        rows = numbers(robot["rows"], "<i2", 4) / 1000
+        np.testing.assert_allclose(rows[:, :3], recording.robots[:, slot, :3], atol=5.1e-4)
+        assert unroll(robot["flags"], 120, 0) == (recording.flags[:, slot] & 7).tolist()
+
+
+def test_the_page_holds_every_status_and_every_word(recording: Recording) -> None:
+    data = page_data(recording)
+    for slot, robot in ((0, BLUE_1), (2, YELLOW_0)):
+        entry = data["robots"][slot]
+        letters = [data["letters"][place] for place in unroll(entry["statuses"], 120, 0)]
+        assert letters == [recording.statuses_at(robot, tick) for tick in range(120)]
+        said: dict[int, str] = {}
+        words, when = {}, 0
+        for step, node, text in zip(*(iter(entry["feedback"]),) * 3, strict=True):
+            when += step
+            said[node] = data["texts"][text]
+            words[when] = dict(said)
+        for tick, expected in words.items():
+            told = recording.feedback_at(robot, tick)
+            assert told == {node: text for node, text in expected.items() if text}
+
+
+def test_the_page_holds_the_header_events_and_the_referees_word(recording: Recording) -> None:
+    data = page_data(recording)
+    assert (data["scenario"], data["trial"], data["seed"]) == ("made", 2, "5")
+    assert data["robots"][2]["mouth"] == 0.07
+    assert data["robots"][0]["tree"][2] == ["Every", "Every", "leaf", 2, "", "count=7"]
+    assert [event[1:] for event in data["events"]] == [
+        ["kick", "yellow", 0, ""],
+        ["goal", "blue", None, "1 : 0"],
+        ["kick", "yellow", 0, ""],
+        ["kick", "yellow", 0, ""],
+    ]
+    games = unroll(data["games"], 120, None)
+    assert (games[49]["blue"], games[50]["blue"], games[50]["command"]) == (0, 1, "STOP")
+
+
+def test_the_page_needs_nothing_but_itself(recording: Recording) -> None:
+    page = replay_html(recording)
+    assert not re.search(r"https?:|//[a-z]+\.|@import|url\(|\bimport\(|fetch\(|XMLHttpRequest", page)
+    for tag, attributes in parse(page).elements:
+        assert not {"src", "href", "srcset", "action"} & set(attributes), tag
+        assert tag not in {"link", "iframe", "object", "embed", "base"}
+
+
+def test_nothing_in_a_recording_becomes_markup(tmp_path: Path) -> None:
+    path = tmp_path / "match.robobt.jsonl"
+    trees = {BLUE_1: TreeRunner(Selector(EVIL, memory=False, children=[Wait(EVIL)]), None)}
+    robots = (RecordedRobot(team=Team.BLUE, number=1, play=EVIL),)
+    evil = header(field=DIVISION_A, scenario=EVIL, teams={Team.BLUE: EVIL}, robots=robots)
+    with Recorder(path, evil, trees) as recorder:
+        trees[BLUE_1].tick()
+        recorder.tick(frame(0))
+        recorder.event(EVIL, 0.0, text=EVIL)
+        recorder.close({EVIL: EVIL})
+    tags = parse(replay_html(load_recording(path)))
+    plain = parse(replay_html(empty(tmp_path)))
+    assert [tag for tag, _ in tags.elements] == [tag for tag, _ in plain.elements]
+    assert tags.title == f"{EVIL}, trial 2 · robobt replay"
+    data = json.loads(tags.data)
+    assert data["scenario"] == data["teams"]["blue"] == data["robots"][0]["play"] == EVIL
+    assert data["robots"][0]["tree"][1][0] == data["events"][0][1] == data["outcome"][EVIL] == EVIL
+    assert not set("<>&") & set(tags.data)
+
+
+def empty(tmp_path: Path) -> Recording:
+    with Recorder(tmp_path / "empty.robobt.jsonl", header()):
+        pass
+    return load_recording(tmp_path / "empty.robobt.jsonl")
+
+
+def test_a_recording_without_a_tick_has_a_page_too(tmp_path: Path) -> None:
+    data = json.loads(parse(replay_html(empty(tmp_path))).data)
+    assert (data["frames"], data["outcome"], data["ball"]) == (0, None, "")
+
+
+def test_numbers_that_json_does_not_have_are_left_out(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "m.robobt.jsonl", header(seed=2**70)) as recorder:
+        recorder.close({"mean": float("nan"), "all": [1.5, float("inf")]})
+    data = json.loads(
+        parse(replay_html(load_recording(tmp_path / "m.robobt.jsonl"))).data, parse_constant=pytest.fail
+    )
+    assert data["outcome"] == {"mean": None, "all": [1.5, None]}
+    assert data["seed"] == str(2**70)
+
+
+def test_a_robot_off_the_field_is_marked_so(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "m.robobt.jsonl", header()) as recorder:
+        for tick in range(3):
+            each = frame(tick)
+            each.opponents = each.opponents if tick else ()
+            recorder.tick(each)
+    data = page_data(load_recording(tmp_path / "m.robobt.jsonl"))
+    rows = numbers(data["robots"][2]["rows"], "<i2", 4)
+    assert rows[0].tolist() == [-32768.0] * 4
+    assert rows[1, 0] == 4400.0
+
+
+def test_a_long_recording_is_shown_with_fewer_frames(
+    recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "MOST_FRAMES", 50)
+    data = page_data(recording)
+    assert data["frames"] == 40
+    np.testing.assert_allclose(numbers(data["times"], "<f4", 1)[:, 0], recording.times[::3], atol=1e-6)
+    letters = [data["letters"][place] for place in unroll(data["robots"][0]["statuses"], 40, 0)]
+    assert letters == [recording.statuses_at(BLUE_1, tick) for tick in range(0, 120, 3)]
+
+
+def test_talkative_trees_are_cut_to_ten_words_a_second_between_changes(
+    recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = page_data(recording)["robots"][0]["feedback"]
+    monkeypatch.setattr(module, "MOST_FEEDBACK", 10)
+    thinned = page_data(recording)["robots"][0]
+    assert len(thinned["feedback"]) < len(whole) / 2
+    turns, when = set(np.cumsum(thinned["statuses"][::2]).tolist()), 0
+    last: dict[int, int] = {}
+    for step, node in zip(thinned["feedback"][::3], thinned["feedback"][1::3], strict=True):
+        when += step
+        assert when in turns or when - last.get(node, -6) >= 6
+        last[node] = when
+
+
+def test_a_frame_of_a_full_match_costs_little(tmp_path: Path) -> None:
+    """Five minutes at 60 Hz are 18 000 frames, and the page shall stay under 10 MB."""
+    sizes = []
+    for ticks in (60, 360):
+        robots = tuple(RecordedRobot(team=team, number=number) for team in Team for number in range(6))
+        with Recorder(tmp_path / "m.robobt.jsonl", header(robots=robots)) as recorder:
+            for tick in range(ticks):
+                recorder.tick(frame(tick))
+        sizes.append(len(replay_html(load_recording(tmp_path / "m.robobt.jsonl"))))
+    assert (sizes[1] - sizes[0]) / 300 < 200
+
+
+def test_the_page_is_written_from_a_recording_or_its_file(tmp_path: Path, recording: Recording) -> None:
+    one = write_html(recording, tmp_path / "one.html")
+    other = write_html(str(recording.path), tmp_path / "other.html")
+    assert one.read_bytes() == other.read_bytes()
+    (tmp_path / "words").write_text("words")
+    with pytest.raises(RecordingError, match="not a robobt recording"):
+        write_html(tmp_path / "words", tmp_path / "no.html")
+    assert not (tmp_path / "no.html").exists()
+
+
+def shooting(path: Path, rater: str) -> Recording:
+    """A shooter that looks for a shot past a goalkeeper that goes from one side to the other."""
+    me, shooter = fixed_world.robot(2.4, 0.0), RobotId(Team.BLUE, 0)
+    scenes = [
+        fixed_world.frame(
+            me, fixed_world.held(me), opponents=(fixed_world.robot(3.9, y, 3.1),), time=tick / 60
+        )
+        for tick, y in enumerate((0.4, 0.4, 0.4, -0.4, -0.4))
+    ]
+    store = Store(scenes[0], me)
+    runner = TreeRunner(SelectShot(rater=rater), store)
+    robots = (RecordedRobot(team=Team.BLUE, number=0),)
+    with Recorder(path, header(robots=robots), {shooter: runner}, {shooter: store}) as recorder:
+        for store.frame in scenes:
+            runner.tick()
+            recorder.tick(store.frame)
+        recorder.close({})
+    return load_recording(path)
+
+
+def test_the_page_holds_the_goal_line_as_a_robot_judges_it_when_that_changes(tmp_path: Path) -> None:
+    data = page_data(shooting(tmp_path / "shooting.robobt.jsonl", "expected_goal"))
+    (shooter,) = data["robots"]
+    assert shooter["goal_line"][::2] == [0, 3]
+    for (reach, text), best in zip(shooter["goal_line"][1::2], (slice(0, 47), slice(47, 94)), strict=True):
+        assert reach == pytest.approx(465.0)
+        percent = np.frombuffer(base64.b64decode(data["texts"][text]), dtype=np.uint8)
+        assert len(percent) == 94
+        assert percent[best].max() == percent.max() > 90
+    assert not any("goal_line" in text for text in data["texts"])
+
+
+def test_a_robot_with_a_geometric_rater_has_no_goal_line(tmp_path: Path) -> None:
+    path = tmp_path / "shooting.robobt.jsonl"
+    data = page_data(shooting(path, "segment_clearance"))
+    assert data["robots"][0]["goal_line"] == []
+    assert "goal_line" not in path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("other", ["far", {"reach": 0.4}, {"reach": 0.4, "chances": "not base64!"}, [1, 2]])
+def test_a_goal_line_of_some_other_kind_is_not_drawn(tmp_path: Path, other: Any) -> None:
+    path = tmp_path / "shooting.robobt.jsonl"
+    text = json.dumps(shooting(path, "expected_goal").outputs_at(RobotId(Team.BLUE, 0), 4)["goal_line"])
+    lines = path.read_text(encoding="utf-8").replace(text.replace(" ", ""), json.dumps(other))
+    path.write_text(lines, encoding="utf-8")
+    data = page_data(load_recording(path))
+    assert data["robots"][0]["goal_line"][3] is None

@@ -1,0 +1,123 @@
+"""Small networks with cards, as model files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+from torch import Tensor, nn
+
+from robobt.models import export, policy
+from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION
+from robobt.models.card import ModelCard, ObservationCard, OutputEntry, action_outputs
+from robobt.models.export import export_model
+from robobt.models.file import Format
+from robobt.models.policy import load_policy
+from robobt.world.features import GO_TO_BALL, SHOOT
+
+
+def go_to_ball_card(name: str = "small", **changes: Any) -> ModelCard:
+    fields: dict[str, Any] = {
+        "kind": "policy",
+        "name": name,
+        "skill": "GoToBall",
+        "observation": ObservationCard.of(GO_TO_BALL),
+        "outputs": action_outputs(GO_TO_BALL_ACTION),
+        "action": GO_TO_BALL_ACTION,
+        "period": 0.03,
+    }
+    return ModelCard(**(fields | changes))
+
+
+def shoot_card(name: str = "small_shot", **changes: Any) -> ModelCard:
+    fields: dict[str, Any] = {
+        "skill": "Shoot",
+        "observation": ObservationCard.of(SHOOT),
+        "outputs": action_outputs(SHOOT_ACTION),
+        "action": SHOOT_ACTION,
+    }
+    return go_to_ball_card(name, **(fields | changes))
+
+
+def predictor_card(name: str = "predictor") -> ModelCard:
+    return ModelCard(
+        kind="shot_predictor",
+        name=name,
+        skill="SelectShot",
+        observation=ObservationCard(name="mine", version=1, size=2, features=("angle [rad]", "distance [m]")),
+        outputs=(OutputEntry(name="probability"),),
+    )
+
+
+def network(inputs: int = 6, outputs: int = 3, seed: int = 0) -> nn.Module:
+    """A small random policy."""
+    generator = torch.Generator().manual_seed(seed)
+    layers = nn.Sequential(nn.Linear(inputs, 16), nn.ReLU(), nn.Linear(16, outputs), nn.Tanh())
+    with torch.no_grad():
+        for parameter in layers.parameters():
+            parameter.copy_(torch.randn(parameter.shape, generator=generator) * 0.3)
+    return layers
+
+
+class Straight(nn.Module):
+    """Drives straight at the ball, whatever the heading."""
+
+    def forward(self, observation: Tensor) -> Tensor:
+        sine, cosine = observation[:, 0:1], observation[:, 1:2]
+        return torch.clamp(torch.cat([cosine, sine, 2.0 * sine], 1), -1.0, 1.0)
+
+
+class Aimed(nn.Module):
+    """Turns towards the goal and kicks when it lies ahead; the posts' angles are entries 6 to 9."""
+
+    def forward(self, observation: Tensor) -> Tensor:
+        aside = observation[:, 6:7] + observation[:, 8:9]
+        ahead = observation[:, 7:8] + observation[:, 9:10]
+        turn = torch.clamp(0.3 * torch.atan2(aside, ahead), -0.25, 0.25)
+        between = torch.minimum(observation[:, 6:7], -observation[:, 8:9])
+        return torch.cat([turn, torch.clamp(20.0 * torch.minimum(between, ahead) - 0.2, -1.0, 1.0)], 1)
+
+
+class Faulty(nn.Module):
+    """A policy that goes wrong where an entry is above ``far``: by itself the ball's distance, 20 m."""
+
+    def __init__(self, wrong: str, far: float = 20.0, entry: int = 2, outputs: int = 3) -> None:
+        super().__init__()
+        self.entry = entry
+        self.outputs = outputs
+        self.wrong = wrong
+        self.far = far
+
+    def forward(self, observation: Tensor) -> Tensor:
+        action = torch.tanh(observation[:, : self.outputs])
+        beyond = self.far - observation[:, self.entry : self.entry + 1]
+        if self.wrong == "nan":
+            return action + 0.0 * torch.log(beyond)
+        return action - 5.0 * torch.clamp(beyond, max=0.0)
+
+
+def write_model(
+    folder: Path,
+    module: nn.Module | None = None,
+    card: ModelCard | None = None,
+    formats: Sequence[Format] = ("torchscript",),
+    probed: bool = True,
+) -> Path:
+    """A model file; a small random Go-To-Ball policy unless told otherwise.
+
+    Args:
+        probed: whether a policy that answers wrongly near at hand is refused, as it always is.
+    """
+    if not probed:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(policy, "_probe", lambda *_: None)
+            patch.setattr(export, "_compare", lambda *_: None)
+            path = write_model(folder, module, card, formats)
+            load_policy(path)
+            return path
+    return export_model(
+        network() if module is None else module, go_to_ball_card() if card is None else card, folder, formats
+    )[0]

@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+import torch
+
+from robobt.shots.data.author_data import author_inputs, author_weights, read_author_folder
+from robobt.shots.predict.batched import train_networks
+from robobt.shots.predict.networks import KIKS, TABLE_ONE, Layer, ShotNetwork, network_from_keras
+from robobt.shots.predict.recipe import Recipe, Task, batch_bounds, train_plainly
+from tests.shots.real_data import REAL_SHOTS, needs_real_shots
+
+
+def _task(samples: int, seed: int, held: int = 20) -> Task:
+    rng = np.random.default_rng(seed)
+    inputs = torch.tensor(rng.normal(3.0, 2.0, (samples + held, 4)), dtype=torch.float32)
+    labels = (inputs[:, 0] + inputs[:, 1] * inputs[:, 2] > 9.0).float()
+    return Task(inputs[:samples], labels[:samples], inputs[samples:], labels[samples:], seed)
+
+
+def _apart(one: ShotNetwork, other: ShotNetwork, task: Task) -> float:
+    with torch.no_grad():
+        return float((one(task.held_inputs) - other(task.held_inputs)).abs().max())
+
+
+@pytest.mark.parametrize("layers", [TABLE_ONE, KIKS, (Layer(False, 3, "swish"), Layer(False, 1, "linear"))])
+def test_each_network_of_a_stack_is_what_the_plain_loop_makes_of_it(layers: tuple[Layer, ...]):
+    # 39 and 40 share a stack and end in batches of 7 and 8; 33 leaves one sample
+    # over; 20 has fewer batches than the rest.
+    tasks = [_task(samples, seed) for seed, samples in enumerate((39, 40, 33, 20))]
+    recipe = Recipe(layers, warm_up=1, epochs=3)
+    for task, network in zip(tasks, train_networks(tasks, recipe), strict=True):
+        assert _apart(network, train_plainly(task, recipe), task) < 1e-4
+
+
+def test_a_stack_stops_each_network_by_itself_and_keeps_its_best_weights():
+    tasks = [_task(40, seed) for seed in range(4)]
+    recipe = Recipe(warm_up=1, epochs=12, patience=2, plateau_patience=1, rate=0.02)
+    for task, network in zip(tasks, train_networks(tasks, recipe), strict=True):
+        assert _apart(network, train_plainly(task, recipe), task) < 1e-3
+    longer = train_networks(tasks, Recipe(warm_up=1, epochs=12, patience=50, plateau_patience=1, rate=0.02))
+    assert any(
+        _apart(a, b, task) > 1e-3
+        for a, b, task in zip(longer, train_networks(tasks, recipe), tasks, strict=True)
+    )
+
+
+def test_a_network_does_not_depend_on_the_others_in_its_stack():
+    tasks = [_task(samples, seed) for seed, samples in enumerate((40, 39, 38))]
+    recipe = Recipe(warm_up=2, epochs=4)
+    alone = train_networks(tasks[1:2], recipe)[0]
+    assert _apart(alone, train_networks(tasks, recipe)[1], tasks[1]) < 1e-4
+
+
+def test_what_comes_out_of_a_stack_can_be_trained_further():
+    network = train_networks([_task(20, 0)], Recipe(warm_up=0, epochs=1))[0]
+    network.train()(torch.ones(3, 4)).sum().backward()
+    assert network.dense[0].weight.grad is not None
+
+
+def test_training_learns():
+    task = _task(400, 1, held=200)
+    network = train_networks([task], Recipe(warm_up=10, epochs=20))[0]
+    with torch.no_grad():
+        right = (network(task.held_inputs) > 0) == (task.held_labels > 0.5)
+    assert float(right.float().mean()) > 0.9
+
+
+@pytest.mark.parametrize(
+    ("samples", "bounds"), [(32, [0, 16, 32]), (35, [0, 16, 32, 35]), (33, [0, 16, 33]), (1, [0, 1])]
+)
+def test_no_sample_is_dropped_and_none_is_left_alone(samples: int, bounds: list[int]):
+    assert batch_bounds(samples, 16) == bounds
+
+
+def test_weights_of_another_shape_are_refused():
+    with pytest.raises(ValueError, match="dense"):
+        network_from_keras({})
+    layers = {f"dense{end}": {"kernel": [[1.0]], "bias": [1.0]} for end in ("", "_1", "_2")}
+    norm = {name: [1.0] for name in ("gamma", "beta", "moving_mean", "moving_variance")}
+    with pytest.raises(ValueError, match="size mismatch"):
+        network_from_keras(layers | {"batch_normalization": norm, "batch_normalization_1": norm})
+
+
+@needs_real_shots
+def test_the_authors_weights_give_his_confusion_matrix_and_outputs():
+    author = author_weights(REAL_SHOTS / "author_predictor.json")
+    _, test = read_author_folder(REAL_SHOTS)
+    network = network_from_keras(author["layers"])
+    with torch.no_grad():
+        logits = network(torch.tensor(author_inputs(test), dtype=torch.float32))
+    p = torch.sigmoid(logits).numpy()
+    np.testing.assert_allclose(p, author["golden"]["test_probabilities"], atol=1e-6)
+    goal = test.column("success").to_numpy() == 1
+    counts = [int(((p >= 0.5) == said)[goal == was].sum()) for was in (False, True) for said in (False, True)]
+    assert counts == [102, 20, 10, 69]

@@ -1,0 +1,96 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.models.policy import load_policy
+from robobt.shots.data.files import write_shots
+from robobt.shots.data.inputs import shot_inputs
+from robobt.shots.data.problems import ShotDataError
+from robobt.shots.predict.scene_network import SceneNetwork
+from robobt.shots.predict.shipped import train_shipped
+from robobt.world.features import SCENE_HEAD
+from tests.shots.made_up import made_up_table
+
+
+@pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
+def test_a_predictor_ships_with_a_card_that_says_how_good_it_is(name: str, tmp_path: Path):
+    file, figures = train_shipped(name, made_up_table(600), tmp_path, epochs=8)
+    card = load_policy(file).card
+    assert card.kind == "shot_predictor"
+    assert card.held_out["accuracy"].value == figures.accuracy > 0.6
+    assert card.held_out["accuracy"].n == figures.shots == 60
+
+
+@pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
+def test_the_shipped_predictors_are_calibrated_and_trained_on_our_own_shots(name: str):
+    card = load_policy(name).card
+    assert card.held_out["calibration_error"].value < 0.05
+    assert card.environment["shots"] >= 20_000
+
+
+def test_training_again_gives_the_same_file(tmp_path: Path):
+    first, _ = train_shipped("shot_expected", made_up_table(200), tmp_path / "a", epochs=2)
+    second, _ = train_shipped("shot_expected", made_up_table(200), tmp_path / "b", epochs=2)
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_too_few_shots_are_said(tmp_path: Path):
+    with pytest.raises(ShotDataError, match="100 shots or more"):
+        train_shipped("shot_nn", made_up_table(50), tmp_path)
+
+
+def network() -> SceneNetwork:
+    torch.manual_seed(0)
+    return SceneNetwork(8).eval()
+
+
+def answers(scenes: np.ndarray) -> np.ndarray:
+    with torch.inference_mode():
+        return network()(torch.tensor(scenes, dtype=torch.float32)).numpy()[:, 0]
+
+
+def test_the_order_of_opponents_does_not_matter_and_one_fewer_never_hurts():
+    scenes = shot_inputs(made_up_table(40, opponents=3))
+    blocks = scenes[:, SCENE_HEAD:].reshape(40, 6, 4)
+    swapped, fewer = scenes.copy(), scenes.copy()
+    swapped[:, SCENE_HEAD:] = blocks[:, [2, 0, 1, 3, 4, 5]].reshape(40, -1)
+    fewer[:, SCENE_HEAD + 8 : SCENE_HEAD + 12] = scenes[:, SCENE_HEAD + 20 :][:, :4]
+    assert answers(swapped) == pytest.approx(answers(scenes), abs=1e-6)
+    assert np.all(answers(fewer) >= answers(scenes) - 1e-6)
+
+
+def test_a_mirrored_scene_gets_the_same_answer():
+    scenes = shot_inputs(made_up_table(40))
+    mirrored = scenes.copy()
+    mirrored[:, [1, 3, 5, 7, 9]] *= -1.0
+    mirrored[:, [SCENE_HEAD + 1, SCENE_HEAD + 3]] *= -1.0
+    assert answers(mirrored) == pytest.approx(answers(scenes), abs=1e-6)
+
+
+def test_training_and_map_are_commands(tmp_path: Path):
+    data = tmp_path / "shots.parquet"
+    write_shots(made_up_table(200), data)
+    options = ["shots", "train", "--data", str(data), "--model", "shot_expected", "--epochs", "2"]
+    said = CliRunner().invoke(app, [*options, "--out", str(tmp_path / "models"), "--json"])
+    assert said.exit_code == 0, said.output
+    figures = json.loads(said.output)
+    assert Path(figures["file"]).is_file()
+    drawn = ["shots", "map", "--model", figures["file"], "--spacing", "1.0"]
+    shown = CliRunner().invoke(app, [*drawn, "--picture", str(tmp_path / "map.png")])
+    assert shown.exit_code == 0, shown.output
+
+
+def test_collecting_is_a_command(tmp_path: Path):
+    options = ["collect", "shots", "-n", "3", "-w", "1", "--out", str(tmp_path / "shots.csv")]
+    shown = CliRunner().invoke(app, options)
+    assert shown.exit_code == 0, shown.output
+    assert "3 shots" in shown.output
+    said = json.loads(CliRunner().invoke(app, [*options, "--json"]).output)
+    assert (said["shots"], said["new"]) == (3, 0)
+    refused = CliRunner().invoke(app, [*options[:-1], str(tmp_path / "shots.txt")])
+    assert refused.exit_code == 1

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+from math import hypot, pi
+
+import pytest
+
+from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, TURN_ACCELERATION, dribbling_limits, settle
+from robobt.skills import DribbleTo
+from robobt.tree import Status
+from robobt.world import Frame
+from robobt.world.geometry import to_robot_frame
+from tests.simulation import Trial, always, blue, eventually, never, yellow
+from tests.skills.fixed_world import Alone, frame, held, robot
+
+MOUTH = 0.0975
+
+
+def carrying(frame: Frame) -> bool:
+    me, ball = frame.own[0], frame.ball
+    return hypot(ball.x - me.x, ball.y - me.y) < 0.13
+
+
+def test_without_target_or_ball_it_fails() -> None:
+    me = robot()
+    assert Alone(DribbleTo()).tick(frame(me, ball=held(me))) is Status.FAILURE
+    alone = Alone(DribbleTo(), target=(2.0, 0.0))
+    assert alone.tick(frame(me, ball=(0.5, 0.0))) is Status.FAILURE
+    assert alone.tree.feedback_message == "it does not have the ball"
+
+
+def test_it_is_done_when_the_ball_is_near_the_target() -> None:
+    me = robot()
+    assert Alone(DribbleTo(target=(0.39, 0.0))).tick(frame(me, ball=held(me))) is Status.SUCCESS
+    assert Alone(DribbleTo(target=(0.41, 0.0))).tick(frame(me, ball=held(me))) is Status.RUNNING
+
+
+def test_it_turns_before_it_drives() -> None:
+    alone, me = Alone(DribbleTo(target=(-2.0, 0.0))), robot(contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert hypot(alone.command.vx, alone.command.vy) < 1e-9
+    assert alone.command.omega != 0.0
+    assert alone.command.dribbler
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.0])
+def test_its_commands_stay_within_what_the_dribbler_bears(heading: float) -> None:
+    alone, period = Alone(DribbleTo(target=(2.0, 0.0))), 1 / 60
+    me = robot(heading=heading, velocity=(0.5, 0.0, 1.0), contact=True)
+    alone.tick(frame(me, ball=held(me), period=period))
+    command = alone.command
+    assert abs(command.omega) <= MAX_TURN
+    assert abs(command.omega - me.omega) <= TURN_ACCELERATION * period + 1e-9
+    middle = heading + command.omega * period / 2
+    vx, vy = to_robot_frame(me.vx, me.vy, middle)
+    assert hypot(command.vx - vx, command.vy - vy) <= MAX_ACCELERATION * period + 1e-9
+
+
+def test_a_ball_gone_for_a_moment_is_not_yet_lost() -> None:
+    alone, me = Alone(DribbleTo(target=(2.0, 0.0))), robot()
+    assert alone.tick(frame(me, ball=held(me), time=0.0)) is Status.RUNNING
+    assert alone.tick(frame(me, ball=(0.2, 0.0), time=0.1)) is Status.RUNNING
+    assert alone.tick(frame(me, ball=(0.2, 0.0), time=0.2)) is Status.FAILURE
+
+
+def test_it_carries_no_farther_than_allowed() -> None:
+    alone = Alone(DribbleTo(target=(3.0, 0.0), max_distance=1.0))
+    for x, expected in ((0.0, Status.RUNNING), (0.85, Status.RUNNING), (0.95, Status.FAILURE)):
+        me = robot(x)
+        assert alone.tick(frame(me, ball=held(me), time=x)) is expected
+    assert alone.tree.feedback_message == "the ball has been carried as far as allowed"
+
+
+@pytest.mark.parametrize("target", [(2.0, 0.0), (-2.0, 0.5), (0.0, -2.0)])
+def test_it_brings_the_ball_anywhere(target: tuple[float, float]) -> None:
+    trial = Trial({blue(0): DribbleTo(target=target)}, {blue(0): (0.0, 0.0, 0.0)}, (MOUTH, 0.0))
+    trial.run(
+        5.0,
+        eventually(
+            "the ball is there",
+            lambda frame: hypot(frame.ball.x - target[0], frame.ball.y - target[1]) <= 0.3,
+        ),
+        always("the robot has the ball", carrying),
+    )
+
+
+def test_it_carries_the_ball_round_an_opponent() -> None:
+    trial = Trial(
+        {blue(0): DribbleTo(target=(2.0, 0.0))},
+        {blue(0): (0.0, 0.0, 0.0), yellow(0): (1.0, 0.05, pi)},
+        (MOUTH, 0.0),
+    )
+    trial.run(
+        5.0,
+        eventually("the ball is there", lambda frame: hypot(frame.ball.x - 2.0, frame.ball.y) <= 0.3),
+        always("the robot has the ball", carrying),
+        never(
+            "it touches the opponent",
+            lambda f: hypot(f.own[0].x - f.opponents[0].x, f.own[0].y - f.opponents[0].y) < 0.18,
+        ),
+    )
+
+
+def test_turning_hard_with_the_ball_is_what_loses_it() -> None:
+    """The same way with limits beyond the dribbler's: the bar above is not a free pass."""
+    wild = DribbleTo(target=(-2.0, 0.5), max_speed=3.0, max_turn=9.0, max_acceleration=6.0)
+    trial = Trial({blue(0): wild}, {blue(0): (0.0, 0.0, 0.0)}, (MOUTH, 0.0))
+    trial.run(3.0, eventually("the ball is lost", lambda _: wild.status is Status.FAILURE))
+
+
+def test_settling_stops_the_robot_gently() -> None:
+    me = robot(velocity=(1.0, 0.0, 2.0))
+    command = settle(me, 0.02)
+    assert hypot(command.vx, command.vy) == pytest.approx(1.0 - MAX_ACCELERATION * 0.02)
+    assert command.omega == pytest.approx(2.0 - TURN_ACCELERATION * 0.02)
+    assert dribbling_limits() is dribbling_limits()

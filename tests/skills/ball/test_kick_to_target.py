@@ -1,0 +1,204 @@
+from __future__ import annotations
+
+from math import atan2, cos, degrees, hypot, pi, radians, sin
+
+import pytest
+
+from robobt.skills import KickToTarget
+from robobt.skills.ball.kick_to_target import SHOT_SPEED
+from robobt.skills.store import Pass, Shot
+from robobt.tree import Status
+from robobt.world import Frame, KickTrigger
+from robobt.world.geometry import wrap_angle
+from tests.simulation import Trial, ball_in_their_goal, blue, eventually, inside_the_field, never, yellow
+from tests.skills.fixed_world import Alone, frame, held, pass_to, robot, shot_at
+
+GOAL = (4.5, 0.0)
+
+
+def kicked_ball_passes(trial: Trial, target: tuple[float, float], seconds: float = 4.0) -> float:
+    """Play until the kick; the angle by which the ball then goes past ``target`` [deg]."""
+    frame = trial.run(seconds, eventually("it kicks", lambda _: bool(trial.kicks)))
+    course = atan2(frame.ball.vy, frame.ball.vx)
+    return degrees(abs(wrap_angle(course - atan2(target[1] - frame.ball.y, target[0] - frame.ball.x))))
+
+
+def test_without_a_target_it_fails() -> None:
+    alone = Alone(KickToTarget())
+    assert alone.tick(frame(robot())) is Status.FAILURE
+    assert alone.tree.feedback_message == "no target"
+
+
+def test_an_unknown_style_is_refused() -> None:
+    with pytest.raises(ValueError, match="'wild'"):
+        KickToTarget(style="wild")  # type: ignore[arg-type]
+
+
+def test_aimed_and_with_the_ball_it_kicks_at_full_speed() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(contact=True)
+    assert alone.tick(frame(me, ball=held(me))) is Status.RUNNING
+    assert alone.command.kick_speed == SHOT_SPEED
+    assert alone.command.kick_trigger is KickTrigger.ON_CONTACT
+    assert alone.command.dribbler
+
+
+def test_the_kick_speed_is_a_parameter() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL, kick_speed=2.0)), robot(contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.command.kick_speed == 2.0
+
+
+def test_off_its_aim_it_turns_with_the_ball_and_does_not_kick() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(heading=0.5, contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.command.kick_speed == 0.0
+    assert alone.command.omega < 0.0
+    assert alone.command.dribbler
+
+
+def test_a_wide_shot_is_taken_sooner_than_a_narrow_one() -> None:
+    me = robot(heading=radians(1.5), contact=True)
+    wide, narrow = Alone(KickToTarget()), Alone(KickToTarget())
+    wide.store.shot, narrow.store.shot = shot_at(*GOAL, tolerance=0.1), shot_at(*GOAL, tolerance=0.02)
+    wide.tick(frame(me, ball=held(me)))
+    narrow.tick(frame(me, ball=held(me)))
+    assert wide.command.kick_speed > 0.0
+    assert narrow.command.kick_speed == 0.0
+
+
+def test_it_aims_for_the_ball_s_own_sideways_velocity() -> None:
+    sideways = 0.4
+    lead = atan2(sideways, SHOT_SPEED)
+    straight, led = robot(contact=True), robot(heading=-lead, contact=True)
+    alone = Alone(KickToTarget(target=(100.0, 0.0)))
+    alone.tick(frame(straight, ball=(*held(straight), 0.0, sideways)))
+    assert alone.command.kick_speed == 0.0
+    alone.tick(frame(led, ball=(*held(led), 0.0, sideways)))
+    assert alone.command.kick_speed > 0.0
+
+
+def test_the_shot_comes_before_the_pass_and_the_parameter_before_both() -> None:
+    me = robot(contact=True)
+    alone = Alone(KickToTarget())
+    alone.store.pass_ = pass_to(2, 3.0, 0.0, speed=3.5)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.command.kick_speed == 3.5
+    alone.store.shot = Shot(GOAL, 0.05, 1.0)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.command.kick_speed == SHOT_SPEED
+    elsewhere = Alone(KickToTarget(target=(0.0, 3.0)))
+    elsewhere.store.shot = Shot(GOAL, 0.05, 1.0)
+    elsewhere.tick(frame(me, ball=held(me)))
+    assert elsewhere.command.kick_speed == 0.0
+
+
+def test_a_pass_is_noted_for_the_team_as_it_is_kicked() -> None:
+    alone, me = Alone(KickToTarget()), robot(number=4, contact=True)
+    alone.store.pass_ = Pass(2, (3.0, 0.0), 3.5, 0.9)
+    alone.tick(frame(me, ball=held(me), time=1.5), number=4)
+    team = alone.store.team
+    assert (team.passer, team.receiver, team.pass_target, team.pass_time) == (4, 2, (3.0, 0.0), 1.5)
+
+
+def test_a_shot_is_no_pass() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.store.team.passer is None
+
+
+def test_it_succeeds_when_the_ball_has_left() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    gone = robot()
+    assert alone.tick(frame(gone, ball=(0.2, 0.0, 6.3, 0.0), time=1 / 60)) is Status.SUCCESS
+
+
+def test_a_ball_that_rolls_off_unkicked_is_no_success() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(heading=0.5, contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.tick(frame(robot(), ball=(0.3, 0.0, 1.5, 0.0), time=1 / 60)) is Status.RUNNING
+    assert alone.tick(frame(robot(), ball=(0.8, 0.0, 1.5, 0.0), time=2 / 60)) is Status.FAILURE
+    assert alone.tree.feedback_message == "the ball got away"
+
+
+def test_before_the_ball_it_goes_round_it() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(0.3, 0.0, pi)
+    alone.tick(frame(me, ball=(0.0, 0.0)))
+    assert abs(alone.command.vy) > 0.45 * abs(alone.command.vx), "past its edge, not into it"
+
+
+@pytest.mark.parametrize("pose", [(-2.0, 0.5, 0.0), (2.0, 0.3, pi), (0.0, -1.5, 1.0), (0.3, 0.0, pi)])
+@pytest.mark.parametrize("preset", ["default", "grsim"])
+def test_it_shoots_a_resting_ball_into_the_goal(preset: str, pose: tuple[float, float, float]) -> None:
+    kick = KickToTarget()
+    trial = Trial({blue(0): kick}, {blue(0): pose}, (0.0, 0.2), settings=preset)
+    trial.stores[blue(0)].shot = shot_at(4.5, 0.2)
+    assert kicked_ball_passes(trial, (4.5, 0.2)) < 2.0
+    trial.run(0.1, eventually("the skill succeeds", lambda _: kick.status is Status.SUCCESS))
+    trial.run(2.0, eventually("the ball is in the goal", ball_in_their_goal))
+    assert len(trial.kicks) == 1
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.0, -2.0, pi])
+def test_with_the_ball_it_turns_and_hits(heading: float) -> None:
+    ball = (1.0 + 0.098 * cos(heading), 0.098 * sin(heading))
+    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (1.0, 0.0, heading)}, ball)
+    assert kicked_ball_passes(trial, GOAL, 2.0) < 1.0
+    assert trial.frames[-1].time < abs(heading) / 4.0 + 0.6
+
+
+@pytest.mark.parametrize("velocity", [(0.6, 0.4), (-0.8, 0.0), (0.0, -1.0)])
+def test_it_shoots_a_rolling_ball(velocity: tuple[float, float]) -> None:
+    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (-1.5, 0.0, 0.0)}, (0.0, 0.2, *velocity))
+    assert kicked_ball_passes(trial, GOAL) < 3.0
+
+
+def test_a_ball_at_a_wall_is_taken_off_it_first() -> None:
+    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (-2.0, 0.0, 0.0)}, (-4.75, 2.0))
+    assert kicked_ball_passes(trial, GOAL, 6.0) < 2.0
+
+
+def test_a_pass_arrives_at_its_receiver() -> None:
+    trial = Trial(
+        {blue(1): KickToTarget()}, {blue(1): (-2.0, 0.0, 0.0), blue(2): (1.5, 1.5, -2.4)}, (-1.5, 0.3)
+    )
+    store = trial.stores[blue(1)]
+    store.pass_ = Pass(2, (1.5, 1.5), 4.0, 1.0)
+
+    def received(frame: Frame) -> bool:
+        mate = frame.own[1]
+        return hypot(frame.ball.x - mate.x, frame.ball.y - mate.y) < 0.2
+
+    trial.run(5.0, eventually("the ball is at the receiver", received))
+    assert (store.team.passer, store.team.receiver) == (1, 2)
+
+
+def test_it_keeps_off_the_wall_and_off_robots_on_its_way() -> None:
+    trial = Trial(
+        {blue(0): KickToTarget(target=GOAL)},
+        {blue(0): (-2.0, 0.0, 0.0), yellow(0): (-1.0, 0.0, pi)},
+        (0.0, 0.0),
+    )
+    trial.run(
+        4.0,
+        eventually("the ball is in the goal", ball_in_their_goal),
+        never("outside the field", lambda frame: not inside_the_field(frame)),
+        never(
+            "it touches the opponent",
+            lambda f: hypot(f.own[0].x - f.opponents[0].x, f.own[0].y - f.opponents[0].y) < 0.18,
+        ),
+    )
+
+
+def test_robobulls_style_kicks_too_but_takes_its_time() -> None:
+    times = {}
+    for style in ("default", "robobulls"):
+        kick = KickToTarget(target=GOAL, style=style)  # type: ignore[arg-type]
+        trial = Trial({blue(0): kick}, {blue(0): (-3.9, 0.0, 0.0)}, settings="robobulls", period=0.03)
+        trial.run(
+            8.0,
+            eventually("the skill succeeds", lambda _, kick=kick: kick.status is Status.SUCCESS),
+            eventually("the ball is in the goal", ball_in_their_goal),
+        )
+        times[style] = trial.kicks[0][0]
+    assert times["default"] < 0.7 * times["robobulls"]

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from robobt.skills.conditions.carried_far import CarriedFar
+from robobt.tree import Status
+from tests.skills.fixed_world import Alone, frame, held, robot
+
+PERIOD = 1 / 60
+
+
+def carry(alone: Alone, start: float, end: float, steps: int, tick: int = 0, contact: bool = True) -> Status:
+    """The robot drives from x = start to x = end with the ball, or without contact well behind it."""
+    status = Status.INVALID
+    for step in range(steps + 1):
+        me = robot(start + (end - start) * step / steps, contact=contact)
+        ball = held(me) if contact else (me.x + 0.3, 0.0)
+        status = alone.tick(frame(me, ball, time=(tick + step) * PERIOD))
+    return status
+
+
+def test_the_way_with_the_ball_is_measured_from_where_it_got_it() -> None:
+    assert carry(Alone(CarriedFar(limit=0.8)), 1.0, 1.79, 30) is Status.FAILURE
+    assert carry(Alone(CarriedFar(limit=0.8)), 1.0, 1.81, 30) is Status.SUCCESS
+
+
+def test_what_a_fast_ball_rolls_while_it_is_let_go_counts() -> None:
+    me = robot(contact=True)
+    alone = Alone(CarriedFar(limit=0.3))
+    assert alone.tick(frame(me, (*held(me), 1.9, 0.0))) is Status.FAILURE
+    assert alone.tick(frame(me, (*held(me), 2.1, 0.0), time=PERIOD)) is Status.SUCCESS
+
+
+def test_a_ball_that_is_not_clear_of_the_robot_is_still_carried() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry(alone, 0.0, 0.7, 30)
+    me = robot(0.76)
+    assert alone.tick(frame(me, (me.x + 0.15, 0.0), time=31 * PERIOD)) is Status.SUCCESS
+    assert alone.tick(frame(me, (me.x + 0.19, 0.0), time=32 * PERIOD)) is Status.FAILURE
+
+
+def test_there_and_back_is_not_far() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry(alone, 0.0, 0.5, 30)
+    assert carry(alone, 0.5, 0.0, 30, tick=31) is Status.FAILURE
+
+
+def test_letting_the_ball_go_starts_the_way_anew() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry(alone, 0.0, 0.7, 30)
+    assert carry(alone, 0.7, 0.8, 1, tick=31, contact=False) is Status.FAILURE
+    assert carry(alone, 0.8, 1.5, 30, tick=33) is Status.FAILURE
+
+
+def test_after_a_pause_it_counts_anew() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry(alone, 0.0, 0.7, 30)
+    assert carry(alone, 0.9, 1.5, 30, tick=120) is Status.FAILURE

@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+import pytest
+
+from robobt.skills.conditions.is_restart import IsRestart
+from robobt.tree import Status
+from robobt.world import GameState, Restart, Team
+from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, stop_before
+
+SPOT = (1.0, 1.0)
+
+
+def holds(skill: IsRestart, game: GameState, team: Team = Team.BLUE) -> bool:
+    return Alone(skill).tick(frame(robot(), game=game, team=team)) is Status.SUCCESS
+
+
+@pytest.mark.parametrize("team", list(Team))
+def test_a_restart_is_ours_or_theirs(team: Team) -> None:
+    game = free_kick(Team.BLUE, SPOT)
+    assert holds(IsRestart(ours=True), game, team) is (team is Team.BLUE)
+    assert holds(IsRestart(ours=False), game, team) is (team is Team.YELLOW)
+    assert holds(IsRestart(), game, team)
+
+
+def test_a_restart_begins_with_the_stop_before_it() -> None:
+    assert holds(IsRestart(ours=True), stop_before(Restart.FREE_KICK, Team.BLUE, SPOT))
+
+
+def test_only_the_asked_kind_counts() -> None:
+    assert holds(IsRestart(kind=Restart.KICKOFF), kickoff(Team.BLUE, False))
+    assert not holds(IsRestart(kind=Restart.PENALTY), kickoff(Team.BLUE, False))
+
+
+@pytest.mark.parametrize("game", [HALT, STOP, OPEN], ids=["halt", "stop for both", "open play"])
+def test_without_a_restart_there_is_none(game: GameState) -> None:
+    assert not holds(IsRestart(), game)

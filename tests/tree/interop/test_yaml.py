@@ -1,0 +1,644 @@
+"""Trees in YAML: built, equal to what Python builds, saved, and refused with file and line."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robobt.plays import PLAYS
+from robobt.plays.files import VOCABULARY, find_play, load_play, play_files, tree_yaml
+from robobt.skills import GoToPose, IsRestart, SelectShot, Stop, Wall
+from robobt.skills.aim.raters import OpenAngle
+from robobt.skills.restarts.referee_switch import RefereeSwitch
+from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, nodes
+from robobt.tree.interop import (
+    TreeFileError,
+    Vocabulary,
+    build_tree,
+    describe_tree,
+    parse_yaml,
+    tree_differences,
+    write_yaml,
+)
+from robobt.tree.interop.formula import evaluate
+from robobt.tree.interop.plain_yaml import read_marked, write_plain
+from robobt.tree.interop.vocabulary import CONTROL
+from robobt.tree.nodes import Cooldown, TickDivider
+from robobt.tree.parameters import parameters_of
+from robobt.world.game import Restart
+from robobt.world.limits import RobotLimits
+
+
+def build(text: str, **given: Any) -> Behaviour:
+    return build_tree(parse_yaml(text, VOCABULARY, "test.yaml"), VOCABULARY, given)
+
+
+def tree(node: str, params: str = "{}", **given: Any) -> Behaviour:
+    return build(f"play: test\nparams: {params}\ntree: {node}\n", **given)
+
+
+def same(one: Behaviour, other: Behaviour) -> bool:
+    return tree_differences(one, other, VOCABULARY) == []
+
+
+def problem(text: str) -> str:
+    with pytest.raises(TreeFileError) as caught:
+        build(text)
+    assert "\n" not in str(caught.value)
+    assert caught.value.file == "test.yaml"
+    return str(caught.value)
+
+
+def test_a_file_reads_as_the_tree_it_builds() -> None:
+    root = build(
+        """
+        play: striker
+        description: Scores, or gets the ball.
+        params: {range: 4.0}
+        tree:
+          Selector:
+            name: striker
+            memory: false
+            children:
+              - Sequence:
+                  name: score
+                  memory: false
+                  children:
+                    - SelectShot: {max_distance: $range}
+                    - KickToTarget
+              - GoToBall: {name: to the ball}
+        """
+    )
+    assert isinstance(root, Selector)
+    assert [child.name for child in root.children] == ["score", "to the ball"]
+    assert root.children[0].children[0].parameters()["max_distance"] == 4.0  # type: ignore[attr-defined]
+
+
+def settings_of(builder: Callable[..., Behaviour]) -> list[dict[str, Any]]:
+    """Sets of parameters to try: the defaults, others one by one, and others all together."""
+    others = {parameter.name: other_values(parameter) for parameter in parameters_of(builder)}
+    found: list[dict[str, Any]] = [{}]
+    found += [{name: value} for name, values in others.items() for value in values]
+    found += [{name: values[place] for name, values in others.items() if values} for place in (0, -1)]
+    return found
+
+
+def other_values(parameter: Any) -> list[Any]:
+    """Values that fit a play's parameter."""
+    hint = parameter.hint
+    if get_origin(hint) is Literal:
+        return list(get_args(hint))
+    by_type: list[tuple[type, list[Any]]] = [(bool, [True, False]), (float, [0.5, 2.0]), (int, [1, 2])]
+    return next((values for kind, values in by_type if kind in (hint, *get_args(hint))), [])
+
+
+def shipped() -> list[str]:
+    """The plays of the package; other test modules enter their own beside them."""
+    return [name for name in PLAYS if PLAYS[name].__module__.startswith("robobt.")]
+
+
+@pytest.mark.parametrize("play", shipped())
+def test_every_play_that_ships_is_there_as_a_file_with_the_same_parameters(play: str) -> None:
+    builder, loaded = PLAYS[play], load_play(play_files()[play])
+    assert loaded.__name__ == play
+    assert loaded.__doc__
+    assert [(p.name, p.default) for p in parameters_of(loaded)] == [
+        (p.name, p.default) for p in parameters_of(builder)
+    ]
+    assert [p.kind for p in parameters_of(loaded)] == [p.kind for p in parameters_of(builder)]
+
+
+@pytest.mark.parametrize("play", shipped())
+def test_every_file_builds_the_tree_of_its_play_whatever_the_parameters(play: str) -> None:
+    builder, loaded = PLAYS[play], load_play(play_files()[play])
+    built = 0
+    for parameters in settings_of(builder):
+        try:
+            expected = builder(**parameters)
+        except ValueError:
+            with pytest.raises(TreeFileError):
+                loaded(**parameters)
+            continue
+        built += 1
+        differences = tree_differences(expected, loaded(**parameters), VOCABULARY)
+        assert differences == [], f"{play_files()[play].name} has to follow the play; with {parameters}"
+    assert built >= len(parameters_of(builder))
+
+
+def test_there_is_no_file_without_a_play() -> None:
+    assert set(play_files()) == set(shipped())
+
+
+@pytest.mark.parametrize("play", shipped())
+def test_a_plays_file_written_out_and_read_back_says_the_same(play: str) -> None:
+    file = load_play(play_files()[play]).file
+    assert parse_yaml(write_yaml(file), VOCABULARY) == file
+
+
+@pytest.mark.parametrize("play", shipped())
+def test_a_tree_made_in_python_can_be_saved_and_read_back(play: str) -> None:
+    root = PLAYS[play]()
+    text = tree_yaml(root, play)
+    assert same(root, build(text))
+    assert write_yaml(describe_tree(build(text), VOCABULARY, play)) == text
+
+
+@pytest.mark.parametrize(
+    "root",
+    [
+        GoToPose(target=(0.1, -2.0), heading=1e-7, name="a: name # with -- signs"),
+        GoToPose(limits=RobotLimits(max_speed=2.0, side_braking=1.0), name="$dollar"),
+        IsRestart(kind=Restart.PENALTY, ours=False, name="yes"),
+        SelectShot(rater=OpenAngle(), max_distance=3.0, name="1e-3"),
+        SelectShot(rater="open_angle", name="2020-01-01"),
+        Inverter("not", Stop(name="Stop it")),
+        Cooldown("rest", Stop(), seconds=2.0, after="failure"),
+        TickDivider("seldom", Stop(), every=3),
+        RefereeSwitch("phases", {"halt": Stop(), "play": Wall()}),
+        Sequence("empty", memory=True),
+    ],
+    ids=lambda root: root.name,
+)
+def test_values_of_all_kinds_are_saved_and_read_back(root: Behaviour) -> None:
+    assert same(root, build(tree_yaml(root, "test")))
+
+
+@given(
+    target=st.none() | st.tuples(st.floats(-9, 9), st.floats(-9, 9)),
+    heading=st.none() | st.floats(allow_nan=False, allow_infinity=False),
+    name=st.text(min_size=1, max_size=20).filter(lambda name: name.isprintable() and name.strip()),
+)
+@settings(max_examples=100, deadline=None)
+def test_whatever_a_skill_is_made_from_is_saved_and_read_back(
+    target: Any, heading: float | None, name: str
+) -> None:
+    root = GoToPose(target=target, heading=heading, name=name)
+    assert same(root, build(tree_yaml(root, "test")))
+
+
+def test_a_child_that_serves_several_cases_stays_one_child() -> None:
+    waiting = Stop()
+    root = RefereeSwitch("phases", {"halt": waiting, "play": Wall(), "stop": waiting}, otherwise=Stop())
+    text = tree_yaml(root, "test")
+    assert "halt | stop: Stop" in text
+    again = build(text)
+    assert isinstance(again, RefereeSwitch)
+    assert again.cases["halt"] is again.cases["stop"]
+    assert len(again.children) == 3
+
+
+def test_differences_are_told_with_path_and_values() -> None:
+    def root(memory: bool, place: int, name: str = "root", more: int = 0) -> Behaviour:
+        children: list[Behaviour] = [Wall(place=place, size=3), *[Stop() for _ in range(more)]]
+        return Sequence(name, memory=memory, children=children)
+
+    one = root(True, 1)
+    assert tree_differences(one, root(True, 1), VOCABULARY) == []
+    assert tree_differences(one, root(False, 2), VOCABULARY) == [
+        "root: memory is True and False",
+        "root/Wall: place is 1 and 2",
+    ]
+    assert tree_differences(one, root(True, 1, "other"), VOCABULARY) == [
+        "root: Sequence 'root' and Sequence 'other'"
+    ]
+    assert tree_differences(one, root(True, 1, more=1), VOCABULARY) == ["root: 1 children and 2"]
+    assert tree_differences(Stop(), Wall(name="Stop"), VOCABULARY) == ["Stop: Stop 'Stop' and Wall 'Stop'"]
+
+
+def test_parameters_stand_for_what_the_caller_gives() -> None:
+    node, params = "{Wall: {place: $place, size: $size}}", "{place: 0, size: {type: int, default: 3}}"
+    assert same(tree(node, params), Wall(place=0, size=3))
+    assert same(tree(node, params, place=2), Wall(place=2, size=3))
+
+
+@pytest.mark.parametrize(
+    ("params", "kind", "default"),
+    [
+        ("{p: 1}", "int", 1),
+        ("{p: 1.0}", "float", 1.0),
+        ("{p: 1e-3}", "float", 1e-3),
+        ("{p: true}", "bool", True),
+        ("{p: word}", "str", "word"),
+        ("{p: [1, 2.5]}", "tuple[float, float]", [1, 2.5]),
+        ("{p: {default: 2}}", "int", 2),
+        ("{p: {type: float | none, default: null}}", "float | none", None),
+        ("{p: {type: point}}", "tuple[float, float]", inspect.Parameter.empty),
+        ("{p: {choices: [a, b], default: b}}", "'a' | 'b'", "b"),
+        ("{p: {type: \"'a' | 'b'\"}}", "'a' | 'b'", inspect.Parameter.empty),
+    ],
+)
+def test_a_parameter_has_the_type_of_its_default_or_the_one_it_says(
+    params: str, kind: str, default: Any
+) -> None:
+    (parameter,) = (
+        parse_yaml(f"play: p\nparams: {params}\ntree: Stop\n", VOCABULARY).trees["p"].parameters.values()
+    )
+    assert parameter.kind == kind
+    assert parameter.default == default
+
+
+def test_values_can_be_computed_and_named() -> None:
+    text = """
+        play: p
+        params: {speed: 2.0}
+        let:
+          quick: $(1.5 * speed)
+          limits: {max_speed: $quick, braking: 4.0}
+        tree: {GoToPose: {limits: $limits, speed: "$(quick - -1 / (2 + 2))"}}
+    """
+    limits = RobotLimits(max_speed=3.0, braking=4.0)
+    assert same(build(text), GoToPose(limits=limits, speed=3.25))
+    assert same(build(text, speed=1), GoToPose(limits=RobotLimits(max_speed=1.5, braking=4.0), speed=1.75))
+
+
+@pytest.mark.parametrize(
+    ("formula", "value"),
+    [
+        ("1 + 2 * 3", 7),
+        ("(1 + 2) * 3", 9),
+        ("10 - 4 - 3", 3),
+        ("12 / 3 / 2", 2.0),
+        ("--2", 2),
+        ("-x + 1e2", 98.0),
+        ("2.5e-1", 0.25),
+        ("x / 4", 0.5),
+    ],
+)
+def test_formulas_are_read_as_in_school(formula: str, value: float) -> None:
+    found = evaluate(formula, {"x": 2})
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "",
+        "1 +",
+        "(1",
+        "1)",
+        "1 2",
+        "x ** 2",
+        "2x",
+        "x.y",
+        "x()",
+        "1 / 0",
+        "1e999",
+        "t",
+        "none",
+        "'a'",
+        "(" * 300,
+    ],
+)
+def test_what_is_no_formula_is_an_error(formula: str) -> None:
+    with pytest.raises(ValueError, match=r"formula|finite|number"):
+        evaluate(formula, {"x": 2, "t": True})
+
+
+@given(st.text(alphabet="x1 2.()+-*/e", max_size=30))
+@settings(max_examples=300, deadline=None)
+def test_a_formula_is_a_finite_number_or_an_error(formula: str) -> None:
+    try:
+        value = evaluate(formula, {"x": 3.0})
+    except ValueError:
+        return
+    assert value - value == 0.0
+
+
+def test_branches_and_values_can_be_chosen_by_a_parameter() -> None:
+    text = """
+        play: p
+        params: {way: {choices: [wall, pose], default: wall}}
+        tree:
+          choose: $way
+          cases:
+            wall: {Wall: {size: {choose: $way, cases: {wall: 2, pose: 3}}}}
+            pose: GoToPose
+    """
+    assert same(build(text), Wall(size=2))
+    assert same(build(text, way="pose"), GoToPose())
+
+
+def test_a_tree_of_the_file_can_be_used_again_and_again_and_a_play_too() -> None:
+    root = build(
+        """
+        play: p
+        params: {size: 2}
+        trees:
+          wall:
+            params: {place: {type: int}, size: 4}
+            tree: {Wall: {place: $place, size: $size}}
+        tree:
+          Selector:
+            name: all
+            memory: true
+            children:
+              - SubTree: {tree: wall, params: {place: 1, size: $size}}
+              - SubTree: {tree: wall, params: {place: "$(size + 1)"}}
+              - SubTree: {tree: goalkeeper, params: {speed: 0.5}}
+        """
+    )
+    children = [Wall(place=1, size=2), Wall(place=3, size=4), PLAYS["goalkeeper"](speed=0.5)]
+    assert same(root, Selector("all", memory=True, children=children))
+
+
+def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
+    text = "play: p\nparams: {text: $$x}\ntree: Stop\n"
+    assert parse_yaml(text, VOCABULARY).trees["p"].parameters["text"].default == "$x"
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ("", "test.yaml:1: a tree file is a mapping"),
+        ("- 1", "test.yaml:1: a tree file is a mapping"),
+        ("play: p", "test.yaml:1: a tree file needs 'tree'"),
+        ("tree: Stop", "needs 'play'"),
+        ("play: p\ntree: Stop\nroot: Stop", "test.yaml:3: a tree file has no 'root'"),
+        ("play: p\nplay: q\ntree: Stop", "test.yaml:2: the key 'play' is given twice"),
+        ("play: p\nparams: {a: 010}\ntree: Stop", "test.yaml:2: write 8, not '010', as a number"),
+        ("play: p\nparams: {a: 1:30}\ntree: Stop", "test.yaml:2: write 90, not '1:30', as a number"),
+        ("play: p\nparams: {a: -1:30.5}\ntree: Stop", "test.yaml:2: write -90.5, not '-1:30.5', as a number"),
+        ("play: 3\ntree: Stop", "play is a text on one line"),
+        ("play: p\ndescription: [1]\ntree: Stop", "test.yaml:2: the description is text"),
+        ("play: p\ntree: Sotp", "test.yaml:2: no node is called 'Sotp'; is it Stop"),
+        (
+            "play: p\ntree: {Retry: {name: r, num_failures: -1, child: Stop}}",
+            "Retry: num_failures: Should be 1 or more; FailureIsRunning tries without end, not -1",
+        ),
+        (
+            "play: p\ntree: {Repeat: {name: r, num_success: 0, child: Stop}}",
+            "Repeat: num_success: Should be 1 or more, or -1 for without end, not 0",
+        ),
+        ("play: p\ntree: qqqq", "there are Aim"),
+        ("play: p\ntree: 3", "a node is a name"),
+        ("play: p\ntree: {Stop: {}, Wall: {}}", "a node is a name"),
+        ("play: p\ntree: {Wall: 3}", "Wall takes its parameters by name"),
+        ("play: p\ntree: {Wall: [1]}", "Wall takes its parameters by name"),
+        (
+            "play: p\ntree:\n  Wall:\n    place: 0\n    sise: 2",
+            "test.yaml:5: Wall: sise: Wall has no such parameter",
+        ),
+        (
+            "play: p\ntree:\n  Wall:\n    place: two",
+            "test.yaml:4: Wall: place: Input should be a valid integer",
+        ),
+        ("play: p\ntree: {Wall: {place: 1.5}}", "Wall: place: .*valid integer"),
+        ('play: p\ntree: {Wall: {place: "1"}}', "Wall: place: .*valid integer"),
+        ("play: p\ntree: {Wall: {place: null}}", "Wall: place: .*valid integer"),
+        ("play: p\ntree:\n  Wall: {place: 3}", "test.yaml:3: Wall: place 3 is not one of a wall of 1"),
+        ("play: p\ntree: {GoToPose: {heading: .nan}}", "GoToPose: heading"),
+        ("play: p\ntree: {GoToPose: {heading: .inf}}", "GoToPose: heading"),
+        ("play: p\ntree: {GoToPose: {target: [1]}}", "GoToPose: target"),
+        ("play: p\ntree: {GoToPose: {limits: {top_speed: 1}}}", "limits.top_speed"),
+        ("play: p\ntree: {GoToPose: {limits: {max_speed: -1}}}", "limits.max_speed"),
+        ("play: p\ntree: {IsRestart: {kind: corner}}", "IsRestart: kind"),
+        ("play: p\ntree: {SelectShot: {rater: {open_angle: {width: 1}}}}", "rater.open_angle"),
+        ("play: p\ntree: {SelectShot: {rater: {guess: {}}}}", "SelectShot: rater"),
+        ("play: p\ntree: {SelectShot: {rater: guess}}", "SelectShot: .*no shot rater is called 'guess'"),
+        ("play: p\ntree: {Stop: {name: [1]}}", "name is a text"),
+        ("play: p\ntree: {Sequence: {name: s, children: [Stop]}}", "memory: Sequence needs this parameter"),
+        (
+            "play: p\ntree: {Sequence: {memory: true, children: [Stop]}}",
+            "name: Sequence needs this parameter",
+        ),
+        ("play: p\ntree: {Sequence: {name: s, memory: perhaps}}", "Sequence: memory: .*valid boolean"),
+        ("play: p\ntree: {Sequence: {name: s, memory: true, children: Stop}}", "children is a list of nodes"),
+        (
+            "play: p\ntree: {Sequence: {name: s, memory: true, child: Stop}}",
+            "child: Sequence has no such parameter",
+        ),
+        ("play: p\ntree: {Inverter: {name: i}}", "child: Inverter needs this branch"),
+        ("play: p\ntree: {Inverter: {name: i, child: [Stop]}}", "a node is a name"),
+        ("play: p\ntree: {Inverter: {name: i, child: }}", "a node is a name"),
+        ("play: p\ntree: {RefereeSwitch: {name: r, cases: {corner: Stop}}}", "'corner' is no phase"),
+        ("play: p\ntree: {Repeat: {name: r, num_success: many, child: Stop}}", "Repeat: num_success"),
+        ("play: p\ntree: {Timeout: {name: t, seconds: -1, child: Stop}}", "seconds must be 0 or more"),
+        ("play: p\ntree: {Wall: {place: $where}}", "the tree has no parameter 'where'; it has none"),
+        ("play: p\nparams: {a: 1}\ntree: {Wall: {place: $b}}", "no parameter 'b'; it has a"),
+        ("play: p\nparams: {a: 1.5}\ntree: {Wall: {place: $a}}", "Wall: place: .*valid integer"),
+        ("play: p\ntree: {Wall: {place: $}}", r"neither \$name nor"),
+        ("play: p\ntree: {Wall: {place: $a b}}", r"neither \$name nor"),
+        ("play: p\ntree: {Wall: {place: $(1 +)}}", "is no formula"),
+        ("play: p\ntree: {Wall: {place: $(1 / 0)}}", "has no finite value"),
+        ("play: p\nparams: {w: a}\ntree: {Wall: {place: $(w + 1)}}", "formula: w is no number here"),
+        ("play: p\nparams: [1]\ntree: Stop", "test.yaml:2: params is a mapping"),
+        ("play: p\nparams: {a: null}\ntree: Stop", "a: its type does not follow from its default"),
+        ("play: p\nparams: {a: {}}\ntree: Stop", "it needs a type, choices or a default"),
+        ("play: p\nparams: {a: {type: float, sort: 1}}\ntree: Stop", "the parameter 'a' has no 'sort'"),
+        ("play: p\nparams: {a: {type: double}}\ntree: Stop", "'double' is no type of a parameter"),
+        ("play: p\nparams: {a: {type: int, default: x}}\ntree: Stop", "a: Input should be a valid integer"),
+        ("play: p\nparams: {a: {choices: [x], default: y}}\ntree: Stop", "a: Input should be 'x'"),
+        ("play: p\nparams: {a: {choices: []}}\ntree: Stop", "choices is a list of words"),
+        ("play: p\nparams: {a: {choices: [x], type: str}}\ntree: Stop", "choices or a type"),
+        ("play: p\nparams: {a: $b}\ntree: Stop", "a default hangs on no other parameter"),
+        ("play: p\nparams: {a-b: 1}\ntree: Stop", "'a-b' is no name of a parameter"),
+        ("play: p\nparams: {a: 1}\nlet: {a: 2}\ntree: Stop", "'a' is a parameter already"),
+        ("play: p\nlet: {b: $c, c: 1}\ntree: Stop", "no parameter 'c'"),
+        ("play: p\ntree: {choose: way, cases: {a: Stop}}", "choose takes the name of a parameter"),
+        (
+            "play: p\nparams: {w: b}\ntree: {choose: $w, cases: {a: Stop}}",
+            "there is no case for 'b'; there are a",
+        ),
+        ("play: p\nparams: {w: 1}\ntree: {choose: $w, cases: {a: Stop}}", "there is no case for 1"),
+        ("play: p\nparams: {w: a}\ntree: {choose: $w, cases: {}}", "there are no cases"),
+        (
+            "play: p\nparams: {w: a}\ntree: {choose: $w, cases: {a: Stop, b: Sotp}}",
+            "no node is called 'Sotp'",
+        ),
+        ("play: p\nparams: {w: a}\ntree: {choose: $w, else: Stop}", "choose has no 'else'"),
+        ("play: p\ntrees: {p: {tree: Stop}}\ntree: Stop", "the tree 'p' is there twice"),
+        ("play: p\ntrees: {q: Stop}\ntree: Stop", "the tree 'q' is a mapping"),
+        ("play: p\ntrees: {q: {tree: Sotp}}\ntree: Stop", "no node is called 'Sotp'"),
+        ("play: p\ntree: {SubTree: {tree: p}}", "the tree 'p' contains itself"),
+        (
+            "play: p\ntree: Stop\ntrees:\n  q: {tree: {SubTree: {tree: r}}}\n"
+            "  r: {tree: {SubTree: {tree: q}}}",
+            "test.yaml:5: the tree 'q' contains itself",
+        ),
+        ("play: p\ntree: SubTree", "no node is called 'SubTree'"),
+        ("play: p\ntree: {SubTree: {}}", "SubTree needs 'tree'"),
+        ("play: p\ntree: {SubTree: {tree: nowhere}}", "no tree or play is called 'nowhere'; there are p, "),
+        (
+            "play: p\ntree: {SubTree: {tree: goalkeeper, params: {pace: 1}}}",
+            "goalkeeper has no such parameter",
+        ),
+        ("play: p\ntree: {SubTree: {tree: goalkeeper, params: {speed: fast}}}", "goalkeeper: speed"),
+        ("play: p\ntree: {SubTree: {tree: goalkeeper, speed: 1}}", "SubTree has no 'speed'"),
+        (
+            "play: p\ntrees: {q: {params: {n: {type: int}}, tree: Stop}}\ntree: {SubTree: {tree: q}}",
+            "n: q needs this parameter",
+        ),
+        ("play: p\ntree: !!python/name:os.system", "the tag .* is not allowed"),
+        ("play: p\ntree: &a Stop\nlet: {b: *a}", r"aliases \(\*name\) are not allowed"),
+        ("play: p\ntree: {Wall: {1: 2}}", "the key '1' is not a name"),
+        ("play: p\ntree: 2020-13-45\n", "no node is called '2020-13-45'"),
+        ("play: p\ntree: [", "test.yaml:2: "),
+        ("play: p\n---\nplay: q", "expected a single document|but found another document"),
+        ("play: \x07p", "is not text"),
+        ("play: p\ntree: " + "[" * 200, "nested deeper than"),
+        ("#" * 200_000, "is larger than 128 KiB"),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_file_and_place(text: str, where: str) -> None:
+    said = problem(text)
+    assert re.search(where, said), said
+
+
+@pytest.mark.parametrize(
+    "content", [b"\xff\xfe\x00", b"play: \xff", b"\x80\x81", "play: \ud800".encode("utf-8", "surrogatepass")]
+)
+def test_bytes_that_are_no_text_are_an_error(content: bytes) -> None:
+    with pytest.raises(TreeFileError):
+        parse_yaml(content, VOCABULARY)
+
+
+class Unregistered(Leaf[None]):
+    def __init__(self, *, what: object = None, name: str = "") -> None:
+        super().__init__(name)
+        self.what = what
+
+    def on_running(self) -> Status:
+        return self.succeed()
+
+
+@pytest.mark.parametrize(
+    ("root", "problem"),
+    [
+        (
+            Sequence("s", memory=True, children=[Unregistered()]),
+            "s/Unregistered: files cannot name a Unregistered",
+        ),
+        (Sequence("", memory=True), "names that are printable"),
+        (Stop(name="a\tb"), "names that are printable"),
+        (GoToPose(heading=float("inf")), "GoToPose: heading: inf cannot be written"),
+    ],
+)
+def test_what_a_file_cannot_say_is_an_error_with_the_nodes_path(root: Behaviour, problem: str) -> None:
+    with pytest.raises(ValueError, match=problem):
+        tree_yaml(root, "test")
+
+
+def test_a_parameter_that_is_no_plain_data_is_an_error_with_the_nodes_path() -> None:
+    vocabulary = Vocabulary({"Unregistered": Unregistered})
+    with pytest.raises(ValueError, match=r"Unregistered: what: .* cannot be written as plain data"):
+        describe_tree(Unregistered(what=object()), vocabulary, "test")
+
+
+def test_a_leaf_whose_parameters_have_no_names_cannot_be_named() -> None:
+    class Loose(Leaf[None]):
+        def __init__(self, *words: str) -> None:
+            super().__init__()
+
+    with pytest.raises(TreeFileError, match="Loose takes more than named parameters"):
+        parse_yaml("play: p\ntree: Loose\n", Vocabulary({"Loose": Loose}))
+
+
+def test_every_control_node_can_be_named() -> None:
+    bases = {"Gate", "Switch"}
+    for name in nodes.__all__:
+        thing = getattr(nodes, name)
+        if isinstance(thing, type) and issubclass(thing, Behaviour) and name not in bases:
+            assert CONTROL[name].cls is thing
+
+
+def test_a_play_from_a_file_is_called_like_any_play(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    path.write_text(
+        "play: wall\nparams: {place: 0, size: {type: int}}\ntree: {Wall: {place: $place, size: $size}}\n"
+    )
+    play = load_play(path)
+    assert same(play(size=2), Wall(size=2))
+    assert play(size=2) is not play(size=2)
+    assert str(inspect.signature(play)) == "(*, place: int = 0, size: int)"
+    for parameters, expected in (
+        ({}, TypeError),
+        ({"size": 1, "pace": 2}, TypeError),
+        ({"size": "x"}, TreeFileError),
+        ({"size": 1, "place": 3}, TreeFileError),
+    ):
+        with pytest.raises(expected):
+            play(**parameters)
+
+
+def test_a_file_whose_main_tree_cannot_be_built_is_an_error_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    path.write_text("play: wall\nparams: {place: 3}\ntree: {Wall: {place: $place}}\n")
+    with pytest.raises(TreeFileError, match=r"wall.yaml:3: Wall: place 3 is not one of a wall of 1"):
+        load_play(path)
+
+
+def test_a_play_is_found_by_its_name_or_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    path.write_text("play: wall\ntree: Wall\n")
+    assert find_play("goalkeeper") is PLAYS["goalkeeper"]
+    assert same(find_play("wall.yaml", tmp_path)(), Wall())
+    assert find_play("wall.yaml", tmp_path) is find_play(str(path))
+    path.write_text("play: wall\ntree: {Wall: {size: 2}}\n")
+    assert same(find_play(str(path))(), Wall(size=2))
+    with pytest.raises(KeyError, match="no play is called 'wall'"):
+        find_play("wall", tmp_path)
+    for missing in ("no.yaml", "no\x00.xml"):
+        with pytest.raises(TreeFileError, match="cannot be read"):
+            find_play(missing, tmp_path)
+
+
+plain = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(min_size=1), inner, max_size=4),
+    max_leaves=12,
+)
+
+
+def strip(marked: Any) -> Any:
+    value = marked.value
+    if isinstance(value, list):
+        return [strip(part) for part in value]
+    if isinstance(value, dict):
+        return {key: strip(part) for key, part in value.items()}
+    return value
+
+
+@given(plain)
+@settings(max_examples=200, deadline=None)
+def test_plain_data_written_and_read_is_the_same_and_of_the_same_types(data: Any) -> None:
+    assert repr(strip(read_marked(write_plain(data)))) == repr(data)
+
+
+def test_a_made_up_signature_is_listed_like_a_plays() -> None:
+    builder: Callable[..., Behaviour] = load_play(play_files()["goalkeeper"])
+    assert [str(parameter) for parameter in parameters_of(builder)] == [
+        str(parameter) for parameter in parameters_of(PLAYS["goalkeeper"])
+    ]
+
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "tree_files.md"
+
+
+def test_the_documents_example_is_a_play() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8")
+    (example,) = [block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if "play:" in block]
+    file = parse_yaml(example, VOCABULARY)
+    assert parse_yaml(write_yaml(file), VOCABULARY) == file
+    for style in ("calm", "keen"):
+        root = build_tree(file, VOCABULARY, {"style": style, "range": 3.0})
+        assert [child.name for child in root.children] == ["shoot", "win the ball"]
+
+
+def test_the_document_names_every_type_that_is_not_a_skill_or_links_to_where_they_are() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8") + DOCUMENT.with_name("trees.md").read_text(encoding="utf-8")
+    sisters = {
+        "FailureIsRunning",
+        "RunningIsFailure",
+        "RunningIsSuccess",
+        "SuccessIsFailure",
+        "SuccessIsRunning",
+    }
+    assert [name for name in CONTROL if f"`{name}" not in text and name not in sisters] == []
