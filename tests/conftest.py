@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+import multiprocessing
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
+from multiprocessing import resource_tracker
+from pathlib import Path
 
 import pytest
+
+StartPython = Callable[..., "subprocess.Popen[str]"]
 
 
 @pytest.fixture(autouse=True)
@@ -16,3 +24,46 @@ def _the_log_as_it_was() -> Iterator[None]:
     yield
     log.setLevel(level)
     log.propagate = propagate
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_process_outlives_the_session() -> Iterator[None]:
+    yield
+    assert not _children(), f"left running: {_children()}"
+
+
+@pytest.fixture(autouse=True)
+def _no_process_outlives_its_test() -> Iterator[None]:
+    """A process left behind would fail, by its warning, whichever test happens to run next."""
+    before = _children()
+    yield
+    left = _children() - before
+    assert not left, f"the test started processes and did not wait for them: {left}"
+
+
+@pytest.fixture
+def start_python(_no_process_outlives_its_test: None) -> Iterator[StartPython]:
+    """Start Python with arguments, its output piped; what still runs when the test ends is killed."""
+    with ExitStack() as processes:
+
+        def start(*arguments: object, env: dict[str, str] | None = None) -> subprocess.Popen[str]:
+            command = [sys.executable, *map(str, arguments)]
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env)
+            processes.enter_context(process)
+            # Before the context waits for it.
+            processes.callback(process.kill)
+            return process
+
+        yield start
+
+
+def _children() -> set[int]:
+    """Processes that this one has started and not waited for; empty where there is no /proc."""
+    multiprocessing.active_children()  # waits for those that have ended
+    found: set[int] = set()
+    for listed in Path("/proc/self/task").glob("*/children"):
+        with suppress(OSError):  # a thread that has just ended
+            found.update(map(int, listed.read_text().split()))
+    # Started with the first spawned process, and meant to outlive the others.
+    found.discard(getattr(resource_tracker._resource_tracker, "_pid", None) or 0)
+    return found

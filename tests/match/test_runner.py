@@ -1,6 +1,5 @@
 import os
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -18,6 +17,7 @@ from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.plays import PLAYS
 from robobt.worlds import sim_world
+from tests.conftest import StartPython
 from tests.match.scripted import PlainWorld, Scripted, data
 
 
@@ -163,12 +163,12 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs /proc to look for processes")
-def test_workers_end_with_a_run_that_is_killed(tmp_path: Path):
+def test_workers_end_with_a_run_that_is_killed(tmp_path: Path, start_python: StartPython):
     script, ids = tmp_path / "run.py", tmp_path / "ids"
     script.write_text(_SLEEPY_RUN)
     ids.mkdir()
     root = Path(__file__).resolve().parents[2]
-    run = subprocess.Popen([sys.executable, script, ids], env={**os.environ, "PYTHONPATH": str(root)})
+    run = start_python(script, ids, env={**os.environ, "PYTHONPATH": str(root)})
     assert _soon(lambda: len(list(ids.iterdir())) == 2)
     run.kill()
     run.wait()

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from math import nan
@@ -43,6 +41,7 @@ from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
+from tests.conftest import StartPython
 from tests.league.served import free_endpoints
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5)
@@ -296,12 +295,12 @@ time.sleep(60)
 """
 
 
-def test_a_process_that_is_told_to_end_stops_its_robots_first(endpoints: Endpoints) -> None:
+def test_a_process_that_is_told_to_end_stops_its_robots_first(
+    endpoints: Endpoints, start_python: StartPython
+) -> None:
     code = KILLED.replace("{endpoints}", repr(endpoints.model_dump(mode="json")))
-    with (
-        Receiver("127.0.0.1", endpoints.grsim) as grsim,
-        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process,
-    ):
+    with Receiver("127.0.0.1", endpoints.grsim) as grsim:
+        process = start_python("-c", code)
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         assert list(grsim.receive()) == []

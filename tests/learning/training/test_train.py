@@ -2,8 +2,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
-import sys
 import time
 import warnings
 from dataclasses import replace
@@ -309,9 +307,9 @@ print(train(load_settings("go_to_ball", changes=changes), sys.argv[1], resume=Tr
 
 
 @pytest.mark.slow
-def test_a_real_run_killed_at_ten_random_moments_ends_with_the_same_weights(tmp_path):
+def test_a_real_run_killed_at_ten_random_moments_ends_with_the_same_weights(tmp_path, start_python):
     def start(folder):
-        return subprocess.Popen([sys.executable, "-c", REAL, str(folder)], stdout=subprocess.PIPE, text=True)
+        return start_python("-c", REAL, folder)
 
     whole, _ = start(tmp_path / "whole").communicate()
     rng = np.random.default_rng(0)

@@ -4,8 +4,6 @@ import json
 import random
 import re
 import signal
-import subprocess
-import sys
 import zlib
 from dataclasses import replace
 from itertools import pairwise
@@ -34,6 +32,7 @@ from robobt.skills.store import Store
 from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
 from robobt.worlds import sim_world
+from tests.conftest import StartPython
 from tests.match.recording.made_recording import (
     BLUE_1,
     BLUE_4,
@@ -508,13 +507,15 @@ while True:
 
 
 @pytest.mark.parametrize("ending", ["", ".gz"])
-def test_a_process_that_is_killed_leaves_all_but_its_last_second(tmp_path: Path, ending: str) -> None:
+def test_a_process_that_is_killed_leaves_all_but_its_last_second(
+    tmp_path: Path, ending: str, start_python: StartPython
+) -> None:
     path = tmp_path / f"match.robobt.jsonl{ending}"
-    with subprocess.Popen([sys.executable, "-c", KILLED, path], stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        done = int(process.stdout.readline())
-        process.kill()
-    assert process.returncode == -signal.SIGKILL
+    process = start_python("-c", KILLED, path)
+    assert process.stdout is not None
+    done = int(process.stdout.readline())
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
     recording = load_recording(path)
     assert not recording.complete
     assert len(recording) > done - 1 / PERIOD

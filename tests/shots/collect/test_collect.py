@@ -1,8 +1,4 @@
 import json
-import os
-import signal
-import subprocess
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +17,7 @@ from robobt.shots.data.files import read_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS
 from robobt.worlds import sim_world
+from tests.conftest import StartPython
 
 SETTINGS = CollectionSettings(seed=5)
 
@@ -189,27 +186,26 @@ def test_a_trial_that_raises_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path:
         collect_shots(SETTINGS, tmp_path / "shots.csv", 5)
 
 
-def kill_after(path: Path, rows: int, workers: int) -> None:
+def kill_after(start_python: StartPython, path: Path, rows: int, workers: int) -> None:
     """Start a collection of 80 shots as a process of its own and kill it in the middle."""
-    command = [sys.executable, "-m", "robobt", "collect", "shots", "-n", "80", "--seed", "5"]
+    command = ["-m", "robobt", "collect", "shots", "-n", "80", "--seed", "5"]
     growing = path if path.suffix == ".csv" else path.with_name(path.name + ".csv")
-    process = subprocess.Popen([*command, "--out", str(path), "-w", str(workers)], stdout=subprocess.DEVNULL)
-    try:
-        until = time.monotonic() + 60.0
-        while process.poll() is None and time.monotonic() < until:
-            if growing.exists() and growing.read_bytes().count(b"\n") > rows:
-                break
-            time.sleep(0.005)
-        os.kill(process.pid, signal.SIGKILL)
-    finally:
-        process.kill()
-        process.wait()
+    process = start_python(*command, "--out", path, "-w", workers)
+    until = time.monotonic() + 60.0
+    while process.poll() is None and time.monotonic() < until:
+        if growing.exists() and growing.read_bytes().count(b"\n") > rows:
+            break
+        time.sleep(0.005)
+    process.kill()
+    process.wait()
     assert growing.read_bytes().count(b"\n") > rows
 
 
-def test_a_killed_collection_keeps_every_finished_shot_and_gets_none_twice(collected: Path, tmp_path: Path):
+def test_a_killed_collection_keeps_every_finished_shot_and_gets_none_twice(
+    collected: Path, tmp_path: Path, start_python: StartPython
+):
     path = tmp_path / "shots.parquet"
-    kill_after(path, 10, workers=1)
+    kill_after(start_python, path, 10, workers=1)
     kept = path.with_name("shots.parquet.csv").read_bytes().count(b"\n") - 1
     done = collect_shots(SETTINGS, path, 80)
     assert kept >= 10
@@ -219,9 +215,9 @@ def test_a_killed_collection_keeps_every_finished_shot_and_gets_none_twice(colle
 
 @pytest.mark.slow
 def test_killed_with_workers_and_taken_up_with_others_it_is_the_same_collection(
-    collected: Path, tmp_path: Path
+    collected: Path, tmp_path: Path, start_python: StartPython
 ):
     path = tmp_path / "shots.csv"
-    kill_after(path, 30, workers=2)
+    kill_after(start_python, path, 30, workers=2)
     collect_shots(SETTINGS, path, 80, workers=3)
     assert rows_of(path) == rows_of(collected)
