@@ -211,6 +211,11 @@ class TestRepeatability:
         both = Match(scenario(robots={"blue": [robot(1, y=2.0), robot()]}), 3, PlainWorld)
         assert alone.players[0].store.rng.random() == both.players[1].store.rng.random()
 
+    def test_team_mates_and_opponents_draw_different_random_numbers(self):
+        robots = {"blue": [robot(), robot(1, y=2.0)], "yellow": [robot(), robot(1, y=2.0)]}
+        match = Match(scenario(robots=robots), 3, PlainWorld)
+        assert len({player.store.rng.random() for player in match.players}) == 4
+
     def test_recording_changes_nothing(self, tmp_path: Path):
         path = tmp_path / "match.robobt.jsonl.gz"
         recorded = play_match(scenario(**self.RANDOM), 7, sim_world, path)

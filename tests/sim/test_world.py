@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robobt.sim import REALISM, SimWorld, preset
-from robobt.world import DIVISION_B, Placement, RobotCommand, RobotId, Team, World
+from robobt.world import BALL_RADIUS, DIVISION_B, Placement, RobotCommand, RobotId, Team, World
 from tests.sim.rig import IT, ME, one_robot
 
 
@@ -142,6 +142,25 @@ def test_a_lost_command_leaves_the_last_one_standing() -> None:
         world.act({ME: RobotCommand(vx=1.0)})
     # Half the commands are lost and the robot still drives at full speed.
     assert world.truth().own[0].vx == pytest.approx(1.0)
+
+
+def test_a_lost_command_does_not_kick_again() -> None:
+    realism = REALISM["none"].model_copy(update={"command_loss": 0.9})
+    world = SimWorld(DIVISION_B, {ME: None}, preset("default", realism=realism), 0.02)
+    mouth = world.settings.body.face + BALL_RADIUS + 0.0003
+    world.reset(Placement({ME: (0, 0, 0)}, (mouth, 0, 0, 0)), 0)
+    commanded, kicks = 0, 0
+    for _ in range(40):
+        # Until the kick arrives; then none is commanded while the kicker charges and the ball lies ready.
+        while not world.kicks:
+            world.place_ball(world.truth().own[0].x + mouth, 0.0)
+            world.act({ME: RobotCommand(kick_speed=1.0)})
+        commanded += 1
+        for _ in range(10):
+            kicks += len(world.kicks)
+            world.place_ball(world.truth().own[0].x + mouth, 0.0)
+            world.act({})
+    assert kicks == commanded
 
 
 def test_the_ball_can_be_put_down() -> None:
