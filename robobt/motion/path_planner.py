@@ -18,14 +18,14 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
+from robobt.world.rules import (
+    AREA_DISTANCE,
+    STOP_DISTANCE,
+    STOP_SPEED,
+    in_own_defense_area,
+    in_their_defense_area,
+)
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
-
-STOP_SPEED = 1.5
-"""Most a robot may drive while the referee has stopped the game [m/s]. Source: the rules."""
-STOP_DISTANCE = 0.5
-"""Distance to the ball while the game is stopped or the opponents restart it [m]. Source: the rules."""
-AREA_DISTANCE = 0.2
-"""Distance to the opponents' defence area while the game is stopped or restarts [m]. Source: the rules."""
 
 ROBOT_GAP = 0.03
 """Gap to another robot below which a way is blocked [m]."""
@@ -223,9 +223,9 @@ def _around_area(field: FieldGeometry, x: float, y: float, target: Point, gap: f
 
 def _open(field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper: bool) -> bool:
     border = field.margin - ROBOT_RADIUS
-    if not field.contains(x, y, border) or field.in_their_defense(x, y, their_gap - _AREA_GAP):
+    if not field.contains(x, y, border) or in_their_defense_area(field, x, y, their_gap - _AREA_GAP):
         return False
-    return goalkeeper or not field.in_our_defense(x, y, ROBOT_RADIUS)
+    return goalkeeper or not in_own_defense_area(field, x, y, ROBOT_RADIUS)
 
 
 def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoid_ball: bool) -> list[Circle]:

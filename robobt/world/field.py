@@ -63,17 +63,6 @@ class FieldGeometry(BaseModel):
         """Whether (x, y) lies inside the lines, grown outwards by ``tolerance`` [m]."""
         return abs(x) <= self.half_length + tolerance and abs(y) <= self.half_width + tolerance
 
-    def in_our_defense(self, x: float, y: float, tolerance: float = 0.0) -> bool:
-        """Whether (x, y) lies in the own defence area grown by ``tolerance`` [m] on front and sides."""
-        return (
-            x <= -self.half_length + self.defense_depth + tolerance
-            and abs(y) <= self.defense_width / 2 + tolerance
-        )
-
-    def in_their_defense(self, x: float, y: float, tolerance: float = 0.0) -> bool:
-        """Whether (x, y) lies in the opponent's defence area grown by ``tolerance`` [m]."""
-        return self.in_our_defense(-x, y, tolerance)
-
 
 DIVISION_A = FieldGeometry(length=12.0, width=9.0, goal_width=1.8, defense_width=3.6, defense_depth=1.8)
 """Division A of the rules: 12 m x 9 m, up to 11 robots a team."""

@@ -29,6 +29,15 @@ The rules let the kicker stay in contact until the ball is in play; the second
 distance is tolerance, because the ball is seen once a tick.
 """
 
+STOP_SPEED = 1.5
+"""Most a robot may drive while the referee has stopped the game. Source: SSL rules [m/s]."""
+
+STOP_DISTANCE = 0.5
+"""Distance to the ball while the game is stopped or the opponents restart it. Source: SSL rules [m]."""
+
+AREA_DISTANCE = 0.2
+"""Distance to the opponents' defence area while the game is stopped or restarts. Source: SSL rules [m]."""
+
 CARRY_DISTANCE = 1.0
 """A robot may carry the ball no farther than this, as the crow flies. Source: SSL rules [m]."""
 
@@ -138,11 +147,19 @@ def in_area(
     return x >= half_length - depth - tolerance and abs(y) <= width / 2 + tolerance
 
 
+def in_their_defense_area(field: FieldGeometry, x: float, y: float, tolerance: float = 0.0) -> bool:
+    """Return whether (x, y), as a team sees it, lies in the opponents' defence area; see :func:`in_area`."""
+    return in_area(x, y, field.half_length, field.defense_depth, field.defense_width, tolerance)
+
+
+def in_own_defense_area(field: FieldGeometry, x: float, y: float, tolerance: float = 0.0) -> bool:
+    """Return whether (x, y), as a team sees it, lies in its own defence area; see :func:`in_area`."""
+    return in_their_defense_area(field, -x, y, tolerance)
+
+
 def in_defense_area(field: FieldGeometry, defender: Team, x: float, y: float, tolerance: float = 0.0) -> bool:
     """Return whether (x, y) lies in ``defender``'s defence area; see :func:`in_area`."""
-    return in_area(
-        own_side(defender) * x, y, field.half_length, field.defense_depth, field.defense_width, tolerance
-    )
+    return in_their_defense_area(field, own_side(defender) * x, y, tolerance)
 
 
 # Touches and possession.

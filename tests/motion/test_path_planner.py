@@ -24,6 +24,7 @@ from robobt.world import (
     Team,
 )
 from robobt.world.geometry import Point, segment_distance
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from tests.skills.fixed_world import frame, moved, robot
 
 STOPPED = GameState(command=RefereeCommand.STOP)
@@ -129,8 +130,8 @@ def test_defence_areas_are_passed_round_their_corners(x: float) -> None:
     assert hypot(frames[-1].own[0].x - x, frames[-1].own[0].y + 2.0) < 0.01
     for world in frames:
         me, field = world.own[0], world.field
-        assert not field.in_their_defense(me.x, me.y, 0.99 * ROBOT_RADIUS)
-        assert not field.in_our_defense(me.x, me.y, 0.99 * ROBOT_RADIUS)
+        assert not in_their_defense_area(field, me.x, me.y, 0.99 * ROBOT_RADIUS)
+        assert not in_own_defense_area(field, me.x, me.y, 0.99 * ROBOT_RADIUS)
 
 
 def test_the_goalkeeper_drives_through_its_area() -> None:
@@ -147,8 +148,8 @@ def test_a_target_is_moved_to_where_a_robot_may_stand(field, x: float, y: float,
     world = frame(me, FAR_BALL, field=field)
     tx, ty = allowed_target(world, me, (x, y), goalkeeper=goalkeeper)
     assert field.contains(tx, ty, field.margin - ROBOT_RADIUS)
-    assert not field.in_their_defense(tx, ty, ROBOT_RADIUS)
-    assert goalkeeper or not field.in_our_defense(tx, ty, ROBOT_RADIUS)
+    assert not in_their_defense_area(field, tx, ty, ROBOT_RADIUS)
+    assert goalkeeper or not in_own_defense_area(field, tx, ty, ROBOT_RADIUS)
     if field.contains(x, y, -0.3) and abs(x) < field.half_length - field.defense_depth - 0.2:
         assert (tx, ty) == (x, y)
 

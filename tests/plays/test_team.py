@@ -25,7 +25,7 @@ from robobt.world import (
     RobotState,
     Team,
 )
-from robobt.world.rules import touches
+from robobt.world.rules import in_own_defense_area, touches
 from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, stop_before
@@ -244,7 +244,7 @@ def test_defenders_wall_while_the_ball_is_far() -> None:
     for number in (1, 2):
         robot = squad.robots[number]
         assert squad.tips()[number] == "Wall"
-        assert DIVISION_B.in_our_defense(robot.x, robot.y, 0.16)
+        assert in_own_defense_area(DIVISION_B, robot.x, robot.y, 0.16)
 
 
 def test_a_defender_clears_a_ball_near_the_own_area() -> None:
@@ -260,7 +260,7 @@ def test_nobody_but_the_keeper_goes_for_a_ball_in_our_area() -> None:
     for _ in squad.play(3.0):
         for number in range(1, 6):
             robot = squad.robots[number]
-            assert not DIVISION_B.in_our_defense(robot.x, robot.y, 0.0)
+            assert not in_own_defense_area(DIVISION_B, robot.x, robot.y, 0.0)
 
 
 def test_field_players_mark_opponents_in_our_half_while_the_ball_is_there() -> None:

@@ -5,6 +5,7 @@ from math import hypot, pi
 from robobt.skills import GoToPose
 from robobt.tree import Status
 from robobt.world import Frame, GameState, RefereeCommand, RobotLimits
+from robobt.world.rules import in_their_defense_area
 from tests.simulation import Trial, always, blue, eventually, inside_the_field, never, yellow
 from tests.skills.fixed_world import Alone, frame, robot
 
@@ -92,7 +93,7 @@ def test_it_never_leaves_the_walls_and_never_enters_their_area() -> None:
     trial.run(
         3.0,
         always("inside the field", inside_the_field),
-        never("in their area", lambda f: f.field.in_their_defense(f.own[0].x, f.own[0].y, 0.08)),
+        never("in their area", lambda f: in_their_defense_area(f.field, f.own[0].x, f.own[0].y, 0.08)),
     )
 
 

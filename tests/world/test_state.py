@@ -24,6 +24,7 @@ from robobt.world import (
     RobotState,
     Team,
 )
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
 
 number = st.floats(-4, 4)
 
@@ -77,11 +78,11 @@ def test_the_placement_is_turned_with_the_view() -> None:
 @pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B])
 def test_areas_are_where_the_rules_put_them(field: FieldGeometry) -> None:
     x, y = field.half_length, field.defense_width / 2
-    assert field.in_their_defense(x - 0.01, y - 0.01)
-    assert not field.in_their_defense(x - field.defense_depth - 0.01, 0)
-    assert field.in_their_defense(x - field.defense_depth - 0.01, 0, tolerance=0.02)
-    assert field.in_our_defense(-x + 0.5, 0)
-    assert not field.in_our_defense(x - 0.5, 0)
+    assert in_their_defense_area(field, x - 0.01, y - 0.01)
+    assert not in_their_defense_area(field, x - field.defense_depth - 0.01, 0)
+    assert in_their_defense_area(field, x - field.defense_depth - 0.01, 0, tolerance=0.02)
+    assert in_own_defense_area(field, -x + 0.5, 0)
+    assert not in_own_defense_area(field, x - 0.5, 0)
     assert field.contains(x, field.half_width)
     assert not field.contains(x + 0.01, 0)
     assert field.contains(x + 0.01, 0, tolerance=0.02)

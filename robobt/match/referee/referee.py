@@ -22,6 +22,8 @@ from robobt.world.rules import (
     CARRY_DISTANCE,
     IN_PLAY_DISTANCE,
     PUSH_FACTOR,
+    STOP_DISTANCE,
+    STOP_SPEED,
     ball_out,
     exit_point,
     in_defense_area,
@@ -65,8 +67,10 @@ class RefereeSettings(BaseModel):
     )
     no_progress_time: float | None = Field(10.0, gt=0, le=600, description="ball at rest for so long [s]")
     no_progress_distance: float = Field(0.1, gt=0, le=5, description="what counts as at rest [m]")
-    stop_speed: float | None = Field(1.5, gt=0, le=20, description="fastest robot in STOP [m/s]")
-    stop_distance: float | None = Field(0.5, gt=0, le=5, description="robot's hull to ball in STOP [m]")
+    stop_speed: float | None = Field(STOP_SPEED, gt=0, le=20, description="fastest robot in STOP [m/s]")
+    stop_distance: float | None = Field(
+        STOP_DISTANCE, gt=0, le=5, description="robot's hull to ball in STOP [m]"
+    )
     grace: float = Field(2.0, ge=0, le=60, description="time to slow down and clear the ball [s]")
     half_length: float | None = Field(
         None, gt=0, le=36000, description="length of a half; none: one half without end [s]"

@@ -6,10 +6,10 @@ from math import atan2, cos, hypot, inf, radians, sin
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.skills.store import Shot
 from robobt.tree import Status
 from robobt.world.geometry import Point, segment_distance, wrap_angle
+from robobt.world.rules import has_ball
 
 _TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
 _ENOUGH = 0.5

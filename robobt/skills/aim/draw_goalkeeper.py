@@ -7,9 +7,9 @@ from math import inf
 from robobt.motion.dribbling import dribbling_limits
 from robobt.motion.pilot import command, turn_rate
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import direction, wrap_angle
+from robobt.world.rules import has_ball
 from robobt.world.state import BALL_RADIUS
 
 

@@ -13,6 +13,7 @@ from robobt.skills.aim.raters import RATERS, OpenAngle, ShotRater, make_rater
 from robobt.skills.aim.raters.goal_line import lane_clearances, obstacles
 from robobt.skills.store import Pass
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
@@ -150,8 +151,8 @@ def _may_receive(frame: Frame, target: Point) -> bool:
     field = frame.field
     return (
         field.contains(*target, tolerance=-ROBOT_RADIUS)
-        and not field.in_our_defense(*target, tolerance=ROBOT_RADIUS)
-        and not field.in_their_defense(*target, tolerance=ROBOT_RADIUS)
+        and not in_own_defense_area(field, *target, tolerance=ROBOT_RADIUS)
+        and not in_their_defense_area(field, *target, tolerance=ROBOT_RADIUS)
     )
 
 

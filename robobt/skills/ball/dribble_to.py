@@ -9,9 +9,9 @@ from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
 from robobt.motion.path_planner import way_point
 from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance, wrap_angle
+from robobt.world.rules import has_ball
 
 _GRACE = 0.15
 """The ball counts as lost when it has been out of the mouth for this long [s]."""

@@ -15,12 +15,12 @@ from robobt.motion.pilot import travel_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.rules import has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
 HANDOVER_DISTANCE = 0.2

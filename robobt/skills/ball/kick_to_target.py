@@ -14,13 +14,13 @@ from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick
 from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.rules import has_ball
 
 SHOT_SPEED = 6.4
 """Kick speed of a shot [m/s]: the rules' 6.5 m/s less what sideways motion may add."""

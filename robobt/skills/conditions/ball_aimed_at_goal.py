@@ -6,9 +6,9 @@ from math import cos
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import line_crossing_x
+from robobt.world.rules import has_ball
 from robobt.world.state import ROBOT_RADIUS
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import distance
+from robobt.world.rules import in_own_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -31,10 +32,12 @@ class BallAtDefenseEdge(Skill):
     def on_running(self) -> Status:
         """Look where the ball is and who is near."""
         field, ball = self.frame.field, self.ball
-        near = field.in_our_defense(ball.x, ball.y, 2.0 * ROBOT_RADIUS) and field.contains(ball.x, ball.y)
+        near = in_own_defense_area(field, ball.x, ball.y, 2.0 * ROBOT_RADIUS) and field.contains(
+            ball.x, ball.y
+        )
         if self._fetching:
-            self._fetching = near and not field.in_our_defense(ball.x, ball.y, -ROBOT_RADIUS)
-        elif near and not field.in_our_defense(ball.x, ball.y, -0.5 * ROBOT_RADIUS):
+            self._fetching = near and not in_own_defense_area(field, ball.x, ball.y, -ROBOT_RADIUS)
+        elif near and not in_own_defense_area(field, ball.x, ball.y, -0.5 * ROBOT_RADIUS):
             self._fetching = ball.speed <= self.rest_speed and self._ours()
         return self.succeed() if self._fetching else self.fail("no ball to fetch")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from robobt.motion.pilot import travel_time
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
+from robobt.world.rules import has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.world.rules import in_own_defense_area
 
 
 @skill
@@ -20,6 +21,6 @@ class BallInOwnDefenseArea(Skill):
 
     def on_running(self) -> Status:
         """Look where the ball is."""
-        if self.frame.field.in_our_defense(self.ball.x, self.ball.y, self.margin):
+        if in_own_defense_area(self.frame.field, self.ball.x, self.ball.y, self.margin):
             return self.succeed()
         return self.fail("the ball is not in the own defence area")

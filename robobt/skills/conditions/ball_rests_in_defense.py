@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import carries
 from robobt.tree import Status
+from robobt.world.rules import carries, in_own_defense_area
 
 
 @skill
@@ -24,7 +24,7 @@ class BallRestsInDefense(Skill):
     def on_running(self) -> Status:
         """Look where the ball is and how fast."""
         field, ball = self.frame.field, self.ball
-        if not (field.in_our_defense(ball.x, ball.y) and field.contains(ball.x, ball.y)):
+        if not (in_own_defense_area(field, ball.x, ball.y) and field.contains(ball.x, ball.y)):
             return self.fail("the ball is outside our area")
         if ball.speed > self.rest_speed and not carries(self.me, ball):
             return self.fail("the ball moves")

@@ -5,12 +5,11 @@ from __future__ import annotations
 from math import hypot, inf
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
+from robobt.world.rules import has_ball, keeps_ball
+from robobt.world.state import RobotId
 
-_LET_GO = 0.06
 _LETTING_GO = 0.15
 """How long it takes to come off a ball [s]."""
 
@@ -20,11 +19,10 @@ class CarriedFar(Skill):
     """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
 
     The way is as the crow flies from where it got the ball, as referees measure
-    it: they allow 1 m. It ends with another robot's touch or when the ball has come
-    60 mm off the hull, so what it rolls while the robot brakes away from it counts
-    too. To be ticked every tick; after a pause it counts anew.
-
-    Source of the 60 mm: Sumatra's autoreferee.
+    it: they allow 1 m. It ends with another robot's touch or when the robot no longer
+    keeps the ball (:func:`robobt.world.rules.keeps_ball`), so what it rolls while the
+    robot brakes away from it counts too. To be ticked every tick; after a pause it
+    counts anew.
 
     Args:
         limit: [m].
@@ -45,8 +43,7 @@ class CarriedFar(Skill):
         if touched is not None and touched != RobotId(frame.team, self.me.id):
             self._start = None
             return self.fail("another robot has touched it")
-        gap = hypot(ball.x - self.me.x, ball.y - self.me.y) - ROBOT_RADIUS - BALL_RADIUS
-        if gap > _LET_GO:
+        if not keeps_ball(self.me, ball):
             self._start = None
             return self.fail("it has no ball")
         if self._start is None or paused:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
+from robobt.world.rules import has_ball
 
 
 @skill

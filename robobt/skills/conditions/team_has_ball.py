@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import owner
 from robobt.tree import Status
+from robobt.world.rules import owner
 
 
 @skill

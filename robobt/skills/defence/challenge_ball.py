@@ -6,9 +6,9 @@ from math import cos, sin
 
 from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import owner
 from robobt.tree import Status
 from robobt.world.geometry import direction
+from robobt.world.rules import owner
 from robobt.world.state import ROBOT_RADIUS
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import carries
 from robobt.tree import Status
+from robobt.world.rules import carries
 from robobt.world.state import ROBOT_RADIUS
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from robobt.motion.path_planner import STOP_DISTANCE, allowed_target, travel
+from robobt.motion.path_planner import allowed_target, travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance
+from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS
 
 _MARGIN = 0.05

@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import hypot
 from typing import ClassVar
 
-from robobt.motion.path_planner import STOP_DISTANCE, travel
+from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction
+from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS
 
 _STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08

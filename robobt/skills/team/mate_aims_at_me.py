@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import radians
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.skills.steadiness import Steadiness
 from robobt.tree import Status
 from robobt.world.geometry import direction, distance, wrap_angle
+from robobt.world.rules import has_ball
 
 
 @skill

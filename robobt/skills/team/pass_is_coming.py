@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
+from robobt.world.rules import has_ball
 
 _LEAVING = 0.3
 """Time in which a kicked ball must have left the passer [s]."""

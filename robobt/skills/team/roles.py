@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 from math import hypot, inf
 from typing import TypeAlias
 
-from robobt.skills.possession import has_ball
 from robobt.skills.store import TeamStore
 from robobt.skills.team.teamwork import attacker
 from robobt.tree import Registry
 from robobt.tree.nodes import assign_roles
 from robobt.world.geometry import Point
+from robobt.world.rules import has_ball
 from robobt.world.state import Frame, RobotState
 
 RoleCost: TypeAlias = Callable[[Frame, TeamStore, RobotState], float]

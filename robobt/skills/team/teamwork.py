@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from math import hypot, inf
 
-from robobt.skills.possession import has_ball, owner
 from robobt.skills.store import TeamStore
+from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
 from robobt.world.state import Frame, RobotId, RobotState
 
 SWITCH_GAIN = 0.15
@@ -79,7 +79,9 @@ def _follow_restart(frame: Frame, team: TeamStore) -> None:
 
 def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
     ball, field = frame.ball, frame.field
-    if field.in_our_defense(ball.x, ball.y, _REACH) or field.in_their_defense(ball.x, ball.y, _REACH):
+    if in_own_defense_area(field, ball.x, ball.y, _REACH) or in_their_defense_area(
+        field, ball.x, ball.y, _REACH
+    ):
         return None
     best: int | None = None
     least = present = inf

@@ -5,9 +5,9 @@ from math import cos, hypot, radians, sin
 import pytest
 
 from robobt.skills import PickUpBall
-from robobt.skills.possession import has_ball
 from robobt.tree import Status
 from robobt.world import RobotCommand
+from robobt.world.rules import has_ball
 from tests.simulation import Trial, blue, eventually
 from tests.skills.fixed_world import Alone, frame, held, robot
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from robobt.skills.defence.cover_angle import CoverAngle
 from robobt.tree import Status
 from robobt.world import DIVISION_B, RobotState
+from robobt.world.rules import in_own_defense_area
 from tests.skills.fixed_world import Alone, frame, moved, robot
 
 
@@ -39,7 +40,7 @@ def test_it_leaves_as_much_on_either_side() -> None:
 @given(st.floats(-4.4, 4.0), st.floats(-2.9, 2.9))
 def test_it_never_asks_to_leave_the_area(x: float, y: float) -> None:
     me = settled((x, y), stand_out=2.0)
-    assert DIVISION_B.in_our_defense(me.x, me.y, 0.05)
+    assert in_own_defense_area(DIVISION_B, me.x, me.y, 0.05)
 
 
 def test_a_ball_behind_the_line_is_not_covered() -> None:

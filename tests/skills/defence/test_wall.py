@@ -7,6 +7,7 @@ import pytest
 from robobt.skills.defence.wall import Wall
 from robobt.world import DIVISION_B
 from robobt.world.geometry import segment_distance
+from robobt.world.rules import in_own_defense_area
 from tests.skills.fixed_world import robot
 from tests.skills.refereed import OPEN, Drive
 
@@ -22,8 +23,8 @@ def test_one_robot_stands_on_the_way_from_the_ball_to_the_goal(ball: tuple[float
 @pytest.mark.parametrize("ball", BALLS, ids=str)
 def test_it_stands_outside_the_defence_area_and_close_to_it(ball: tuple[float, float]) -> None:
     end = Drive(Wall(), robot(-2.0, 0.0, number=1), OPEN, ball).end
-    assert not DIVISION_B.in_our_defense(end.x, end.y, 0.09)
-    assert DIVISION_B.in_our_defense(end.x, end.y, 0.16)
+    assert not in_own_defense_area(DIVISION_B, end.x, end.y, 0.09)
+    assert in_own_defense_area(DIVISION_B, end.x, end.y, 0.16)
 
 
 @pytest.mark.parametrize("ball", BALLS, ids=str)

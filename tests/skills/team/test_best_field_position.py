@@ -8,6 +8,7 @@ from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Status
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame, RobotState
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import Alone, frame, held, robot
 
 ME = robot(0.0, 0.0)
@@ -83,7 +84,7 @@ def test_the_place_is_always_legal(opponents: list[RobotState], me: RobotState) 
     x, y = target(frame(me, held(me), opponents=tuple(opponents)))
     assert x >= 0.0
     assert DIVISION_B.contains(x, y, tolerance=-0.19)
-    assert not DIVISION_B.in_their_defense(x, y, tolerance=0.19)
+    assert not in_their_defense_area(DIVISION_B, x, y, tolerance=0.19)
 
 
 def test_a_field_that_is_all_defence_area_leaves_nowhere_to_go() -> None:

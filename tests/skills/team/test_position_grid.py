@@ -7,6 +7,7 @@ from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_
 from robobt.skills.team.position_grid import clusters, lane_shadow, position_grid, shot_path
 from robobt.world import DIVISION_A, DIVISION_B, ROBOT_RADIUS, FieldGeometry, RobotState
 from robobt.world.geometry import Point, segment_distance
+from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import robot
 
 GRID = position_grid(DIVISION_B, 0.1)
@@ -38,9 +39,9 @@ def test_the_grid_covers_the_opponents_half_and_is_its_own_mirror_image(field: F
 
 def test_the_defence_area_is_forbidden_and_the_rest_is_not() -> None:
     for point in points(GRID.forbidden):
-        assert DIVISION_B.in_their_defense(*point, tolerance=0.2001)
+        assert in_their_defense_area(DIVISION_B, *point, tolerance=0.2001)
     for point in points(~GRID.forbidden):
-        assert not DIVISION_B.in_their_defense(*point, tolerance=0.19)
+        assert not in_their_defense_area(DIVISION_B, *point, tolerance=0.19)
 
 
 @pytest.mark.parametrize("opponent", SCENES)

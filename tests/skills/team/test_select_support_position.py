@@ -7,6 +7,7 @@ from robobt.skills.team.select_support_position import SelectSupportPosition
 from robobt.tree import Status
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame, RobotState
 from robobt.world.geometry import Point, distance, segment_distance
+from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import Alone, frame, held, robot
 
 HOLDER = robot(1.0, 0.0, number=1)
@@ -25,7 +26,7 @@ def target(here: Frame, skill: SelectSupportPosition | None = None) -> Point:
 def test_it_is_before_the_goal_out_of_the_way_and_away_from_the_ball(field: FieldGeometry) -> None:
     x, y = target(frame(ME, BALL, (HOLDER,), field=field))
     assert distance((x, y), HOLDER.position) > 1.5
-    assert not field.in_their_defense(x, y, tolerance=0.19)
+    assert not in_their_defense_area(field, x, y, tolerance=0.19)
     assert x > field.half_length / 2
     # Outside the triangle from the ball to 0.6 m beside the posts.
     share = (x - BALL[0]) / (field.half_length - BALL[0])
@@ -97,4 +98,4 @@ def test_the_place_is_always_legal(
     x, y = target(frame(me, ball, others, tuple(opponents)))
     assert x >= 0.0
     assert DIVISION_B.contains(x, y, tolerance=-0.19)
-    assert not DIVISION_B.in_their_defense(x, y, tolerance=0.19)
+    assert not in_their_defense_area(DIVISION_B, x, y, tolerance=0.19)
