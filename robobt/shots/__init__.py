@@ -27,9 +27,9 @@ __all__ = [
 ]
 
 _HOMES = {
-    **dict.fromkeys(("read_shots", "write_shots"), "files"),
-    **dict.fromkeys(("goals", "shot_inputs"), "inputs"),
-    **dict.fromkeys(("PREDICTORS", "best_predictor", "calibrated", "make_predictor"), "predictors"),
+    **dict.fromkeys(("read_shots", "write_shots"), "data.files"),
+    **dict.fromkeys(("goals", "shot_inputs"), "data.inputs"),
+    **dict.fromkeys(("PREDICTORS", "best_predictor", "calibrated", "make_predictor"), "predict.predictors"),
 }
 
 

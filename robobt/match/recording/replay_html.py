@@ -50,7 +50,7 @@ def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
 
 def replay_html(recording: Recording) -> str:
     """The page: field, robots, ball, timeline, and the tree of the robot that is selected."""
-    page = files("robobt.match").joinpath("replay.html").read_text(encoding="utf-8")
+    page = files("robobt.match.recording").joinpath("replay.html").read_text(encoding="utf-8")
     header = recording.header
     title = html.escape(f"{header.scenario or 'match'}, trial {header.trial} · robobt replay")
     # Cut the page before anything is put in: what a recording says may look like a place to fill.
