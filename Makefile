@@ -7,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: match test install lint clean
+.PHONY: match test test-fast install lint clean
 
 match: $(INSTALLED)
 	@mkdir -p out
@@ -16,6 +16,10 @@ match: $(INSTALLED)
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2
+
+# Everything but the slowest tests, under a minute.
+test-fast: $(INSTALLED)
+	$(BIN)/python -m pytest -n 2 -m "not slow and not integration"
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
