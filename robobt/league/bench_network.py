@@ -167,8 +167,10 @@ def _serve(scenario: Scenario, endpoints: Endpoints, realism: str | None, pipe: 
 class _Timed(LeagueWorld):
     """A league world that notes when it sent, and which robots were missing."""
 
-    sends: list[float]
-    lost: int
+    def __init__(self, *arguments: Any) -> None:
+        self.sends: list[float] = []
+        self.lost = 0
+        super().__init__(*arguments)
 
     def reset(self, placement: Placement, seed: int) -> None:
         super().reset(placement, seed)
@@ -177,14 +179,12 @@ class _Timed(LeagueWorld):
     def observe(self) -> Frame:
         frame = super().observe()
         expected = len(self._robots or {})
-        if hasattr(self, "lost"):
-            self.lost += expected - len(frame.own) - len(frame.opponents)
+        self.lost += expected - len(frame.own) - len(frame.opponents)
         return frame
 
     def _transmit(self) -> None:
         super()._transmit()
-        if hasattr(self, "sends"):
-            self.sends.append(time.monotonic())
+        self.sends.append(time.monotonic())
 
 
 def _play(scenario: Scenario, endpoints: Endpoints, simulator: str, seconds: float, pipe: Pipe) -> None:

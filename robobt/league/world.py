@@ -28,7 +28,7 @@ from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
-from robobt.world.protocol import Placement
+from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId
 
 _RATE = 60.0
@@ -100,7 +100,7 @@ class Connection(BaseModel):
     speed: float = Field(1.0, ge=0.05, le=20, description="simulated time in shares of real time")
 
 
-class LeagueWorld:
+class LeagueWorld(World):
     """Implements :class:`robobt.world.World` over SSL-Vision and a simulator's ports.
 
     The field's size comes from the vision as soon as it says it. Frames are

@@ -284,8 +284,8 @@ class Match:
         if self.outcome is not None and self.outcome in _END_EVENTS and self._referee is None:
             kind, team = _END_EVENTS[self.outcome]
             recorder.event(kind, truth.time, team=team)
-        # A world that shows the truth says so; what any other shows is compared when it is written.
-        shown = None if getattr(self.world, "shows_truth", False) else observed
+        # What a world shows that may differ from the truth is compared when it is written.
+        shown = None if self.world.shows_truth else observed
         recorder.tick(truth, self._commands, shown)
 
 

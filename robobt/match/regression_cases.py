@@ -49,7 +49,7 @@ from robobt.match.scenario.scenario import ScenarioError, rename_files, scenario
 from robobt.tree.recording import node_paths
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
-from robobt.world.protocol import Placement
+from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId
 
 FORMAT = "robobt-case"
@@ -243,7 +243,7 @@ def _differences(case: Case, played: _Played) -> Iterator[str]:
             yield f"command {key} was {told!r} and is {tells!r}"
 
 
-class _RecordedWorld:
+class _RecordedWorld(World):
     """A world that shows what was recorded, whatever anybody does."""
 
     def __init__(self, recording: Recording) -> None:

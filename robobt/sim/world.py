@@ -15,11 +15,11 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angles
 from robobt.world.limits import RobotLimits
-from robobt.world.protocol import Placement
+from robobt.world.protocol import Placement, Snapshots, World
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
-class SimWorld:
+class SimWorld(World):
     """A simulated field that implements :class:`robobt.world.World`.
 
     Args:
@@ -113,6 +113,11 @@ class SimWorld:
     def truth(self) -> Frame:
         """The simulated state itself."""
         return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
+
+    @property
+    def snapshots(self) -> Snapshots:
+        """Itself: see :class:`robobt.world.protocol.Snapshots`."""
+        return self
 
     @property
     def robots(self) -> tuple[RobotId, ...]:

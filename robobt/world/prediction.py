@@ -25,7 +25,7 @@ _FRONT = 0.08
 """Centre to the flat front, where nothing better is known [m]."""
 
 
-class PredictedWorld:
+class PredictedWorld(World):
     """A world whose frames show where everything is now, as far as that follows from the commands sent.
 
     Every robot is driven on from where it was seen, under the commands that were in
@@ -51,9 +51,6 @@ class PredictedWorld:
         self._sent: deque[tuple[float, Mapping[RobotId, RobotCommand]]] = deque(maxlen=64)
         self._missed: dict[RobotId, tuple[RobotState, float]] = {}
         self._now = 0.0
-
-    shows_truth = False
-    """Whether :meth:`observe` returns what :meth:`truth` does."""
 
     def reset(self, placement: Placement, seed: int) -> None:
         """See :meth:`robobt.world.World.reset`."""

@@ -23,11 +23,37 @@ class Placement:
     ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
 
+class Snapshots(Protocol):
+    """A world's numbers as they lie in memory, for records.
+
+    Taking a frame apart number by number costs many times as much.
+    """
+
+    @property
+    def robots(self) -> Sequence[RobotId]:
+        """The robots, all of them always on the field, in the order of the numbers."""
+
+    def snapshot(self) -> bytes:
+        """Return the true state.
+
+        x, y, vx, vy of the ball [m, m/s], x, y, heading, vx, vy, omega of each robot
+        [m, rad, m/s, rad/s], all float64, and one byte a robot: whether it feels the ball.
+        """
+
+    def sent(self) -> bytes | None:
+        """Return the commands of the last ``act``, None where not all of them may have been taken down.
+
+        Of each robot vx, vy [m/s], omega [rad/s], kick speed [m/s], whether the kick waits
+        for contact and whether the dribbler turns, all float64.
+        """
+
+
 @runtime_checkable
 class World(Protocol):
     """A field that can be set up, looked at and acted upon.
 
-    One control tick is one ``observe`` followed by one ``act``.
+    One control tick is one ``observe`` followed by one ``act``. Worlds inherit from
+    this class, which has the optional members' defaults.
     """
 
     def reset(self, placement: Placement, seed: int) -> None:
@@ -39,10 +65,10 @@ class World(Protocol):
         """
 
     def observe(self) -> Frame:
-        """What the cameras and sensors report, seen from blue's side."""
+        """Return what the cameras and sensors report, seen from blue's side."""
 
     def truth(self) -> Frame:
-        """The best knowledge of what really is, for referees and records, seen from blue's side."""
+        """Return the best knowledge of the real state, for referees and records, seen from blue's side."""
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send one command a robot and let one control period pass.
@@ -53,26 +79,12 @@ class World(Protocol):
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest (the referee's hand), in world coordinates [m]."""
 
-
-@runtime_checkable
-class Snapshots(Protocol):
-    """What a world may offer besides: its numbers as they lie in memory, for records.
-
-    Taking a frame apart number by number costs many times as much.
-    """
+    @property
+    def shows_truth(self) -> bool:
+        """Whether :meth:`observe` always returns what :meth:`truth` does."""
+        return False
 
     @property
-    def robots(self) -> Sequence[RobotId]:
-        """The robots, all of them always on the field, in the order of the numbers."""
-
-    def snapshot(self) -> bytes:
-        """What ``truth`` says: x, y, vx, vy of the ball [m, m/s], x, y, heading, vx, vy, omega of
-        each robot [m, rad, m/s, rad/s], all float64, and one byte a robot: whether it feels the ball.
-        """
-
-    def sent(self) -> bytes | None:
-        """The commands of the last ``act``, None where not all of them may have been taken down.
-
-        Of each robot vx, vy [m/s], omega [rad/s], kick speed [m/s], whether the kick waits
-        for contact and whether the dribbler turns, all float64.
-        """
+    def snapshots(self) -> Snapshots | None:
+        """The world's numbers in memory, None where it does not offer them."""
+        return None

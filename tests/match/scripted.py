@@ -10,7 +10,7 @@ from robobt.match import Scenario
 from robobt.plays import PLAYS
 from robobt.skills.base import Skill
 from robobt.tree import Behaviour, Status
-from robobt.world import BallState, Frame, Placement, RobotCommand, RobotId, RobotState, Team
+from robobt.world import BallState, Frame, Placement, RobotCommand, RobotId, RobotState, Team, World
 from robobt.world.geometry import wrap_angle
 
 MOUTH = 0.1
@@ -72,7 +72,7 @@ if "scripted" not in PLAYS:
     PLAYS.register("scripted")(_scripted)
 
 
-class PlainWorld:
+class PlainWorld(World):
     """Robots that do what they are told at once and a ball that rolls without friction."""
 
     def __init__(self, scenario: Scenario) -> None:

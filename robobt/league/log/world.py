@@ -17,7 +17,7 @@ from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.protocol import Placement
+from robobt.world.protocol import Placement, World
 from robobt.world.state import BallState, Frame, RobotId
 
 _GAP = 2.0
@@ -26,7 +26,7 @@ _GAP = 2.0
 _VISION = (LogKind.VISION, LogKind.VISION_2010)
 
 
-class LogWorld:
+class LogWorld(World):
     """Plays a log back: :class:`robobt.world.World` whose robots obey nobody.
 
     Frames come from the log's vision through the filter, or from its tracked

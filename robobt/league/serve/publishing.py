@@ -26,7 +26,7 @@ _GEOMETRY_EVERY = 60
 """Frames from one geometry packet to the next."""
 
 
-class PublishedWorld:
+class PublishedWorld(World):
     """Another world, in real time and told to everybody: vision, tracked frames and referee messages.
 
     Args:

@@ -37,7 +37,7 @@ from robobt.tree.recording import Look, TreeWatch, node_paths
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import GameState, Team
 from robobt.world.geometry import FloatArray
-from robobt.world.protocol import Snapshots
+from robobt.world.protocol import World
 from robobt.world.state import Frame, RobotId
 
 _FLUSH_PERIOD = 1.0
@@ -70,7 +70,7 @@ class Recorder:
         header: RecordingHeader,
         runners: Mapping[RobotId, TreeRunner] | None = None,
         stores: Mapping[RobotId, Store] | None = None,
-        world: object = None,
+        world: World | None = None,
     ) -> None:
         self.path = Path(path)
         runners = {} if runners is None else runners
@@ -87,7 +87,7 @@ class Recorder:
         self._nothing = [0.0] * (SENT * len(robots))
         self._pack_poses = Struct(f"={len(self._nowhere)}d").pack
         self._pack_sent = Struct(f"={len(self._nothing)}d").pack
-        self._world = world if isinstance(world, Snapshots) else None
+        self._world = None if world is None else world.snapshots
         order = () if self._world is None else self._world.robots
         self._snapshot = Snapshot(order, [robot.id for robot in robots])
         self._crowd = len(order)

@@ -27,7 +27,7 @@ _OUTCOMES = {
 }
 
 
-class WatchedWorld:
+class WatchedWorld(World):
     """Passes everything on to a world and keeps the last shot of one blue robot.
 
     Args:
