@@ -94,7 +94,7 @@ def serve(
     from robobt.league.serve.serving import served_line_up, served_scenario
     from robobt.league.wire.endpoints import Endpoints, parse_endpoint
     from robobt.match import load_scenario
-    from robobt.match.referee.referee import RefereeSettings
+    from robobt.match.referee.settings import RefereeSettings
     from robobt.world import FIELDS
 
     rules = RefereeSettings() if referee else None

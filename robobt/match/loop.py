@@ -14,7 +14,8 @@ import numpy as np
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.problems import one_line
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
-from robobt.match.referee.referee import Referee, RefereeEvent
+from robobt.match.referee.events import RefereeEvent
+from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult, RobotResult
 from robobt.match.scenario.scenario import Scenario

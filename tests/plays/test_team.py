@@ -10,7 +10,7 @@ import pytest
 
 from robobt.match import load_scenario
 from robobt.match.loop import Match
-from robobt.match.referee.referee import RefereeSettings
+from robobt.match.referee.settings import RefereeSettings
 from robobt.plays import defender, field_player, keeper
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner

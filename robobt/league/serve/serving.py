@@ -14,7 +14,8 @@ from robobt.league.serve.server import SimServer
 from robobt.league.wire.endpoints import Endpoint, Endpoints
 from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.sockets import LOOPBACK, Sender
-from robobt.match.referee.referee import Referee, RefereeSettings
+from robobt.match.referee.referee import Referee
+from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import REALISM, SimSettings, preset, settings_from
 from robobt.world.field import FieldGeometry

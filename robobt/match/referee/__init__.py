@@ -1,1 +1,1 @@
-"""The referee and the end conditions of a trial."""
+"""The referee: its settings, what it reports, restarts, fouls and the state of the game."""

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
 from robobt.match.problems import FieldError, first_problem, message_of, one_line
-from robobt.match.referee.referee import RefereeSettings
+from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_starts
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
 from robobt.match.yaml_reader import YamlError, read_yaml

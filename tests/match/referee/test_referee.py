@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.match.referee.referee import EventKind, Referee, RefereeSettings
-from robobt.match.restarts import penalty_mark
+from robobt.match.referee.events import EventKind
+from robobt.match.referee.referee import Referee
+from robobt.match.referee.restarts import penalty
+from robobt.match.referee.settings import RefereeSettings
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
@@ -238,8 +240,8 @@ def test_a_touch_on_the_way_makes_a_long_kick_no_aimless_one(story: Story) -> No
 
 @pytest.mark.parametrize(("field", "to_goal"), [(DIVISION_A, 8.0), (DIVISION_B, 6.0)], ids=["a", "b"])
 def test_the_penalty_mark_is_where_the_rules_put_it(field: FieldGeometry, to_goal: float) -> None:
-    assert penalty_mark(field, Team.BLUE) == pytest.approx((field.half_length - to_goal, 0.0))
-    assert penalty_mark(field, Team.YELLOW) == pytest.approx((to_goal - field.half_length, 0.0))
+    assert penalty(field, Team.BLUE).spot == pytest.approx((field.half_length - to_goal, 0.0))
+    assert penalty(field, Team.YELLOW).spot == pytest.approx((to_goal - field.half_length, 0.0))
 
 
 # Restarts.

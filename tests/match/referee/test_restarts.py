@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.match.restarts import corner_spot, free_kick_spot, goal_kick_spot, penalty_mark
+from robobt.match.referee.restarts import corner_kick, free_kick_spot, goal_kick, penalty
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Team
 
 
@@ -32,11 +32,11 @@ def test_on_a_narrow_field_a_free_kick_moves_out_before_the_area() -> None:
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_a_ball_over_a_goal_line_comes_back_near_the_corner_where_it_left(side: float) -> None:
     y = side * (DIVISION_B.half_width - 0.2)
-    assert corner_spot(DIVISION_B, Team.YELLOW, side) == pytest.approx((DIVISION_B.half_length - 0.2, y))
-    assert goal_kick_spot(DIVISION_B, Team.YELLOW, side) == pytest.approx((DIVISION_B.half_length - 1.0, y))
-    assert goal_kick_spot(DIVISION_B, Team.BLUE, side) == pytest.approx((1.0 - DIVISION_B.half_length, y))
+    assert corner_kick(DIVISION_B, Team.BLUE, side).spot == pytest.approx((DIVISION_B.half_length - 0.2, y))
+    assert goal_kick(DIVISION_B, Team.YELLOW, side).spot == pytest.approx((DIVISION_B.half_length - 1.0, y))
+    assert goal_kick(DIVISION_B, Team.BLUE, side).spot == pytest.approx((1.0 - DIVISION_B.half_length, y))
 
 
 def test_a_penalty_is_taken_six_metres_from_the_goal_of_nine() -> None:
-    assert penalty_mark(DIVISION_B, Team.BLUE) == pytest.approx((DIVISION_B.half_length - 6.0, 0.0))
-    assert penalty_mark(DIVISION_A, Team.YELLOW) == pytest.approx((8.0 - DIVISION_A.half_length, 0.0))
+    assert penalty(DIVISION_B, Team.BLUE).spot == pytest.approx((DIVISION_B.half_length - 6.0, 0.0))
+    assert penalty(DIVISION_A, Team.YELLOW).spot == pytest.approx((8.0 - DIVISION_A.half_length, 0.0))
