@@ -1,7 +1,7 @@
 """A small vocabulary for tests that play: what eventually happens, what always holds.
 
 trial = Trial({blue(1): my_tree()}, {blue(1): (-1, 0, 0)}, ball=(0, 0))
-trial.run(5.0, eventually("the ball is in the goal", ball_in_their_goal),
+trial.run(5.0, eventually("the ball is in the goal", goal_for_us()),
                always("inside the field", inside_the_field))
 """
 
@@ -25,6 +25,8 @@ from robobt.world import (
     RobotLimits,
     Team,
 )
+from robobt.world.geometry import Point
+from robobt.world.rules import scorer
 
 Pose = tuple[float, float, float]
 Predicate = Callable[[Frame], bool]
@@ -62,13 +64,23 @@ def yellow(number: int) -> RobotId:
     return RobotId(Team.YELLOW, number)
 
 
-def ball_in_their_goal(frame: Frame) -> bool:
-    """The ball is fully over the attacked goal's line, between the posts."""
-    return frame.ball.x > frame.field.half_length + 0.0215 and abs(frame.ball.y) < frame.field.goal_width / 2
+def goal_for_us() -> Predicate:
+    """Blue scores between two frames that this one predicate is asked about in turn."""
+    return _goal_for(Team.BLUE)
 
 
-def ball_in_our_goal(frame: Frame) -> bool:
-    return ball_in_their_goal(frame.mirrored())
+def goal_for_them() -> Predicate:
+    return _goal_for(Team.YELLOW)
+
+
+def _goal_for(team: Team) -> Predicate:
+    seen: list[Point] = []
+
+    def scores(frame: Frame) -> bool:
+        seen.append(frame.ball.position)
+        return scorer(frame.field, seen[-2:][0], seen[-1]) is team
+
+    return scores
 
 
 def inside_the_field(frame: Frame) -> bool:

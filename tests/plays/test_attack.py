@@ -9,9 +9,9 @@ from robobt.world import Frame
 from tests.simulation import (
     Trial,
     always,
-    ball_in_their_goal,
     blue,
     eventually,
+    goal_for_us,
     inside_the_field,
     yellow,
 )
@@ -66,7 +66,7 @@ def test_it_scores_in_an_empty_goal(kick: str) -> None:
     tree = attack_main(kick=kick)  # type: ignore[arg-type]
     Trial({blue(0): tree}, {blue(0): (-1.0, 1.0, 0.0)}, ball=(0.5, 0.0), settings="robobulls").run(
         10.0,
-        eventually("the ball is in the goal", ball_in_their_goal),
+        eventually("the ball is in the goal", goal_for_us()),
         always("inside the field", inside_the_field),
     )
 
@@ -75,7 +75,7 @@ def test_it_finds_its_way_round_a_defender() -> None:
     poses = {blue(0): (0.0, 0.0, 0.0), yellow(0): (1.0, 0.0, pi)}
     Trial({blue(0): attack_main(max_distance=3.0)}, poses, ball=(0.1, 0.0)).run(
         12.0,
-        eventually("the ball is in the goal", ball_in_their_goal),
+        eventually("the ball is in the goal", goal_for_us()),
         always("inside the field", inside_the_field),
     )
 

@@ -4,7 +4,7 @@ from robobt.experiments.deployed import deployed_scenario
 from robobt.match import run_trials, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import sim_world
-from tests.simulation import Trial, ball_in_their_goal, blue, eventually
+from tests.simulation import Trial, blue, eventually, goal_for_us
 
 
 def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
@@ -25,7 +25,7 @@ def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
     from robobt.plays import PLAYS
 
     trial = Trial({blue(0): PLAYS[play](max_distance=3.5)}, {blue(0): (0.0, 0.0, 0.0)}, ball=(1.0, 0.8))
-    trial.run(12.0, eventually("the ball is in the goal", ball_in_their_goal))
+    trial.run(12.0, eventually("the ball is in the goal", goal_for_us()))
 
 
 def test_without_patience_it_takes_what_there_is():

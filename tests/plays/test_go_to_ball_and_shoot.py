@@ -5,7 +5,7 @@ from typing import Literal
 import pytest
 
 from robobt.plays import go_to_ball_and_shoot
-from tests.simulation import Trial, always, ball_in_their_goal, blue, eventually, inside_the_field
+from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
 
 Style = Literal["default", "robobulls"]
 START = (-3.9, 0.0, 0.0)
@@ -17,7 +17,7 @@ def benchmark(ball: tuple[float, float], style: Style) -> Trial:
     trial = Trial({blue(0): tree}, {blue(0): START}, ball, "robobulls", period=0.03)
     trial.run(
         10.0,
-        eventually("the ball is in the goal", ball_in_their_goal),
+        eventually("the ball is in the goal", goal_for_us()),
         always("inside the field", inside_the_field),
     )
     return trial

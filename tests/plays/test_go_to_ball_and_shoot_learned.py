@@ -14,7 +14,7 @@ from robobt.skills import GoToBall, KickToTarget, Shoot
 from robobt.tree import preorder
 from robobt.tree.interop import tree_differences
 from tests.models.made_models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
-from tests.simulation import Trial, always, ball_in_their_goal, blue, eventually, inside_the_field
+from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
 
 Kick = Literal["kick_to_target", "geometric", "ddpg"]
 SHOTS: tuple[Kick, ...] = ("kick_to_target", "geometric", "ddpg")
@@ -37,7 +37,7 @@ def test_every_combination_scores(policy: str, shoot: Kick) -> None:
     trial = Trial({blue(0): tree}, {blue(0): (-1.0, 0.0, 0.0)}, (1.0, 1.0), "robobulls", period=0.03)
     trial.run(
         10.0,
-        eventually("the ball is in the goal", ball_in_their_goal),
+        eventually("the ball is in the goal", goal_for_us()),
         always("inside the field", inside_the_field),
     )
 

@@ -12,9 +12,9 @@ from tests.simulation import (
     Pose,
     Trial,
     always,
-    ball_in_our_goal,
     blue,
     eventually,
+    goal_for_them,
     inside_the_field,
     never,
     yellow,
@@ -57,7 +57,7 @@ def test_every_case_has_its_turn() -> None:
 @pytest.mark.parametrize("y", [-0.3, 0.0, 0.3])
 def test_it_saves_a_slow_shot(style: Style, y: float) -> None:
     playing((-1.0, 0.0, -2.5, y * 2.5 / 3.5), style).run(
-        4.0, never("the ball is in our goal", ball_in_our_goal), always("inside the field", inside_the_field)
+        4.0, never("the ball is in our goal", goal_for_them()), always("inside the field", inside_the_field)
     )
 
 
@@ -66,7 +66,7 @@ def test_it_clears_a_ball_that_rests_in_its_area(style: Style) -> None:
     playing((-3.9, 0.4), style).run(
         8.0,
         eventually("the ball is far away", lambda frame: frame.ball.x > -2.5),
-        never("the ball is in our goal", ball_in_our_goal),
+        never("the ball is in our goal", goal_for_them()),
     )
 
 
@@ -80,7 +80,7 @@ def test_it_brings_a_ball_on_the_edge_of_its_area_into_play_again() -> None:
     playing((-3.45, 0.3)).run(
         15.0,
         eventually("the ball is far away", lambda frame: frame.ball.x > -2.5),
-        never("the ball is in our goal", ball_in_our_goal),
+        never("the ball is in our goal", goal_for_them()),
     )
 
 

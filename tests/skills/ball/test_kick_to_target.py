@@ -10,7 +10,7 @@ from robobt.skills.store import Pass, Shot
 from robobt.tree import Status
 from robobt.world import Frame, KickTrigger
 from robobt.world.geometry import wrap_angle
-from tests.simulation import Trial, ball_in_their_goal, blue, eventually, inside_the_field, never, yellow
+from tests.simulation import Trial, blue, eventually, goal_for_us, inside_the_field, never, yellow
 from tests.skills.fixed_world import Alone, frame, held, pass_to, robot, shot_at
 
 GOAL = (4.5, 0.0)
@@ -135,7 +135,7 @@ def test_it_shoots_a_resting_ball_into_the_goal(preset: str, pose: tuple[float, 
     trial.stores[blue(0)].shot = shot_at(4.5, 0.2)
     assert kicked_ball_passes(trial, (4.5, 0.2)) < 2.0
     trial.run(0.1, eventually("the skill succeeds", lambda _: kick.status is Status.SUCCESS))
-    trial.run(2.0, eventually("the ball is in the goal", ball_in_their_goal))
+    trial.run(2.0, eventually("the ball is in the goal", goal_for_us()))
     assert len(trial.kicks) == 1
 
 
@@ -181,7 +181,7 @@ def test_it_keeps_off_the_wall_and_off_robots_on_its_way() -> None:
     )
     trial.run(
         4.0,
-        eventually("the ball is in the goal", ball_in_their_goal),
+        eventually("the ball is in the goal", goal_for_us()),
         never("outside the field", lambda frame: not inside_the_field(frame)),
         never(
             "it touches the opponent",
@@ -198,7 +198,7 @@ def test_robobulls_style_kicks_too_but_takes_its_time() -> None:
         trial.run(
             8.0,
             eventually("the skill succeeds", lambda _, kick=kick: kick.status is Status.SUCCESS),
-            eventually("the ball is in the goal", ball_in_their_goal),
+            eventually("the ball is in the goal", goal_for_us()),
         )
         times[style] = trial.kicks[0][0]
     assert times["default"] < 0.7 * times["robobulls"]

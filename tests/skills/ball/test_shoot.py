@@ -11,7 +11,7 @@ from robobt.skills.ball import shoot
 from robobt.tree import Status
 from robobt.world import KickTrigger, RobotCommand
 from tests.models.made_models import Aimed, Faulty, shoot_card, write_model
-from tests.simulation import Trial, always, ball_in_their_goal, blue, eventually, inside_the_field
+from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
 from tests.skills.fixed_world import HELD, Alone, frame, held, robot, shot_at
 
 
@@ -86,7 +86,7 @@ class TestEveryPolicy:
         trial = Trial({blue(0): tree}, {blue(0): (2.0, 0.5, heading)}, held(me), "robobulls", period=0.03)
         trial.run(
             6.0,
-            eventually("the ball is in the goal", ball_in_their_goal),
+            eventually("the ball is in the goal", goal_for_us()),
             always("inside the field", inside_the_field),
         )
 

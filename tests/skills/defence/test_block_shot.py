@@ -8,7 +8,7 @@ from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.skills.defence.block_shot import BlockShot
 from robobt.tree import Status
 from robobt.world import DIVISION_B, RobotLimits, RobotState
-from tests.simulation import Trial, ball_in_our_goal, blue, eventually
+from tests.simulation import Trial, blue, eventually, goal_for_them
 from tests.skills.fixed_world import Alone, frame, moved, robot
 
 TARGET = (-4.41, 0.3)
@@ -73,7 +73,7 @@ def test_a_robot_that_brakes_slowly_saves_by_diving_what_it_could_not_otherwise(
     )
     trial.stores[blue(0)].target = (-4.41, 0.35)
     trial.run(1.0)
-    assert any(ball_in_our_goal(frame) for frame in trial.frames) is not dive
+    assert any(map(goal_for_them(), trial.frames)) is not dive
 
 
 def test_with_time_enough_it_does_not_dive() -> None:
