@@ -3,27 +3,15 @@
 Importing this package enters every one of them in :data:`PLAYS`.
 """
 
-from robobt.plays.attack_expected import attack_expected
-from robobt.plays.attack_main import attack_main
-from robobt.plays.attack_nn import attack_nn
-from robobt.plays.attack_support import attack_support
-from robobt.plays.base import PLAYS, Play
-from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot
-from robobt.plays.goalkeeper import goalkeeper
-from robobt.plays.take_shot import take_shot
-from robobt.plays.team import defender, field_player, keeper
-
-__all__ = [
-    "PLAYS",
-    "Play",
-    "attack_expected",
-    "attack_main",
-    "attack_nn",
-    "attack_support",
-    "defender",
-    "field_player",
-    "go_to_ball_and_shoot",
-    "goalkeeper",
-    "keeper",
-    "take_shot",
-]
+from robobt.plays.attack_expected import attack_expected as attack_expected
+from robobt.plays.attack_main import attack_main as attack_main
+from robobt.plays.attack_nn import attack_nn as attack_nn
+from robobt.plays.attack_support import attack_support as attack_support
+from robobt.plays.base import PLAYS as PLAYS
+from robobt.plays.base import Play as Play
+from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball_and_shoot
+from robobt.plays.goalkeeper import goalkeeper as goalkeeper
+from robobt.plays.take_shot import take_shot as take_shot
+from robobt.plays.team import defender as defender
+from robobt.plays.team import field_player as field_player
+from robobt.plays.team import keeper as keeper

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable
 from pathlib import Path
-from statistics import median
 from time import process_time
 
 import numpy as np
@@ -88,4 +87,4 @@ def _measure(cases: dict[str, Callable[[], object]], rounds: int, calls: int) ->
             for _ in range(calls):
                 case()
             taken[name].append(1e6 * (process_time() - begin) / calls)
-    return {name: median(times) for name, times in taken.items()}
+    return {name: float(np.median(times)) for name, times in taken.items()}

@@ -15,10 +15,9 @@ from robobt.skills import SKILLS, Skill, Store
 
 @pytest.mark.parametrize("name", list(SKILLS))
 class TestEverySkill:
-    def test_is_exported_and_lives_in_a_file_of_its_own_name(self, name: str) -> None:
+    def test_is_imported_by_name_in_the_package_and_lives_in_a_file_of_its_own_name(self, name: str) -> None:
         cls = SKILLS[name]
         assert getattr(robobt.skills, name) is cls
-        assert name in robobt.skills.__all__
         assert cls.__module__.rpartition(".")[2] == snake_case(name)
 
     def test_is_made_without_arguments_and_by_keywords_only(self, name: str) -> None:
@@ -42,10 +41,10 @@ class TestEverySkill:
         assert entries.issuperset(SKILLS[name].writes)
 
 
-def test_every_skill_in_the_room_is_entered() -> None:
+def test_every_skill_below_the_package_is_entered() -> None:
     found: set[type[Skill]] = set()
-    for module in pkgutil.iter_modules(robobt.skills.__path__):
-        contents = vars(import_module(f"robobt.skills.{module.name}")).values()
+    for module in pkgutil.walk_packages(robobt.skills.__path__, "robobt.skills."):
+        contents = vars(import_module(module.name)).values()
         found |= {value for value in contents if isinstance(value, type) and issubclass(value, Skill)}
     bases = {base for cls in found for base in cls.__mro__[1:]}
     assert {cls.__name__ for cls in found - bases} == set(SKILLS)
