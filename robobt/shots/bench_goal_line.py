@@ -49,7 +49,7 @@ def bench_goal_line(model: str = "shot_nn", rounds: int = 30) -> GoalLineFigures
     me, points = frame.own[0], goal_candidates(frame.field)
     rater = NNFiltered(model=model)
     ask = shot_predictor(model, SHOT).single()
-    features = shot_features(me.position, points[:, None, :], obstacles(frame, me)[None, :, :])
+    features = shot_features(np.array(me.position), points, obstacles(frame, me))
     rows = list(features.reshape(-1, SHOT.size).astype(np.float32))
     at_once = _median(lambda: rater.chances(frame, me, points), rounds, 10)
     looped = _median(lambda: [ask(row) for row in rows], rounds, 1)

@@ -1,9 +1,9 @@
-"""The observation vectors of the learned skills, each defined once.
+"""The observation vectors of the learned skills, each defined once and compiled.
 
-Training, the skill at run time and the shot collector all call these functions.
-Each works on arrays with any leading batch axes; the ``..._of`` wrappers take a
-frame. A model card names the observation with its version: change what a vector
-means and its version has to change with it.
+What a vector holds is written as a function of one robot, one ball, …, that fills one
+row; training calls it in a compiled loop over many arenas, a skill for its own robot
+through the ``..._of`` function that takes a frame. A model card names the observation
+with its version: change what a vector means and its version has to change with it.
 
 Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
 Eq. 4 and the state definitions of Go-To-Ball and Shoot-Towards-Goal, in the
@@ -12,15 +12,17 @@ form of the authors' published code; lengths here are metres.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import Any
+from math import atan2, cos, hypot, sin
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from robobt.world.geometry import FloatArray, wrap_angles
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.state import Frame, RobotState
+
+Row = FloatArray | tuple[float, ...]
+"""Numbers in a fixed order: a robot's x, y, heading, vx, vy, omega or a ball's x, y, vx, vy."""
 
 
 @dataclass(frozen=True)
@@ -37,48 +39,26 @@ class ObservationSpec:
         return len(self.entries)
 
 
-SHOT = ObservationSpec(
-    "shot",
-    1,
-    (
-        ("angle", "rad"),
-        ("target_distance", "m"),
-        ("opponent_distance", "m"),
-        ("along", "m"),
-        ("across", "m"),
-    ),
-)
+def _spec(name: str, version: int, **units: str) -> ObservationSpec:
+    return ObservationSpec(name, version, tuple(units.items()))
+
+
+SHOT = _spec("shot", 1, angle="rad", target_distance="m", opponent_distance="m", along="m", across="m")
 """Eq. 4: one opponent beside the line shooter -> target."""
 
-GO_TO_BALL = ObservationSpec(
-    "go_to_ball",
-    1,
-    (
-        ("sin_ball", "1"),
-        ("cos_ball", "1"),
-        ("ball_distance", "m"),
-        ("vx", "m/s"),
-        ("vy", "m/s"),
-        ("omega", "rad/s"),
-    ),
+GO_TO_BALL = _spec(
+    "go_to_ball", 1, sin_ball="1", cos_ball="1", ball_distance="m", vx="m/s", vy="m/s", omega="rad/s"
 )
 """The ball and the robot's velocity, in the robot's frame."""
 
-SHOOT = ObservationSpec(
+SHOOT = _spec(
     "shoot",
     1,
-    (
-        ("ball_x", "m"),
-        ("ball_y", "m"),
-        ("ball_vx", "m/s"),
-        ("ball_vy", "m/s"),
-        ("omega", "rad/s"),
-        ("goal_distance", "m"),
-        ("sin_upper_post", "1"),
-        ("cos_upper_post", "1"),
-        ("sin_lower_post", "1"),
-        ("cos_lower_post", "1"),
-    ),
+    **dict.fromkeys(("ball_x", "ball_y"), "m"),
+    **dict.fromkeys(("ball_vx", "ball_vy"), "m/s"),
+    omega="rad/s",
+    goal_distance="m",
+    **dict.fromkeys(("sin_upper_post", "cos_upper_post", "sin_lower_post", "cos_lower_post"), "1"),
 )
 """The ball and the posts of the attacked goal, in the robot's frame."""
 
@@ -88,62 +68,189 @@ SCENE_OPPONENTS = 6
 ABSENT = (-99.0, 99.0, 0.0, 0.0)
 """An empty place in a shot's scene: a robot far behind the shooter."""
 
-SHOT_SCENE = ObservationSpec(
+SHOT_SCENE = _spec(
     "shot_scene",
     1,
-    (
-        ("target_distance", "m"),
-        ("target_angle", "rad"),
-        ("target_offset", "m"),
-        ("turn", "rad"),
-        ("shooter_v_along", "m/s"),
-        ("shooter_v_across", "m/s"),
-        ("ball_along", "m"),
-        ("ball_across", "m"),
-        ("ball_v_along", "m/s"),
-        ("ball_v_across", "m/s"),
-        *(
-            (f"opponent_{number}_{entry}", unit)
-            for number in range(SCENE_OPPONENTS)
-            for entry, unit in (("along", "m"), ("across", "m"), ("v_along", "m/s"), ("v_across", "m/s"))
-        ),
-    ),
+    target_distance="m",
+    target_angle="rad",
+    target_offset="m",
+    turn="rad",
+    **dict.fromkeys(("shooter_v_along", "shooter_v_across"), "m/s"),
+    **dict.fromkeys(("ball_along", "ball_across"), "m"),
+    **dict.fromkeys(("ball_v_along", "ball_v_across"), "m/s"),
+    **{
+        f"opponent_{number}_{entry}": unit
+        for number in range(SCENE_OPPONENTS)
+        for entry, unit in (("along", "m"), ("across", "m"), ("v_along", "m/s"), ("v_across", "m/s"))
+    },
 )
 """All that moves, seen along the line shooter -> target, and the shot's place on the field."""
 
 SCENE_HEAD = SHOT_SCENE.size - 4 * SCENE_OPPONENTS
 """Entries of a shot's scene before its opponents, which have four each."""
 
+_ABSENT = np.array(ABSENT)
+
 OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, SHOOT)}
 
 
-def shot_features(shooter: ArrayLike, target: ArrayLike, opponent: ArrayLike) -> FloatArray:
-    """Eq. 4 of the paper.
+_wrap_angle = compiled(wrap_angle)
+
+
+@compiled
+def _observe_go_to_ball(robot: Row, ball: Row, row: FloatArray) -> None:
+    c, s = cos(robot[2]), sin(robot[2])
+    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
+    distance = hypot(dx, dy)
+    if distance > 0.0:
+        row[0] = (c * dy - s * dx) / distance
+        row[1] = (c * dx + s * dy) / distance
+    else:
+        # A ball at the robot's very centre counts as straight ahead.
+        row[0] = 0.0
+        row[1] = 1.0
+    row[2] = distance
+    row[3] = c * robot[3] + s * robot[4]
+    row[4] = c * robot[4] - s * robot[3]
+    row[5] = robot[5]
+
+
+@compiled
+def _observe_shoot(robot: Row, ball: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
+    c, s = cos(robot[2]), sin(robot[2])
+    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
+    to_upper = atan2(post_y - robot[1], goal_x - robot[0]) - robot[2]
+    to_lower = atan2(-post_y - robot[1], goal_x - robot[0]) - robot[2]
+    row[0] = c * dx + s * dy
+    row[1] = c * dy - s * dx
+    row[2] = c * ball[2] + s * ball[3]
+    row[3] = c * ball[3] - s * ball[2]
+    row[4] = robot[5]
+    row[5] = hypot(goal_x - robot[0], robot[1])
+    row[6] = sin(to_upper)
+    row[7] = cos(to_upper)
+    row[8] = sin(to_lower)
+    row[9] = cos(to_lower)
+
+
+@compiled
+def _observe_shot(shooter: FloatArray, target: FloatArray, opponent: FloatArray, row: FloatArray) -> None:
+    dx, dy = target[0] - shooter[0], target[1] - shooter[1]
+    length = hypot(dx, dy)
+    c, s = (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
+    ox, oy = opponent[0] - shooter[0], opponent[1] - shooter[1]
+    along, across = c * ox + s * oy, abs(c * oy - s * ox)
+    row[0] = atan2(across, along)
+    row[1] = length
+    row[2] = hypot(along, across)
+    row[3] = along
+    row[4] = across
+
+
+@compiled
+def _observe_scene(
+    shooter: FloatArray, ball: FloatArray, target: FloatArray, opponents: FloatArray, row: FloatArray
+) -> None:
+    dx, dy = target[0] - shooter[0], target[1] - shooter[1]
+    length, angle = hypot(dx, dy), atan2(dy, dx)
+    c, s = cos(angle), sin(angle)
+    bx, by = ball[0] - shooter[0], ball[1] - shooter[1]
+    row[0] = length
+    row[1] = angle
+    row[2] = abs(target[1])
+    row[3] = _wrap_angle(angle - shooter[2])
+    row[4] = c * shooter[3] + s * shooter[4]
+    row[5] = c * shooter[4] - s * shooter[3]
+    row[6] = c * bx + s * by
+    row[7] = c * by - s * bx
+    row[8] = c * ball[2] + s * ball[3]
+    row[9] = c * ball[3] - s * ball[2]
+    places = row[SCENE_HEAD:].reshape(SCENE_OPPONENTS, 4)
+    gaps = np.full(SCENE_OPPONENTS, np.inf)
+    places[:] = _ABSENT
+    for i in range(len(opponents)):
+        other = opponents[i]
+        ox, oy = other[0] - shooter[0], other[1] - shooter[1]
+        along, across = c * ox + s * oy, c * oy - s * ox
+        gap = hypot(along - min(max(along, 0.0), length), across)
+        # Insert it behind those that are as near, and move the farther ones on.
+        place = SCENE_OPPONENTS
+        while place > 0 and gap < gaps[place - 1]:
+            place -= 1
+            if place + 1 < SCENE_OPPONENTS:
+                gaps[place + 1] = gaps[place]
+                places[place + 1] = places[place]
+        if place < SCENE_OPPONENTS:
+            gaps[place] = gap
+            places[place, 0] = along
+            places[place, 1] = across
+            places[place, 2] = c * other[3] + s * other[4]
+            places[place, 3] = c * other[4] - s * other[3]
+
+
+@compiled
+def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
+    """Compute the Go-To-Ball states of many arenas.
+
+    Args:
+        robots: (n, 6) x, y, heading, vx, vy, omega in field coordinates.
+        balls: (n, >=2) x, y.
+
+    Returns:
+        (n, 6): :data:`GO_TO_BALL`.
+    """
+    rows = np.empty((len(robots), 6))
+    for i in range(len(robots)):
+        _observe_go_to_ball(robots[i], balls[i], rows[i])
+    return rows
+
+
+@compiled
+def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: float) -> FloatArray:
+    """Compute the Shoot states of many arenas.
+
+    Args:
+        robots: (n, 6) x, y, heading, vx, vy, omega in field coordinates.
+        balls: (n, 4) x, y, vx, vy in field coordinates.
+        goal_x: where the attacked goal's line is [m].
+        post_y: the left post's distance from the field's long axis; the right one's is the same [m].
+
+    Returns:
+        (n, 10): :data:`SHOOT`.
+    """
+    rows = np.empty((len(robots), 10))
+    for i in range(len(robots)):
+        _observe_shoot(robots[i], balls[i], goal_x, post_y, rows[i])
+    return rows
+
+
+@compiled
+def shot_features(shooter: FloatArray, targets: FloatArray, opponents: FloatArray) -> FloatArray:
+    """Compute Eq. 4 of the paper for every target point and every opponent.
 
     The frame has its origin at the shooter and its first axis along shooter ->
     target (not along the robot's heading).
 
     Args:
-        shooter, target, opponent: (..., 2) positions [m]; axes broadcast.
+        shooter: (2,) position [m].
+        targets: (T, 2) points [m].
+        opponents: (K, 2) positions [m].
 
     Returns:
-        (..., 5): :data:`SHOT`.
+        (T, K, 5): :data:`SHOT`.
     """
-    origin = np.asarray(shooter, dtype=np.float64)
-    to_target = np.asarray(target, dtype=np.float64) - origin
-    to_opponent = np.asarray(opponent, dtype=np.float64) - origin
-    length = np.hypot(to_target[..., 0], to_target[..., 1])
-    safe = np.where(length > 0.0, length, 1.0)
-    cos = np.where(length > 0.0, to_target[..., 0] / safe, 1.0)
-    sin = to_target[..., 1] / safe
-    along = cos * to_opponent[..., 0] + sin * to_opponent[..., 1]
-    across = np.abs(cos * to_opponent[..., 1] - sin * to_opponent[..., 0])
-    parts = np.broadcast_arrays(np.arctan2(across, along), length, np.hypot(along, across), along, across)
-    return np.stack(parts, axis=-1)
+    rows = np.empty((len(targets), len(opponents), 5))
+    for i in range(len(targets)):
+        for k in range(len(opponents)):
+            _observe_shot(shooter, targets[i], opponents[k], rows[i, k])
+    return rows
 
 
-def shot_scene(shooter: ArrayLike, ball: ArrayLike, target: ArrayLike, opponents: ArrayLike) -> FloatArray:
-    """Everyone's state in the frame of a shot.
+@compiled
+def shot_scene(
+    shooters: FloatArray, balls: FloatArray, targets: FloatArray, opponents: FloatArray
+) -> FloatArray:
+    """Compute everyone's state in the frame of each of many shots.
 
     The frame is that of :func:`shot_features`; ``across`` is positive to the left.
     ``target_angle`` is the direction shooter -> target on the field,
@@ -151,208 +258,43 @@ def shot_scene(shooter: ArrayLike, ball: ArrayLike, target: ArrayLike, opponents
     the shooter's heading lacks to that direction.
 
     Args:
-        shooter: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
-        ball: (..., 4) x, y, vx, vy in field coordinates.
-        target: (..., 2) point aimed at.
-        opponents: (..., K, 6) like the shooter. Of more than :data:`SCENE_OPPONENTS`
+        shooters: (n, 6) x, y, heading, vx, vy, omega in field coordinates.
+        balls: (n, 4) x, y, vx, vy in field coordinates.
+        targets: (n, 2) points aimed at.
+        opponents: (n, K, 6) like the shooters. Of more than :data:`SCENE_OPPONENTS`
             those nearest to the segment shooter -> target count.
 
     Returns:
-        (..., 34): :data:`SHOT_SCENE`, the nearest opponent first, then the others by
+        (n, 34): :data:`SHOT_SCENE`, the nearest opponent first, then the others by
         their distance from the segment; places that are left are :data:`ABSENT`.
     """
-    r, b = np.asarray(shooter, dtype=np.float64), np.asarray(ball, dtype=np.float64)
-    t, o = np.asarray(target, dtype=np.float64), np.asarray(opponents, dtype=np.float64)
-    dx, dy = t[..., 0] - r[..., 0], t[..., 1] - r[..., 1]
-    length, angle = np.hypot(dx, dy), np.arctan2(dy, dx)
-    cos, sin = np.cos(angle), np.sin(angle)
-
-    def along(x: FloatArray, y: FloatArray) -> FloatArray:
-        return np.asarray(cos * x + sin * y)
-
-    def across(x: FloatArray, y: FloatArray) -> FloatArray:
-        return np.asarray(cos * y - sin * x)
-
-    bx, by = b[..., 0] - r[..., 0], b[..., 1] - r[..., 1]
-    head = (
-        length,
-        angle,
-        np.abs(t[..., 1]),
-        wrap_angles(angle - r[..., 2]),
-        along(r[..., 3], r[..., 4]),
-        across(r[..., 3], r[..., 4]),
-        along(bx, by),
-        across(bx, by),
-        along(b[..., 2], b[..., 3]),
-        across(b[..., 2], b[..., 3]),
-    )
-    cos, sin = cos[..., None], sin[..., None]
-    ox, oy = o[..., 0] - r[..., 0, None], o[..., 1] - r[..., 1, None]
-    entries = (along(ox, oy), across(ox, oy), along(o[..., 3], o[..., 4]), across(o[..., 3], o[..., 4]))
-    block = np.stack(np.broadcast_arrays(*entries), axis=-1)
-    beyond = block[..., 0] - np.clip(block[..., 0], 0.0, length[..., None])
-    order = np.argsort(np.hypot(beyond, block[..., 1]), axis=-1, kind="stable")[..., :SCENE_OPPONENTS]
-    block = np.take_along_axis(block, order[..., None], axis=-2)
-    lead = np.broadcast_shapes(block.shape[:-2], *(entry.shape for entry in head))
-    scene = np.empty((*lead, SHOT_SCENE.size))
-    for i, entry in enumerate(head):
-        scene[..., i] = entry
-    room = scene[..., SCENE_HEAD:].reshape(*lead, SCENE_OPPONENTS, 4)
-    room[:] = ABSENT
-    room[..., : block.shape[-2], :] = block
-    scene[..., SCENE_HEAD:] = room.reshape(*lead, -1)
-    return scene
-
-
-def go_to_ball_observation(robot: ArrayLike, ball: ArrayLike) -> FloatArray:
-    """State of the Go-To-Ball skill.
-
-    Args:
-        robot: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
-        ball: (..., >=2) x, y.
-
-    Returns:
-        (..., 6): :data:`GO_TO_BALL`.
-    """
-    r = np.asarray(robot, dtype=np.float64)
-    b = np.asarray(ball, dtype=np.float64)
-    parts = _go_to_ball(np, *_columns(r, 6), *_columns(b, 2))
-    return np.stack(np.broadcast_arrays(*parts), axis=-1)
-
-
-def shoot_observation(
-    robot: ArrayLike, ball: ArrayLike, upper_post: ArrayLike, lower_post: ArrayLike
-) -> FloatArray:
-    """State of the Shoot-Towards-Goal skill.
-
-    Args:
-        robot: (..., 6) x, y, heading, vx, vy, omega in field coordinates.
-        ball: (..., 4) x, y, vx, vy in field coordinates.
-        upper_post, lower_post: (..., 2) the attacked goal's posts (y > 0, y < 0).
-
-    Returns:
-        (..., 10): :data:`SHOOT`.
-    """
-    r = np.asarray(robot, dtype=np.float64)
-    b = np.asarray(ball, dtype=np.float64)
-    upper = np.asarray(upper_post, dtype=np.float64)
-    lower = np.asarray(lower_post, dtype=np.float64)
-    parts = _shoot(np, *_columns(r, 6), *_columns(b, 4), *_columns(upper, 2), *_columns(lower, 2))
-    return np.stack(np.broadcast_arrays(*parts), axis=-1)
-
-
-def ball_angle(robot: ArrayLike, ball: ArrayLike) -> FloatArray:
-    """Angle from the robot's heading to the ball in (-pi, pi] [rad]; shapes as above."""
-    r = np.asarray(robot, dtype=np.float64)
-    b = np.asarray(ball, dtype=np.float64)
-    return wrap_angles(np.arctan2(b[..., 1] - r[..., 1], b[..., 0] - r[..., 0]) - r[..., 2])
-
-
-def shot_features_of(frame: Frame, robot: RobotState, targets: ArrayLike) -> FloatArray:
-    """Eq. 4 for every target point and every opponent of a frame.
-
-    Args:
-        targets: (T, 2) points [m].
-
-    Returns:
-        (T, K, 5) for the frame's K opponents.
-    """
-    points = np.asarray(targets, dtype=np.float64)
-    opponents = np.array([other.position for other in frame.opponents], dtype=np.float64)
-    return shot_features(robot.position, points[:, None, :], opponents.reshape(1, -1, 2))
-
-
-def shot_scene_of(frame: Frame, robot: RobotState, targets: ArrayLike) -> FloatArray:
-    """The scene of a shot for every target point of a frame.
-
-    Args:
-        targets: (T, 2) points [m].
-
-    Returns:
-        (T, 34): :data:`SHOT_SCENE`.
-    """
-    ball = frame.ball
-    opponents = np.array([_kinematics(other) for other in frame.opponents], dtype=np.float64)
-    return shot_scene(
-        _kinematics(robot), (ball.x, ball.y, ball.vx, ball.vy), targets, opponents.reshape(-1, 6)
-    )
+    rows = np.empty((len(targets), SCENE_HEAD + 4 * SCENE_OPPONENTS))
+    for i in range(len(targets)):
+        _observe_scene(shooters[i], balls[i], targets[i], opponents[i], rows[i])
+    return rows
 
 
 def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:
-    """The Go-To-Ball state of one robot in a frame, (6,)."""
-    ball = frame.ball
-    return np.array(_go_to_ball(math, *_kinematics(robot), ball.x, ball.y))
+    """Compute the Go-To-Ball state of one robot in a frame, (6,)."""
+    row = np.empty(6)
+    _observe_go_to_ball(_kinematics(robot), _motion(frame), row)
+    return row
 
 
 def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
-    """The Shoot state of one robot in a frame, (10,)."""
-    ball, field = frame.ball, frame.field
-    goal, half_goal = field.half_length, field.goal_width / 2
-    robot_and_ball = (*_kinematics(robot), ball.x, ball.y, ball.vx, ball.vy)
-    return np.array(_shoot(math, *robot_and_ball, goal, half_goal, goal, -half_goal))
+    """Compute the Shoot state of one robot in a frame, (10,)."""
+    field, row = frame.field, np.empty(10)
+    _observe_shoot(_kinematics(robot), _motion(frame), field.half_length, field.goal_width / 2, row)
+    return row
 
 
-# The two states below take numbers with the functions of math, or arrays with those of numpy, which
-# for a single robot cost several times as much.
+# Whole numbers would make numba compile a version of their own.
 
 
-def _go_to_ball(
-    m: Any, x: Any, y: Any, heading: Any, vx: Any, vy: Any, omega: Any, ball_x: Any, ball_y: Any
-) -> tuple[Any, ...]:
-    cos, sin = m.cos(heading), m.sin(heading)
-    dx, dy = ball_x - x, ball_y - y
-    gap = m.hypot(dx, dy)
-    # A ball at the robot's very centre counts as straight ahead.
-    centred = gap == 0.0
-    safe = gap + centred
-    return (
-        (cos * dy - sin * dx) / safe,
-        (cos * dx + sin * dy) / safe + centred,
-        gap,
-        cos * vx + sin * vy,
-        cos * vy - sin * vx,
-        omega,
-    )
+def _kinematics(r: RobotState) -> Row:
+    return (float(r.x), float(r.y), float(r.heading), float(r.vx), float(r.vy), float(r.omega))
 
 
-def _shoot(
-    m: Any,
-    x: Any,
-    y: Any,
-    heading: Any,
-    _vx: Any,
-    _vy: Any,
-    omega: Any,
-    ball_x: Any,
-    ball_y: Any,
-    ball_vx: Any,
-    ball_vy: Any,
-    upper_x: Any,
-    upper_y: Any,
-    lower_x: Any,
-    lower_y: Any,
-) -> tuple[Any, ...]:
-    cos, sin = m.cos(heading), m.sin(heading)
-    dx, dy = ball_x - x, ball_y - y
-    to_upper = m.atan2(upper_y - y, upper_x - x) - heading
-    to_lower = m.atan2(lower_y - y, lower_x - x) - heading
-    return (
-        cos * dx + sin * dy,
-        cos * dy - sin * dx,
-        cos * ball_vx + sin * ball_vy,
-        cos * ball_vy - sin * ball_vx,
-        omega,
-        m.hypot((upper_x + lower_x) / 2.0 - x, (upper_y + lower_y) / 2.0 - y),
-        m.sin(to_upper),
-        m.cos(to_upper),
-        m.sin(to_lower),
-        m.cos(to_lower),
-    )
-
-
-def _columns(array: FloatArray, count: int) -> list[FloatArray]:
-    return [array[..., column] for column in range(count)]
-
-
-def _kinematics(robot: RobotState) -> tuple[float, float, float, float, float, float]:
-    return (robot.x, robot.y, robot.heading, robot.vx, robot.vy, robot.omega)
+def _motion(frame: Frame) -> Row:
+    ball = frame.ball
+    return (float(ball.x), float(ball.y), float(ball.vx), float(ball.vy))

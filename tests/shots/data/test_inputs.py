@@ -61,10 +61,10 @@ def test_the_papers_features_are_eq_4_in_millimetres():
     table = made_up_table(10)
     row = table.to_pylist()[3]
     eq4 = shot_features(
-        (row["robot_x"], row["robot_y"]),
-        (row["target_x"], row["target_y"]),
-        (row["opp_x_global"], row["opp_y_global"]),
-    )
+        np.array([row["robot_x"], row["robot_y"]]),
+        np.array([[row["target_x"], row["target_y"]]]),
+        np.array([[row["opp_x_global"], row["opp_y_global"]]]),
+    )[0, 0]
     ours = ShotFeatures("paper").fit_transform(shot_inputs(table))[3]
     assert ours == pytest.approx(eq4 * [1.0, 1e3, 1e3, 1e3, 1e3])
     np.testing.assert_allclose(author_inputs(table)[3], ours)

@@ -107,9 +107,11 @@ class ExpectedGoal(ShotRater):
         if gap < _HELD:
             ball[:, 0] = me.x + gap * np.cos(shooter[:, 2])
             ball[:, 1] = me.y + gap * np.sin(shooter[:, 2])
-        rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead])
+        rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead], dtype=np.float64)
         scenes = [
-            shot_scene(shooter, ball, points, rows[begin : begin + SCENE_OPPONENTS])
+            shot_scene(
+                shooter, ball, points, np.tile(rows[begin : begin + SCENE_OPPONENTS], (len(points), 1, 1))
+            )
             for begin in range(0, len(rows), SCENE_OPPONENTS)
         ]
         answers = shot_predictor(self.model, SHOT_SCENE)(np.concatenate(scenes))

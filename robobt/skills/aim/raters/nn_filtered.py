@@ -78,7 +78,7 @@ class NNFiltered(ShotRater):
         ahead = others[others[:, 0] >= me.x]
         if not len(ahead):
             return np.ones(len(points))
-        features = shot_features(me.position, points[:, None, :], ahead[None, :, :])
+        features = shot_features(np.array(me.position, dtype=np.float64), points, ahead)
         answers = shot_predictor(self.model, SHOT)(features.reshape(-1, SHOT.size))
         chances: FloatArray = answers.reshape(len(points), len(ahead)).min(axis=1)
         return chances
