@@ -8,12 +8,9 @@ Importing it makes the environments known to Gymnasium: ``GoToBall-v0`` and
 
 import gymnasium
 
-_MODULE = "robobt.learning.envs.gymnasium_envs"
-
-for _name in ("GoToBall", "ShootTowardsGoal"):
+for _name, _room in (("GoToBall", "go_to_ball"), ("ShootTowardsGoal", "shoot")):
+    _class = f"robobt.learning.envs.{_room}.env:{_name}"
     for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
         # The environments end their episodes themselves, and a second import must not warn.
         if _id not in gymnasium.registry:
-            gymnasium.register(
-                id=_id, entry_point=f"{_MODULE}:{_name}Env", vector_entry_point=f"{_MODULE}:{_name}VectorEnv"
-            )
+            gymnasium.register(id=_id, entry_point=f"{_class}Env", vector_entry_point=f"{_class}VectorEnv")

@@ -1,7 +1,7 @@
-"""What a learned policy's action in [-1, 1] tells the robot, written once.
+"""What a learned policy's action in [-1, 1] tells the robot.
 
 The environments that a policy is trained in and the skill that runs it scale,
-limit and read actions with these functions alone. A model card carries the
+limit and read actions with the functions here. A model card carries the
 :class:`ActionScaling` that its policy was trained with.
 
 Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
@@ -11,18 +11,14 @@ Go-To-Ball and Shoot-Towards-Goal, in the form of the authors' published code.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import hypot
+from math import hypot, isfinite
 from typing import Literal, Self
 
-import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.compiled import compiled, numbers_dtype
 from robobt.world.geometry import FloatArray
-
-COMMAND_COLUMNS = ("vx", "vy", "omega", "kick_speed", "on_contact", "dribbler")
-"""Columns of a command as an array: m/s, m/s, rad/s, m/s, 0 or 1, 0 or 1."""
 
 ACTION_ENTRIES: dict[str, tuple[str, ...]] = {
     "drive": ("vx", "vy", "omega"),
@@ -74,36 +70,48 @@ SHOOT_ACTION = ActionScaling(kind="turn_and_kick", max_turn=10.0, kick_speed=5.0
 """The paper's Shoot-Towards-Goal, with the dribbler on as in the authors' deployment."""
 
 
-def commands_of(actions: ArrayLike, scaling: ActionScaling) -> FloatArray:
-    """The commands that actions stand for.
+_SCALING = numbers_dtype(ActionScaling)
+
+
+@compiled
+def fill_commands(
+    actions: FloatArray, numbers: FloatArray, drive: bool, kick_factors: FloatArray, commands: FloatArray
+) -> bool:
+    """Fill the commands of many robots from their actions; return False where one is not finite.
 
     Args:
-        actions: (..., A) in [-1, 1], :attr:`ActionScaling.entries`; what lies
-            outside is clipped.
-        scaling: of the policy.
-
-    Returns:
-        (..., 6): :data:`COMMAND_COLUMNS`.
+        actions: (n, A) in [-1, 1], :attr:`ActionScaling.entries`; what lies outside is clipped.
+        numbers: of the :class:`ActionScaling`.
+        drive: whether the actions are of that kind.
+        kick_factors: (n,) by which the speed of each robot's kicks is multiplied.
+        commands: (n, 6) to be filled: vx, vy [m/s], omega [rad/s], kick speed [m/s], whether to
+            kick on contact, whether the dribbler turns.
     """
-    a = np.minimum(np.maximum(np.asarray(actions, dtype=np.float64), -1.0), 1.0)
-    commands = np.zeros((*a.shape[:-1], len(COMMAND_COLUMNS)))
-    if scaling.kind == "drive":
-        # A vector longer than 1 is shortened to 1.
-        norm = np.maximum(np.hypot(a[..., 0], a[..., 1]), 1.0)
-        commands[..., 0] = scaling.max_speed * a[..., 0] / norm
-        commands[..., 1] = scaling.max_speed * a[..., 1] / norm
-        commands[..., 2] = scaling.max_turn * a[..., 2]
-    else:
-        commands[..., 2] = scaling.max_turn * a[..., 0]
-        commands[..., 3] = np.where(a[..., 1] > 0.0, scaling.kick_speed, 0.0)
-    commands[..., 5] = float(scaling.dribbler)
-    return commands
+    scaling: ActionScaling = numbers.view(_SCALING)[0]
+    for i in range(len(actions)):
+        action, command = actions[i], commands[i]
+        if not isfinite(action.sum()):
+            return False
+        command[:] = 0.0
+        if drive:
+            x, y = min(max(action[0], -1.0), 1.0), min(max(action[1], -1.0), 1.0)
+            # A vector longer than 1 is shortened to 1.
+            norm = max(hypot(x, y), 1.0)
+            command[0] = scaling.max_speed * x / norm
+            command[1] = scaling.max_speed * y / norm
+            command[2] = scaling.max_turn * min(max(action[2], -1.0), 1.0)
+        else:
+            command[2] = scaling.max_turn * min(max(action[0], -1.0), 1.0)
+            if action[1] > 0.0:
+                command[3] = scaling.kick_speed * kick_factors[i]
+        command[5] = scaling.dribbler
+    return True
 
 
 def command_of(action: Iterable[float], scaling: ActionScaling) -> RobotCommand:
-    """The command that one action (A,) stands for; kicks fire at once or not at all.
+    """Return the command that one action (A,) stands for; kicks fire at once or not at all.
 
-    :func:`commands_of` for a single action, without arrays, which would take several times as long.
+    What :func:`fill_commands` does for many, to the last bit but one: the two round the norm differently.
     """
     entries = [min(max(float(entry), -1.0), 1.0) for entry in action]
     if scaling.kind == "drive":

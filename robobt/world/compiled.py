@@ -1,20 +1,41 @@
-"""The decorator of everything that numba compiles."""
+"""Compiling with numba: the decorator, and settings that compiled code can read."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import TypeVar, cast
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+from pydantic import BaseModel
 
+FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(function: Function) -> Function:
     """Compile on first use, and keep what was compiled where a folder can be written to."""
     try:
-        made = njit(cache=True)(function)
+        return cast(Function, njit(cache=True)(function))
     except RuntimeError:
         # A read-only installation, run by somebody without a home: compile anew each time.
-        made = njit(function)
-    return cast(Function, made)
+        return cast(Function, njit(function))
+
+
+def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
+    """Return the record of a settings model's numbers, as which compiled code reads :func:`numbers_of`.
+
+    ``numbers.view(DTYPE)[0]`` has the fields by name. Compiled functions take the plain array: numba needs
+    many times as long to look at the type of a record when it is called.
+    """
+    kinds = (bool, int, float, int | None, float | None)
+    return np.dtype([(name, "f8") for name, field in model.model_fields.items() if field.annotation in kinds])
+
+
+def numbers_of(settings: BaseModel) -> FloatArray:
+    """Return the numbers among a settings model's fields, (m,); None, for no limit, becomes infinity."""
+    names = numbers_dtype(type(settings)).names or ()
+    values = [getattr(settings, name) for name in names]
+    return np.array([inf if value is None else value for value in values], dtype=np.float64)

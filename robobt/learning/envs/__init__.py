@@ -7,28 +7,20 @@ Gymnasium's interface is over the same.
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes, straight_line_time
 from robobt.learning.envs.evaluation import Decide, run_starts
-from robobt.learning.envs.go_to_ball import GoToBallTask
-from robobt.learning.envs.gymnasium_envs import (
-    GoToBallEnv,
-    GoToBallVectorEnv,
-    ShootTowardsGoalEnv,
-    ShootTowardsGoalVectorEnv,
-)
+from robobt.learning.envs.go_to_ball.env import GoToBallEnv, GoToBallVectorEnv
+from robobt.learning.envs.go_to_ball.rewards import GoToBallReward
+from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings, GoToBallStarts
+from robobt.learning.envs.go_to_ball.task import GoToBallTask
 from robobt.learning.envs.settings import (
     HARDWARE_CHALLENGE,
-    SHOOT_REWARDS,
-    ContactRule,
-    GoToBallReward,
-    GoToBallSettings,
-    GoToBallStarts,
     NoiseSettings,
     RandomisationSettings,
-    ShootReward,
-    ShootSettings,
-    ShootStarts,
     TaskSettings,
 )
-from robobt.learning.envs.shoot import ShootTask
+from robobt.learning.envs.shoot.env import ShootTowardsGoalEnv, ShootTowardsGoalVectorEnv
+from robobt.learning.envs.shoot.rewards import SHOOT_REWARDS, ShootReward
+from robobt.learning.envs.shoot.settings import ShootSettings, ShootStarts
+from robobt.learning.envs.shoot.task import ShootTask
 from robobt.learning.envs.starts import START_COLUMNS
 from robobt.learning.envs.task import StepResult, VectorTask
 

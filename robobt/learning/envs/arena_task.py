@@ -6,18 +6,19 @@ from abc import ABC, abstractmethod
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.envs import kernels as k
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.perception import Perception
+from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.starts import START_COLUMNS, StartPool
-from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
-from robobt.models.actions import ActionScaling
+from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
+from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.kernels import COMMAND
+from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 
 
@@ -39,16 +40,19 @@ class ArenaTask(ABC):
 
     observation: ClassVar[ObservationSpec]
 
-    def __init__(self, settings: TaskSettings, action: ActionScaling, n: int, seed: int | None) -> None:
+    def __init__(self, settings: TaskSettings, n: int, seed: int | None) -> None:
         if n < 1:
             raise ValueError(f"n must be at least 1, not {n}")
+        self.settings = settings
         self.n = n
-        self.action = action
+        self.action = settings.action
         self.observation_size = self.observation.size
-        self.action_size = action.size
+        self.action_size = self.action.size
         self.ended: Episodes | None = None
         self.arenas: Arenas
-        self._common = settings
+        self._numbers = numbers_of(settings)
+        self._scaling = numbers_of(self.action)
+        self._drives = self.action.kind == "drive"
         self._seed: int | None = seed
         self._seeded = False
         self._all = np.arange(n)
@@ -62,23 +66,12 @@ class ArenaTask(ABC):
         """The observations (m, O) of robots (m, 1, 6) and balls (m, 4)."""
 
     @abstractmethod
-    def _command(self, actions: FloatArray) -> bool:
-        """Fill ``_commands``; False where an action is not finite."""
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
+        """Fill ``rewards`` (n,) and ``ends`` (3, n) after a tick; return whether any episode ended."""
 
     @abstractmethod
-    def _judge(
-        self,
-        actions: FloatArray,
-        reward: FloatArray,
-        terminated: BoolArray,
-        truncated: BoolArray,
-        success: BoolArray,
-    ) -> bool:
-        """Fill the arrays (n,) after a tick; whether any episode ended."""
-
-    @abstractmethod
-    def _at_best(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Straight way [m] and optimal time [s] from the starts; nan where there is none."""
+    def _optimum(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return straight way [m] and optimal time [s] from the starts; nan where there is none."""
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """``count`` starts (count, 10) from a seed of their own, to be held out; the task's state stays."""
@@ -87,7 +80,7 @@ class ArenaTask(ABC):
     def reset(self, seed: int | None = None) -> FloatArray:
         """See :meth:`robobt.learning.envs.task.VectorTask.reset`."""
         if seed is not None or not self._seeded:
-            self._sow(self._seed if seed is None else seed)
+            self._seed_all(self._seed if seed is None else seed)
         self._build()
         return self._begin(self._all)
 
@@ -105,7 +98,7 @@ class ArenaTask(ABC):
         rows = np.atleast_2d(np.array(starts, dtype=np.float64))
         self._check_starts(rows)
         if seed is not None or not self._seeded:
-            self._sow(self._seed if seed is None else seed)
+            self._seed_all(self._seed if seed is None else seed)
         self._build()
         self._pool.give(rows)
         return self._begin(self._all)
@@ -132,18 +125,18 @@ class ArenaTask(ABC):
         given = np.ascontiguousarray(actions, dtype=np.float64)
         if given.shape != (self.n, self.action_size):
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
-        if not self._command(given):
+        if not fill_commands(given, self._scaling, self._drives, self._randomiser.kick, self._command_rows):
             raise ValueError("an action is not finite")
         self.arenas.step(self._randomiser.delayed(self._commands))
-        reward = np.empty(self.n)
+        rewards = np.empty(self.n)
         ends: BoolArray = np.empty((3, self.n), dtype=np.bool_)
-        terminated, truncated, success = ends
-        ended = self._judge(given, reward, terminated, truncated, success)
+        ended = self._judge(given, rewards, ends)
         final = self._perception.look(self.arenas.robots, self.arenas.balls)
+        terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
-        return StepResult(final.copy(), reward, terminated, truncated, final, success)
+        return StepResult(final.copy(), rewards, terminated, truncated, final, success)
 
-    def _sow(self, seed: int | None) -> None:
+    def _seed_all(self, seed: int | None) -> None:
         starts, noise, parameters = np.random.SeedSequence(seed).spawn(3)
         self._start_rng = np.random.default_rng(starts)
         self._noise_rng = np.random.default_rng(noise)
@@ -152,18 +145,19 @@ class ArenaTask(ABC):
 
     def _build(self) -> None:
         """Everything that a run changes, anew."""
-        settings, n = self._common, self.n
+        settings, n = self.settings, self.n
         limits = settings.robot_limits
         self.arenas = Arenas(settings.field, [limits], settings.stepped_simulator, settings.period, n)
         self._pool = StartPool(self.sample, self._start_rng, max(n, 64))
         self._perception = Perception(settings, self.observe, self.observation_size, n, self._noise_rng)
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rng)
         self._commands = np.zeros((n, 1, COMMAND))
-        self._counters: IntArray = np.zeros((n, k.COUNTERS), dtype=np.int64)
-        self._sums = np.zeros((n, k.SUMS))
+        self._command_rows = self._commands[:, 0]
+        self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
+        self._progress_rows: FloatArray = self._progress.view(np.float64).reshape(n, -1)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
-        self._optimum = np.full(n, np.nan)
-        self._straight = np.full(n, np.nan)
+        self._optimal_time = np.full(n, np.nan)
+        self._straight_way = np.full(n, np.nan)
         self.ended = None
 
     def _begin(self, which: IntArray) -> FloatArray:
@@ -172,28 +166,24 @@ class ArenaTask(ABC):
         self._starts[which] = index
         self._randomiser.draw(which)
         self.arenas.place(rows[:, None, :6], rows[:, 6:], which)
-        self._counters[which] = 0
-        self._counters[which, k.KICK_TICK] = -1
-        self._sums[which] = 0.0
-        self._sums[which, k.LAST_X] = rows[:, 0]
-        self._sums[which, k.LAST_Y] = rows[:, 1]
-        self._straight[which], self._optimum[which] = self._at_best(rows, which)
+        self._progress[which] = progress_at(rows)
+        self._straight_way[which], self._optimal_time[which] = self._optimum(rows, which)
         return self._perception.start(self.arenas.robots, self.arenas.balls, which)
 
     def _collect(self, which: IntArray, ends: BoolArray) -> Episodes:
-        counters, sums, period = self._counters[which], self._sums[which], self._common.period
-        kick = counters[:, k.KICK_TICK]
+        progress, period = self._progress[which], self.settings.period
+        kick, ticks = progress["kick_tick"], progress["ticks"]
         return Episodes(
             start=self._starts[which],
-            success=ends[2, which],
-            truncated=ends[1, which],
-            ticks=counters[:, k.TICKS],
-            time=counters[:, k.TICKS].astype(np.float64) * period,
-            optimum=self._optimum[which],
+            success=ends[SUCCESS, which],
+            truncated=ends[TRUNCATED, which],
+            ticks=ticks.astype(np.int64),
+            time=ticks * period,
+            optimum=self._optimal_time[which],
             kick_time=np.where(kick < 0, np.nan, kick * period),
-            way=sums[:, k.WAY],
-            straight_way=self._straight[which],
-            total_reward=sums[:, k.REWARD],
+            way=progress["way"],
+            straight_way=self._straight_way[which],
+            total_reward=progress["total_reward"],
         )
 
     def _check_starts(self, rows: FloatArray) -> None:
@@ -201,7 +191,7 @@ class ArenaTask(ABC):
             raise ValueError(f"starts must have the shape (m, {len(START_COLUMNS)}), not {rows.shape}")
         if not np.isfinite(rows).all():
             raise ValueError("a start is not finite")
-        field = self._common.field
+        field = self.settings.field
         most = (field.half_length + field.margin, field.half_width + field.margin)
         if (np.abs(rows[:, [0, 6]]) > most[0]).any() or (np.abs(rows[:, [1, 7]]) > most[1]).any():
             raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")

@@ -12,6 +12,9 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
+TERMINATED, TRUNCATED, SUCCESS = range(3)
+"""Rows of the (3, n) array that says how episodes ended."""
+
 
 @dataclass(slots=True)
 class StepResult:

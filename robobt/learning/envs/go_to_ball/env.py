@@ -1,0 +1,123 @@
+"""Go-To-Ball as Gymnasium knows it: its specification."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from gymnasium.spaces import Box
+
+from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
+from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
+from robobt.learning.envs.go_to_ball.task import GoToBallTask
+from robobt.learning.envs.gymnasium_base import ManyEnv, SingleEnv
+from robobt.world.state import ROBOT_RADIUS
+
+
+class GoToBallEnv(SingleEnv):
+    """Go-To-Ball: drive an omnidirectional robot to the ball.
+
+    Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
+    with the choices of the authors' published code where the paper is silent. The
+    equations of the reward are its Eqs. 7 to 9. What is given here are the
+    defaults of :class:`~robobt.learning.envs.GoToBallSettings`, where all of it
+    can be changed.
+
+    One step is one control period of 30 ms, in 4 physics steps with walls, goals
+    and ball contacts.
+
+    **Observation**, float32, :data:`robobt.world.features.GO_TO_BALL`; the frame
+    is the robot's, x ahead and y to its left:
+
+    | entry | meaning | unit | range |
+    | --- | --- | --- | --- |
+    | 0 | sine of the angle from the heading to the ball | 1 | [-1, 1] |
+    | 1 | cosine of it | 1 | [-1, 1] |
+    | 2 | distance of the centres of robot and ball | m | [0, diagonal inside the walls] |
+    | 3 | the robot's velocity ahead | m/s | top speed + 0.5, either way |
+    | 4 | the robot's velocity to the left | m/s | top speed + 0.5, either way |
+    | 5 | its turning rate, counter-clockwise | rad/s | top rate + what a wall may add |
+
+    **Action**, float32, :data:`robobt.models.actions.GO_TO_BALL_ACTION`:
+
+    | entry | meaning | of 1 | range |
+    | --- | --- | --- | --- |
+    | 0 | velocity ahead | 1.5 m/s | [-1, 1] |
+    | 1 | velocity to the left | 1.5 m/s | [-1, 1] |
+    | 2 | turning rate | 1.395 rad/s | [-1, 1] |
+
+    The velocity is shortened to 1.5 m/s; the robot follows within its
+    accelerations.
+
+    **Reward** a step, with d the distance [m] and theta the angle to the ball
+    [rad] that the step led to:
+
+    | term | value | equation |
+    | --- | --- | --- |
+    | contact | 100 where d <= 0.2 m | 7 |
+    | distance | 5 / sqrt(2 pi) exp(-d^2 / 2) - 2 | 8 |
+    | orientation | 1 / sqrt(2 pi) exp(-2 abs(theta) / pi^2) | 9 |
+
+    Hovering just outside 0.2 m, facing the ball, earns 0.354 a step: with a
+    discount below 0.996 that is worth less than the contact. The undiscounted
+    return rewards hovering; compare policies by success and time.
+
+    **Start**: ball and robot each anywhere inside the lines less 0.1 m, the two at
+    least 0.2 m apart, heading in [-pi, pi), all at rest.
+
+    **End**: terminated by contact, which is success; truncated after 330 steps
+    (9.9 s).
+
+    Args:
+        settings: a :class:`~robobt.learning.envs.GoToBallSettings` or the mapping
+            that makes one, as out of a YAML file.
+        render_mode: None or "rgb_array".
+    """
+
+    def __init__(
+        self, settings: GoToBallSettings | Mapping[str, object] | None = None, render_mode: str | None = None
+    ) -> None:
+        task = GoToBallTask(_validated(settings))
+        super().__init__(task, _space(task.settings), render_mode, _reach(task.settings))
+
+
+class GoToBallVectorEnv(ManyEnv):
+    """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended.
+
+    Args:
+        num_envs: number of arenas.
+        settings: as there.
+        render_mode: as there.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        settings: GoToBallSettings | Mapping[str, object] | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        task = GoToBallTask(_validated(settings), num_envs)
+        super().__init__(task, _space(task.settings), render_mode, _reach(task.settings))
+
+
+def _validated(given: GoToBallSettings | Mapping[str, object] | None) -> GoToBallSettings | None:
+    return None if given is None else GoToBallSettings.model_validate(given)
+
+
+def _space(settings: GoToBallSettings) -> Box[np.float32]:
+    """Return bounds that follow from walls, limits and noise."""
+    limits, starts = settings.robot_limits, settings.starts
+    speed = max(min(limits.max_speed, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+    speed += max(0.0, starts.ball_speed[1])
+    turn = max(
+        min(limits.max_turn, settings.action.max_turn), abs(starts.robot_turn[0]), abs(starts.robot_turn[1])
+    )
+    # Sliding along a wall turns a robot, at most until it rolls along it.
+    turn += speed / ROBOT_RADIUS
+    seen = seen_speed(settings, speed, settings.noise.robot_position)
+    high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
+    return bounded(high, distances=(2,))
+
+
+def _reach(settings: GoToBallSettings) -> float | None:
+    return settings.contact.distance if settings.contact.rule.startswith("distance") else None

@@ -1,0 +1,57 @@
+"""The reward of Go-To-Ball: what a weight is called and what it weighs.
+
+For a new term add its weight to :class:`GoToBallReward` and the term to :func:`reward`.
+"""
+
+from __future__ import annotations
+
+from math import atan2, exp, hypot, pi, sqrt
+
+from pydantic import Field
+
+from robobt.learning.envs.settings import Settings
+from robobt.learning.envs.task import FloatArray
+from robobt.world.compiled import compiled
+from robobt.world.geometry import wrap_angle
+
+_BELL = 1.0 / sqrt(2.0 * pi)
+_wrap_angle = compiled(wrap_angle)
+
+
+class GoToBallReward(Settings):
+    """Weights of the reward's terms."""
+
+    contact: float = Field(100.0, ge=0, le=1e4, description="Eq. 7: once, on reaching the ball")
+    distance: float = Field(1.0, ge=0, le=100, description="times 5/sqrt(2 pi) exp(-d^2/2) - 2, Eq. 8")
+    orientation: float = Field(
+        1.0, ge=0, le=100, description="times 1/sqrt(2 pi) exp(-2 |theta|/pi^2), Eq. 9"
+    )
+    time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
+
+
+@compiled
+def reward(
+    weights: GoToBallReward,
+    robot: FloatArray,
+    ball: FloatArray,
+    action: FloatArray,  # noqa: ARG001 - for terms to come
+    reached: bool,
+) -> float:
+    """Compute the reward of a step.
+
+    Args:
+        weights: of the terms.
+        robot: (6,) x, y, heading, vx, vy, omega after the step.
+        ball: (4,) x, y, vx, vy after it.
+        action: (3,) in [-1, 1], taken in it.
+        reached: whether the robot has reached the ball.
+    """
+    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
+    distance = hypot(dx, dy)
+    angle = abs(_wrap_angle(atan2(dy, dx) - robot[2]))
+    total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
+    total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
+    total -= weights.time
+    if reached:
+        total += weights.contact  # Eq. 7
+    return total

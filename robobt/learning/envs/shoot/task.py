@@ -1,0 +1,124 @@
+"""Shoot-Towards-Goal over many arenas."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import ClassVar
+
+import numpy as np
+
+from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.progress import PROGRESS, Progress, count_tick
+from robobt.learning.envs.shoot.rewards import ShootReward, reward
+from robobt.learning.envs.shoot.settings import ShootSettings
+from robobt.learning.envs.shoot.starts import shoot_starts
+from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
+from robobt.world.field import FieldGeometry
+from robobt.world.rules import goal_side, in_area, is_out
+
+_SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
+_WEIGHTS = numbers_dtype(ShootReward)
+
+_ROBOT_BACK_LIMIT = -0.2
+"""A robot farther back than this ends an episode [m]. Source: the authors' code."""
+
+
+class ShootTask(ArenaTask):
+    """Turn and kick the ball into the goal; the specification is
+    :class:`~robobt.learning.envs.ShootTowardsGoalEnv`.
+
+    Args:
+        settings: of the environment.
+        n: number of arenas.
+        seed: of everything drawn; None for another each time.
+    """
+
+    observation: ClassVar[ObservationSpec] = SHOOT
+    settings: ShootSettings
+
+    def __init__(self, settings: ShootSettings | None = None, n: int = 1, seed: int | None = None) -> None:
+        super().__init__(ShootSettings() if settings is None else settings, n, seed)
+        field = self.settings.field
+        self._goal = field.half_length, field.goal_width / 2
+        self._field = numbers_of(field)
+        self._weights = numbers_of(self.settings.reward)
+        self._firing_counts = self.settings.reward.kick_counts == "fired"
+
+    def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """See :func:`~robobt.learning.envs.shoot.starts.shoot_starts`."""
+        return shoot_starts(self.settings, rng, count)
+
+    def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
+        """See :data:`robobt.world.features.SHOOT`."""
+        return shoot_rows(robots[:, 0], balls, *self._goal)
+
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
+        arenas = self.arenas
+        return _judge(
+            self._numbers,
+            self._field,
+            self._weights,
+            self._firing_counts,
+            actions,
+            arenas.robots,
+            arenas.balls,
+            arenas.kicked,
+            self._progress_rows,
+            rewards,
+            ends,
+        )
+
+    def _optimum(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+        # There is no straight line to a goal.
+        none = np.full(len(which), np.nan)
+        return none, none
+
+
+@compiled
+def _judge(
+    settings_: FloatArray,
+    field_: FloatArray,
+    weights_: FloatArray,
+    firing_counts: bool,
+    actions: FloatArray,
+    robots: FloatArray,
+    balls: FloatArray,
+    kicked: BoolArray,
+    progress: FloatArray,
+    rewards: FloatArray,
+    ends: BoolArray,
+) -> bool:
+    settings: ShootSettings = settings_.view(_SETTINGS)[0]
+    field: FieldGeometry = field_.view(_FIELD)[0]
+    weights: ShootReward = weights_.view(_WEIGHTS)[0]
+    episodes = progress.view(PROGRESS)
+    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
+    any_ended = False
+    for i in range(len(balls)):
+        robot, ball = robots[i, 0], balls[i]
+        episode: Progress = episodes[i, 0]
+        count_tick(episode, robot)
+        fired = kicked[i, 0]
+        if fired and episode.kick_tick < 0:
+            episode.kick_tick = episode.ticks
+        before_x, before_y = episode.ball_x, episode.ball_y
+        episode.ball_x = ball[0]
+        episode.ball_y = ball[1]
+        goal = goal_side(before_x, before_y, ball[0], ball[1], half_length, half_width, post) > 0
+        out = is_out(ball[0], ball[1], half_length, half_width) or ball[0] < 0.0
+        out = out or robot[0] < _ROBOT_BACK_LIMIT or abs(robot[1]) > half_width
+        out = out or in_area(robot[0], robot[1], half_length, field.defense_depth, field.defense_width)
+        if settings.lost_distance is not None and episode.kick_tick < 0:
+            out = out or hypot(ball[0] - robot[0], ball[1] - robot[1]) > settings.lost_distance
+        rewards[i] = reward(
+            weights, firing_counts, half_length, post, robot, ball, actions[i], fired, goal, out, episode
+        )
+        episode.total_reward += rewards[i]
+        ended = goal or out
+        ends[TERMINATED, i] = ended
+        ends[SUCCESS, i] = goal
+        ends[TRUNCATED, i] = not ended and episode.ticks >= settings.time_limit
+        any_ended = any_ended or ended or ends[TRUNCATED, i]
+    return any_ended
