@@ -27,7 +27,7 @@ from stable_baselines3.common.noise import NormalActionNoise
 from torch import nn
 
 import robobt
-from robobt.learning.training.checkpoint import write_atomically
+from robobt.config.atomic import write_atomically
 from robobt.learning.training.evaluation import Policy
 from robobt.learning.training.export_run import held_out
 from robobt.learning.training.problems import Problem, problem_of

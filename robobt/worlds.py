@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from pydantic import ValidationError
 
+from robobt.config.errors import message_of
+from robobt.config.validation import first_problem
 from robobt.match.loop import WorldFactory
-from robobt.match.problems import first_problem, message_of
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld

@@ -20,6 +20,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from robobt.config.errors import ConfigError, RobobtError
+
 if TYPE_CHECKING:
     from robobt.match.loop import WorldFactory
     from robobt.tree.registry import Registry
@@ -83,7 +85,7 @@ def _say_error(error: Exception) -> str:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     text = " ".join(str(error.args[0] if error.args else "").split())
     # An error of robobt's own was written for whoever reads this line; any other may be a fault of ours.
-    if type(error).__module__.startswith("robobt."):
+    if isinstance(error, RobobtError):
         return text
     if isinstance(error, KeyError | ValueError) and text:
         return f"{text} (robobt --debug shows where)"
@@ -120,7 +122,7 @@ def unknown(name: str, registry: Registry[Any]) -> typer.BadParameter:
 
 def parse_assignments(texts: Iterable[str], option: str) -> dict[str, Any]:
     """What ``name=value`` texts say, the values read as YAML; ``option`` is named in the usage error."""
-    from robobt.match.yaml_reader import YamlError, parse_yaml
+    from robobt.config.yaml import parse_marked
 
     given: dict[str, Any] = {}
     for text in texts:
@@ -128,9 +130,9 @@ def parse_assignments(texts: Iterable[str], option: str) -> dict[str, Any]:
         if not equals or not name:
             raise typer.BadParameter(f"takes name=value, not {text!r}", param_hint=option)
         try:
-            given[name] = parse_yaml(value)
-        except YamlError as error:
-            raise typer.BadParameter(f"{name}: {error}", param_hint=option) from error
+            given[name] = parse_marked(value, name).plain()
+        except ConfigError as error:
+            raise typer.BadParameter(f"{name}: {error.problem}", param_hint=option) from error
     return given
 
 

@@ -75,8 +75,8 @@ def models(
     the manifest beside it lists it) and card; problems: a line for each file that is no
     intact model.
     """
+    from robobt.config.resources import models_folder
     from robobt.models.file import ModelError, find_model, list_models, read_model_file
-    from robobt.resources import models_folder
 
     if name is not None:
         paths = [find_model(name)]

@@ -33,8 +33,8 @@ def scenarios(
     (whether there is one), ball (where it starts) and robots (robot, play,
     params, start: in the own team's view, own goal at -x).
     """
+    from robobt.config.resources import bundled_scenarios
     from robobt.match import load_scenario
-    from robobt.resources import bundled_scenarios
 
     import_files(imports)
     loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]

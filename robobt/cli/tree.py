@@ -121,7 +121,7 @@ def _build(play: str, params: list[str]) -> Behaviour:
 
 def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool) -> bool:
     """Write the tree to those of the four files that are named; whether there was one."""
-    from robobt.match.problems import naming
+    from robobt.config.errors import naming
     from robobt.plays.files import tree_xml, tree_yaml
     from robobt.tree.drawing import tree_dot, tree_svg
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from robobt.config.atomic import replacing
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
@@ -158,9 +159,5 @@ def _scene(field: FieldGeometry, ball: Point) -> Frame:
 
 def _save(figure: Any, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
+    with replacing(path) as draft:
         figure.savefig(draft, dpi=120)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)

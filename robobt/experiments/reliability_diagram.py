@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from robobt.config.atomic import replacing
+
 
 def draw_reliability(models: Mapping[str, Sequence[Mapping[str, Any]]], title: str, path: Path) -> None:
     """Draw the bins of several models and write a picture, whole or not at all.
@@ -35,9 +37,5 @@ def draw_reliability(models: Mapping[str, Sequence[Mapping[str, Any]]], title: s
     axes.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02), aspect="equal")
     axes.legend(loc="upper left", fontsize=8)
     path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
+    with replacing(path) as draft:
         figure.savefig(draft, dpi=120)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from robobt.resources import models_folder
+from robobt.config.resources import models_folder
 from robobt.shots.data.author_data import author_weights
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.inputs import goals

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from robobt.config.atomic import replacing
+
 _PARTS = (("approach", "approach", "C0"), ("pick_up", "pick-up", "C2"), ("shoot", "shoot", "C1"))
 
 
@@ -56,9 +58,5 @@ def draw_table4(result: Mapping[str, Any], path: Path) -> None:
         axes.barh(0, 0, color="0.75", hatch="//", edgecolor="white", label="to the ball (paper)")
         axes.legend(loc="lower right", fontsize=8)
     path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
+    with replacing(path) as draft:
         figure.savefig(draft, dpi=120)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)

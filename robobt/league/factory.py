@@ -7,9 +7,10 @@ from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import ValidationError
 
+from robobt.config.errors import ConfigError, message_of
+from robobt.config.validation import first_problem
 from robobt.league.wire.endpoints import Endpoints, parse_endpoint
 from robobt.league.world import Connection, LeagueWorld
-from robobt.match.problems import first_problem, message_of
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import PRESETS, SimSettings, settings_from
 
@@ -30,8 +31,8 @@ _ADDRESSES = ("vision", "tracker", "referee")
 _PORTS = ("grsim", "blue_status", "yellow_status", "control", "blue", "yellow")
 
 
-class AddressError(ValueError):
-    """An address of a world that is none; the message is one line."""
+class AddressError(ConfigError):
+    """An address that names no world; the file is the address, the field one of its options."""
 
 
 def parse_address(address: str) -> tuple[Connection, str | None]:
@@ -47,28 +48,27 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         AddressError: it is none.
     """
     if not address.startswith(SCHEME):
-        raise AddressError(f"{address}: a world of the league is {SCHEME}SIMULATOR")
+        raise AddressError(address, f"a world of the league is {SCHEME}SIMULATOR")
     try:
         parts = urlsplit(address)
         given = dict(parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query)))
     except ValueError as error:
-        raise AddressError(f"{address}: {message_of(error)}") from error
+        raise AddressError(address, message_of(error)) from error
     known = (*_OPTIONS, *_ADDRESSES, *_PORTS)
     for name in given:
         if name not in known:
-            raise AddressError(f"{address}: there is no option {name!r}; there are {', '.join(known)}")
+            raise AddressError(address, f"there is no option {name!r}; there are {', '.join(known)}")
     physics = given.pop("physics", None)
     if physics is not None and physics not in PRESETS:
-        raise AddressError(
-            f"{address}: physics: no preset is called {physics!r}; there are {', '.join(PRESETS)}"
-        )
+        problem = f"no preset is called {physics!r}; there are {', '.join(PRESETS)}"
+        raise AddressError(address, problem, "physics")
     endpoints: dict[str, Any] = {name: given.pop(name) for name in _PORTS if name in given}
     for name in _ADDRESSES:
         if name in given:
             try:
                 endpoints[name] = parse_endpoint(given.pop(name))
             except ValueError as error:
-                raise AddressError(f"{address}: {name}: {message_of(error)}") from error
+                raise AddressError(address, message_of(error), name) from error
     options: dict[str, Any] = {"simulator": parts.netloc, **given}
     if "teams" in options:
         teams = options["teams"]
@@ -77,9 +77,8 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         options["endpoints"] = Endpoints.model_validate(endpoints)
         return Connection.model_validate(options), physics
     except ValidationError as error:
-        problem = error.errors()[0]
-        where = ".".join(str(part) for part in problem["loc"])
-        raise AddressError(f"{address}: {where}: {problem['msg']}") from error
+        field, problem = first_problem(error, Connection)
+        raise AddressError(address, problem, field) from error
 
 
 class LeagueFactory:

@@ -12,6 +12,7 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robobt.config.errors import RobobtError
 from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.pacing import Pace
@@ -67,7 +68,7 @@ _CLOCK_MEMORY = 2.0
 """For how long the fastest packet tells the offset between the clocks [s]."""
 
 
-class LeagueError(RuntimeError):
+class LeagueError(RobobtError, RuntimeError):
     """The other side does not play along; the message is one line."""
 
 

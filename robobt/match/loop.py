@@ -11,8 +11,8 @@ from typing import Self
 
 import numpy as np
 
+from robobt.config.errors import one_line, short_repr
 from robobt.match.ends import EndJudge, Outcome
-from robobt.match.problems import one_line
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.referee.referee import Referee
@@ -21,7 +21,6 @@ from robobt.match.results.results import MatchResult, RobotResult
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeError, TreeRunner, node_path
-from robobt.tree.parameters import say_value
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
@@ -304,7 +303,7 @@ def play_match(
 def _fault_of(command: object) -> str | None:
     """Why a robot cannot be sent what its tree decided, None when it can."""
     if not isinstance(command, RobotCommand):
-        return f"command is no RobotCommand: {say_value(command)}"
+        return f"command is no RobotCommand: {short_repr(command)}"
     try:
         return None if command.finite() else f"command is not finite: {command}"
     except (TypeError, ValueError, OverflowError):

@@ -35,8 +35,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from robobt.config.atomic import write_atomically
+from robobt.config.errors import RobobtError
 from robobt.match.loop import Match
-from robobt.match.problems import naming
 from robobt.match.recording import (
     Recording,
     RecordingError,
@@ -61,11 +62,11 @@ _MOST_BYTES = 2**27
 _WORDS = {"S": "SUCCESS", "F": "FAILURE", "R": "RUNNING"}
 
 
-class CaseError(ValueError):
+class CaseError(RobobtError, ValueError):
     """A file is no test case, or a tick cannot be made one."""
 
 
-class CaseFailedError(AssertionError):
+class CaseFailedError(RobobtError, AssertionError):
     """The tree does something else now; the message says what."""
 
 
@@ -162,11 +163,8 @@ def save_case(recording: Recording | str | Path, robot: RobotId, tick: int, path
         "match": base64.b64encode(zlib.compress(text, 9)).decode("ascii"),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.part")
-    with naming(path):
-        # JSON is YAML; written so that no number or text changes its meaning.
-        unfinished.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        unfinished.replace(path)
+    # JSON is YAML; written so that no number or text changes its meaning.
+    write_atomically(path, json.dumps(data, indent=2, allow_nan=False) + "\n")
     return path
 
 

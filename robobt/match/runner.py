@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from robobt.config.errors import RobobtError
 from robobt.match.loop import WorldFactory, play_match
 from robobt.match.results.file import ResultsFile
 from robobt.match.results.results import MatchResult
@@ -19,7 +20,7 @@ from robobt.plays.python_files import import_file, imported_files
 from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 
-class RunError(RuntimeError):
+class RunError(RobobtError, RuntimeError):
     """A trial could not be played to its end; the message is one line."""
 
 

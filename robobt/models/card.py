@@ -7,6 +7,8 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
+from robobt.config.errors import ConfigError
+from robobt.config.validation import first_problem
 from robobt.models.actions import ActionScaling
 from robobt.world.features import OBSERVATIONS, ObservationSpec
 from robobt.world.limits import RobotLimits
@@ -23,8 +25,8 @@ MAX_CARD_SIZE = 64 * 1024
 Kind = Literal["policy", "shot_predictor"]
 
 
-class ModelCardError(ValueError):
-    """A card that is none: one line that names the field."""
+class ModelCardError(ConfigError):
+    """A model card that cannot be read."""
 
 
 class _Part(BaseModel):
@@ -179,19 +181,9 @@ def read_card(text: str | bytes) -> ModelCard:
         ModelCardError: it is none; the message names the field.
     """
     if len(text) > MAX_CARD_SIZE:
-        raise ModelCardError(f"its card is longer than {MAX_CARD_SIZE} bytes")
+        raise ModelCardError("its card", f"is longer than {MAX_CARD_SIZE} bytes")
     try:
         return ModelCard.model_validate_json(text)
     except ValidationError as error:
-        raise ModelCardError(f"its card: {_say(error)}") from error
-
-
-def _say(error: ValidationError) -> str:
-    problems = error.errors(include_url=False, include_input=False)
-    problem = problems[0]
-    place = ".".join([str(part) for part in problem["loc"]])
-    cause = problem.get("ctx", {}).get("error")
-    message = str(cause) if isinstance(cause, Exception) else problem["msg"]
-    words = " ".join(f"{place}: {message}".split() if place else message.split())
-    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-    return words[:300] + more
+        field, problem = first_problem(error, ModelCard)
+        raise ModelCardError("its card", problem, field) from error

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import copy
 import inspect
-import os
 import re
-import tempfile
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -18,7 +16,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from robobt.match.problems import naming
+from robobt.config.atomic import replacing
+from robobt.config.errors import naming
 from robobt.models.card import ModelCard
 from robobt.models.file import (
     MANIFEST,
@@ -184,13 +183,8 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _written(path: Path, data: bytes) -> Iterator[Path]:
-    """The file in a folder of its own; it takes its place unless something is raised."""
-    with naming(path):
-        temporary_folder = tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-")
-    with temporary_folder as folder:
-        temporary = Path(folder) / path.name
+    """Write the data beside the file; it takes its place unless something is raised."""
+    with replacing(path) as temporary:
         with naming(path):
             temporary.write_bytes(data)
         yield temporary
-        with naming(path):
-            os.replace(temporary, path)

@@ -20,8 +20,9 @@ from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
+from robobt.config.errors import RobobtError
+from robobt.config.resources import models_folder
 from robobt.models.card import ModelCard, ModelCardError, read_card
-from robobt.resources import models_folder
 
 Format = Literal["torchscript", "onnx"]
 
@@ -46,7 +47,7 @@ _METADATA = 14
 """Field ``metadata_props`` of ONNX's ModelProto."""
 
 
-class ModelError(ValueError):
+class ModelError(RobobtError, ValueError):
     """A model that cannot be used: one line that names the file."""
 
 

@@ -8,6 +8,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
+from robobt.config.errors import ConfigError
 from robobt.plays.base import PLAYS
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
@@ -16,8 +17,8 @@ from robobt.skills.ball.go_to_ball import POLICIES
 _imported: dict[Path, ModuleType] = {}
 
 
-class PythonFileError(ValueError):
-    """A Python file cannot be used; the message is one line that names the file and the line."""
+class PythonFileError(ConfigError):
+    """A Python file that cannot be used."""
 
 
 def import_file(path: str | Path) -> ModuleType:
@@ -41,9 +42,9 @@ def import_file(path: str | Path) -> ModuleType:
         source = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise PythonFileError(f"{shown}: cannot be read: {reason}") from error
+        raise PythonFileError(shown, f"cannot be read: {reason}") from error
     if path.suffix != ".py":
-        raise PythonFileError(f"{shown}: is no Python file; its name ends in .py")
+        raise PythonFileError(shown, "is not a Python file; its name must end in .py")
     module = _run(path, source, shown)
     _imported[path] = module
     return module
@@ -69,7 +70,7 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
         del sys.modules[module.__name__]
         for take_back in undo:
             take_back()
-        raise PythonFileError(_say(error, path, shown)) from error
+        raise _problem(error, path, shown) from error
     return module
 
 
@@ -84,8 +85,8 @@ def _free_name(path: Path) -> str:
     return name
 
 
-def _say(error: BaseException, path: Path, shown: str) -> str:
-    """The error with the line of the file that it came from, or that led to it."""
+def _problem(error: BaseException, path: Path, shown: str) -> PythonFileError:
+    """Return the error with the line of the file that raised it, or that led to it."""
     if isinstance(error, SyntaxError) and error.filename == str(path):
         line, reason = error.lineno or None, error.msg
     else:
@@ -95,5 +96,4 @@ def _say(error: BaseException, path: Path, shown: str) -> str:
         line = lines[-1] if lines else None
         said = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
         reason = f"{type(error).__name__}: {said}" if said else type(error).__name__
-    where = shown if line is None else f"{shown}:{line}"
-    return " ".join(f"{where}: {reason}".split())
+    return PythonFileError(shown, reason, line=line)

@@ -10,11 +10,12 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from robobt.config.errors import RobobtError
 from robobt.tree.leaf import Leaf
 from robobt.tree.runner import node_path, preorder
 
 
-class WiringError(ValueError):
+class WiringError(RobobtError, ValueError):
     """A tree whose nodes do not fit together.
 
     Attributes:

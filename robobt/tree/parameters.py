@@ -15,8 +15,10 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
+from robobt.config.errors import RobobtError, short_repr
 
-class ParameterError(ValueError):
+
+class ParameterError(RobobtError, ValueError):
     """A parameter that does not fit.
 
     Attributes:
@@ -68,13 +70,13 @@ class Parameter:
         try:
             text = json.dumps(value)
         except (TypeError, ValueError, RecursionError) as error:
-            raise ParameterError(self.name, f"{say_value(value)} is no plain data") from error
+            raise ParameterError(self.name, f"{short_repr(value)} is no plain data") from error
         try:
             return adapter.validate_json(text, strict=True)
         except ValidationError as error:
             problem = error.errors(include_url=False)[0]
             place = ".".join([self.name, *[str(part) for part in problem["loc"]]])
-            raise ParameterError(place, f"{problem['msg']}, not {say_value(problem['input'])}") from error
+            raise ParameterError(place, f"{problem['msg']}, not {short_repr(problem['input'])}") from error
         except Exception as error:
             # Validators are anybody's code, and an abstract model cannot be made at all.
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
@@ -92,7 +94,7 @@ class Parameter:
                 return data
         except (PydanticSerializationError, ValueError, TypeError):
             pass
-        raise ParameterError(self.name, f"{say_value(value)} cannot be written as plain data")
+        raise ParameterError(self.name, f"{short_repr(value)} cannot be written as plain data")
 
     def _adapter(self) -> TypeAdapter[Any]:
         try:
@@ -145,12 +147,6 @@ def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, A
     for name, parameter in known.items():
         if parameter.required and name not in given:
             raise ParameterError(name, f"{what} needs this parameter")
-
-
-def say_value(value: object) -> str:
-    """A value for a message: on one line and not long."""
-    said = repr(value)
-    return said if len(said) <= 60 else said[:57] + "..."
 
 
 def say_hint(hint: Any) -> str:

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
+from robobt.config.errors import RobobtError
 from robobt.tree.engine import Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
@@ -26,7 +27,7 @@ def node_path(node: Behaviour) -> str:
     return "/".join(reversed(names))
 
 
-class TreeError(RuntimeError):
+class TreeError(RobobtError, RuntimeError):
     """A node raised: the message starts with its path, ``__cause__`` is what it raised."""
 
 

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 from typer.testing import CliRunner, Result
 
 from robobt import __version__
 from robobt.cli import app
+from robobt.config.resources import bundled_scenarios, models_folder
+from robobt.config.yaml import write_yaml
 from robobt.match.recording import load_recording
 from robobt.plays import PLAYS, python_files
-from robobt.resources import bundled_scenarios, models_folder
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
@@ -93,7 +93,7 @@ def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 @pytest.fixture
 def scenario(tmp_path: Path) -> Path:
     path = tmp_path / "mine.yaml"
-    path.write_text(yaml.safe_dump(data(ball={"position": {"center": [0, 0], "radius": 0.5}})))
+    path.write_text(write_yaml(data(ball={"position": {"center": [0, 0], "radius": 0.5}})))
     return path
 
 
@@ -160,7 +160,7 @@ class TestMatch:
     def test_a_name_with_a_path_in_it_leads_nowhere_else(
         self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ):
-        scenario.write_text(yaml.safe_dump({**data(), "name": "../elsewhere/mine"}))
+        scenario.write_text(write_yaml({**data(), "name": "../elsewhere/mine"}))
         inside = tmp_path / "inside"
         inside.mkdir()
         monkeypatch.chdir(inside)
@@ -195,7 +195,7 @@ class TestMatch:
     def test_a_tree_that_fails_is_told(self, scenario: Path):
         broken = data()
         broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
-        scenario.write_text(yaml.safe_dump({**broken, "ends": {"time_limit": 0.1}}))
+        scenario.write_text(write_yaml({**broken, "ends": {"time_limit": 0.1}}))
         result = robobt("match", scenario)
         assert (
             "blue 0: its tree failed in 5 ticks; the first: Scripted: RuntimeError: broken" in result.stderr
@@ -204,7 +204,7 @@ class TestMatch:
     def test_a_tree_that_fails_can_end_the_run(self, scenario: Path):
         broken = data()
         broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
-        scenario.write_text(yaml.safe_dump(broken))
+        scenario.write_text(write_yaml(broken))
         said = complaint("match", scenario, "--on-error", "raise")
         assert said.startswith(
             f"robobt: {scenario}: trial 0: TreeError: blue 0: Scripted: RuntimeError: broken"
@@ -220,7 +220,7 @@ class TestMatch:
         [
             ("Scripted=RUNNING", "takes ROBOT:PATH=STATUS"),
             ("blue 0:Scripted", "takes ROBOT:PATH=STATUS"),
-            ("blue 0:Scripted=[", "Scripted: line 1"),
+            ("blue 0:Scripted=[", "Scripted: expected the node content"),
         ],
     )
     def test_a_rule_that_is_none_is_a_usage_error(self, scenario: Path, rule: str, said: str):
@@ -231,7 +231,7 @@ class TestMatch:
     def test_a_play_of_the_users_own_file_is_played(self, mine: Path, scenario: Path):
         own = data()
         own["robots"]["blue"][0].update(play="idle", params={})
-        scenario.write_text(yaml.safe_dump({**own, "ends": {"time_limit": 0.1}}))
+        scenario.write_text(write_yaml({**own, "ends": {"time_limit": 0.1}}))
         assert told("match", scenario, "--import", mine)["robots"]["blue 0"]["errors"] == 0
 
 
@@ -328,7 +328,7 @@ class TestLists:
         tree.write_text("play: mine\ntree: Bad\n")
         played = data()
         played["robots"]["blue"][0].update(play="Bad", params={})
-        scenario.write_text(yaml.safe_dump(played))
+        scenario.write_text(write_yaml(played))
         for arguments, code in (
             (("plays", "Bad"), 2),
             (("tree", "Bad"), 2),
@@ -373,7 +373,7 @@ class TestTree:
             (["scripted", "-p", "speed"], "takes name=value"),
             (["scripted", "-p", "sped=1"], "scripted has no such parameter"),
             (["scripted", "-p", "speed=fast"], "should be a valid number"),
-            (["scripted", "-p", "speed=["], "speed: line 1"),
+            (["scripted", "-p", "speed=["], "speed: expected the node content"),
         ],
     )
     def test_usage_errors_say_what_there_is(self, arguments: list[str], said: str):
@@ -389,7 +389,7 @@ class TestTree:
         path = tmp_path / "mine.yaml"
         children = ["HasBall", "KickToTarget"]
         tree = {"Sequence": {"name": "shoot", "memory": True, "children": children}}
-        path.write_text(yaml.safe_dump({"play": "mine", "tree": tree}))
+        path.write_text(write_yaml({"play": "mine", "tree": tree}))
         printed = robobt("tree", path, "--lint", code=1).stdout
         assert "shoot/HasBall: is not asked again while 'KickToTarget' runs" in printed
         assert (
@@ -462,7 +462,7 @@ class TestErrors:
         assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
 
     def test_a_wrong_field_is_named_with_its_file(self, scenario: Path):
-        scenario.write_text(yaml.safe_dump(data(period=5)))
+        scenario.write_text(write_yaml(data(period=5)))
         assert complaint("match", scenario).startswith(f"robobt: {scenario}: period: input should be less")
 
     @pytest.mark.parametrize(
@@ -475,7 +475,7 @@ class TestErrors:
         ],
     )
     def test_wrong_settings_of_the_simulator_are_named(self, scenario: Path, simulator: Any, said: str):
-        scenario.write_text(yaml.safe_dump(data(simulator=simulator)))
+        scenario.write_text(write_yaml(data(simulator=simulator)))
         assert complaint("match", scenario).startswith(f"robobt: {scenario}: {said}")
 
     def test_square_brackets_survive(self, scenario: Path):

@@ -1,16 +1,16 @@
 from pathlib import Path
 
 import pytest
-import yaml
 from typer.testing import CliRunner
 
 from robobt.cli import app
+from robobt.config.resources import bundled_scenarios
+from robobt.config.yaml import parse_marked, write_yaml
 from robobt.match import Match
 from robobt.match.regression_cases import check_case
 from robobt.match.scenario.scenario import load_scenario
 from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import import_file
-from robobt.resources import bundled_scenarios
 from robobt.worlds import sim_world
 from tests.match.recording.made_recording import record
 
@@ -45,9 +45,9 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
         "from robobt.plays import PLAYS\nfrom robobt.skills import Stop\n"
         "PLAYS.register('stands_still')(lambda: Stop())\n"
     )
-    scenario = yaml.safe_load(bundled_scenarios()["striker_vs_goalie"].read_text())
+    scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "stands_still"}
-    (tmp_path / "still.yaml").write_text(yaml.safe_dump(scenario))
+    (tmp_path / "still.yaml").write_text(write_yaml(scenario))
     recorded, case = tmp_path / "still.robobt.jsonl", tmp_path / "case.yaml"
     with PLAYS.temporarily():
         import_file(file)

@@ -227,13 +227,13 @@ def test_the_simulator_is_a_world_by_its_name() -> None:
     ("address", "problem"),
     [
         ("grsim", "is league://SIMULATOR"),
-        ("league://webots", "simulator: Input should be 'grsim', 'protocol' or 'observer'"),
+        ("league://webots", "simulator: input should be 'grsim', 'protocol' or 'observer'"),
         ("league://grsim?port=1", "there is no option 'port'"),
         ("league://grsim?vision=here", "'here' is no address like 224.5.23.2:10006"),
         ("league://grsim?vision=224.5.23.2:99999", "is no address"),
-        ("league://grsim?grsim=99999", "grsim: Input should be less than or equal to 65535"),
+        ("league://grsim?grsim=99999", "grsim: input should be less than or equal to 65535"),
         ("league://grsim?physics=moon", "no preset is called 'moon'"),
-        ("league://grsim?speed=nan", "speed: Input should be a finite number"),
+        ("league://grsim?speed=nan", "speed: input should be a finite number"),
         ("league://grsim?teams=red", "teams.0"),
     ],
 )

@@ -3,14 +3,14 @@ import shutil
 from pathlib import Path
 
 import pytest
-import yaml
 
+from robobt.config.resources import bundled_scenarios
+from robobt.config.yaml import parse_marked, write_yaml
 from robobt.match import Match
 from robobt.match.recording import load_recording
 from robobt.match.regression_cases import CaseError, CaseFailedError, check_case, load_case, save_case
 from robobt.match.scenario.scenario import load_scenario
 from robobt.plays.files import play_files
-from robobt.resources import bundled_scenarios
 from robobt.skills import SelectShot
 from robobt.tree import Status
 from robobt.world import RobotId, Team
@@ -67,9 +67,9 @@ def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytes
         folder.mkdir()
     shutil.copy(play_files()["attack_main"], here / "mine.yaml")
     (here / "rules.yaml").write_text('"*/KickToTarget": RUNNING\n')
-    scenario = yaml.safe_load(bundled_scenarios()["striker_vs_goalie"].read_text())
+    scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "substitute": "rules.yaml"}
-    (here / "match.yaml").write_text(yaml.safe_dump(scenario))
+    (here / "match.yaml").write_text(write_yaml(scenario))
     monkeypatch.chdir(here)
     recorded = there / "match.robobt.jsonl"
     Match(load_scenario("match.yaml").lasting(0.6), 3, sim_world, recorded).play()

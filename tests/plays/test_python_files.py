@@ -150,7 +150,7 @@ def test_a_file_that_cannot_be_read_is_told(name: str) -> None:
 
 
 def test_another_file_is_refused(write: Write) -> None:
-    with pytest.raises(PythonFileError, match=r"its name ends in \.py"):
+    with pytest.raises(PythonFileError, match=r"its name must end in \.py"):
         import_file(write("x = 1", "mine.txt"))
 
 

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 import pytest
 from pydantic import BaseModel, Field, field_validator
 
-from robobt.tree.parameters import Parameter, ParameterError, check_parameters, parameters_of, say_value
+from robobt.config.errors import short_repr
+from robobt.tree.parameters import Parameter, ParameterError, check_parameters, parameters_of
 
 
 class Limits(BaseModel):
@@ -120,5 +121,5 @@ def test_given_parameters_are_checked_against_a_signature() -> None:
 
 
 def test_a_value_is_said_on_one_line_and_short() -> None:
-    assert say_value("a\nb") == "'a\\nb'"
-    assert len(say_value("x" * 1000)) == 60
+    assert short_repr("a\nb") == "'a\\nb'"
+    assert len(short_repr("x" * 1000)) == 60

@@ -17,6 +17,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, NamedTuple, Self, cast
 
+from robobt.config.errors import RobobtError
+
 _log = logging.getLogger(__name__)
 
 _MAGIC = b"SSL_LOG_FILE"
@@ -28,7 +30,7 @@ _MOST_BYTES = 1 << 20
 """No record is longer; a size beyond it is none. Those of other kinds than ours may exceed our packets."""
 
 
-class LogError(ValueError):
+class LogError(RobobtError, ValueError):
     """Something is wrong with a log; the message is one line that names the file."""
 
 

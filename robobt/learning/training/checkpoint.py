@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.match.problems import naming
+from robobt.config.atomic import write_atomically
+from robobt.config.errors import RobobtError
 
 _MAGIC = b"robobt-checkpoint-1\n"
 _DIGEST = 32
@@ -26,23 +26,8 @@ _PLAIN = "plain"
 Arrays = dict[str, NDArray[np.generic]]
 
 
-class CheckpointError(ValueError):
+class CheckpointError(RobobtError, ValueError):
     """A checkpoint cannot be read; the message is one line that names the file."""
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Put a file in place so that whoever looks finds the old or the new one, whole, even after a crash."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    with naming(path):
-        try:
-            with temporary.open("wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
-        _sync_folder(path.parent)
 
 
 def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], plain: Mapping[str, Any]) -> None:
@@ -106,13 +91,3 @@ def load_latest(path: Path) -> tuple[Arrays, dict[str, Any], str | None]:
 def previous(path: Path) -> Path:
     """Where the checkpoint before the newest lies."""
     return path.with_name(f"{path.name}.previous")
-
-
-def _sync_folder(folder: Path) -> None:
-    # A rename is on disk once its folder is; some systems cannot open folders.
-    if hasattr(os, "O_DIRECTORY"):
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)

@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from robobt.learning.training.checkpoint import write_atomically
+from robobt.config.atomic import write_atomically
+from robobt.config.yaml import read_yaml
 from robobt.learning.training.seeds import OnProgress, together, train_seeds
 from robobt.learning.training.settings import SWITCHES, SettingsError, TrainSettings, load_settings
-from robobt.match.yaml_reader import read_yaml
 
 PAPER = "paper"
 """The name of the plain Spinning Up setting in a comparison."""
@@ -31,7 +31,7 @@ def variants(task: str, changes: Mapping[str, Any] | None = None) -> dict[str, T
     """
     switches = read_yaml(SWITCHES).get(task)
     if switches is None:
-        raise SettingsError(f"{SWITCHES}: has no switches of {task!r}")
+        raise SettingsError(str(SWITCHES), f"has no switches of {task!r}")
     found = {name: load_settings(task, "fast", {**own, **(changes or {})}) for name, own in switches.items()}
     paper = {key: value for key, value in (changes or {}).items() if not key.startswith("collection.")}
     return {**found, PAPER: load_settings(task, "paper", paper)}
@@ -71,7 +71,7 @@ def compare(
     found = variants(task, changes)
     for name in only:
         if name not in found:
-            raise SettingsError(f"no variant is called {name!r}; there are {', '.join(found)}")
+            raise SettingsError("", f"no variant is called {name!r}; there are {', '.join(found)}")
     told: dict[str, Any] = {}
     for name, settings in found.items():
         if only and name not in only:
@@ -81,8 +81,8 @@ def compare(
         folder = out / re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
         told[name] = together(train_seeds(settings, seeds, folder, workers, True, on_progress))
         text = json.dumps({"task": task, "variants": told}, indent=2, allow_nan=False) + "\n"
-        write_atomically(out / "comparison.json", text.encode())
-        write_atomically(out / "comparison.md", table_of(told).encode())
+        write_atomically(out / "comparison.json", text)
+        write_atomically(out / "comparison.md", table_of(told))
     return told
 
 

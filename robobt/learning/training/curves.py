@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from robobt.learning.training.checkpoint import write_atomically
+from robobt.config.atomic import write_atomically
 from robobt.learning.training.run_folder import Judged
 
 

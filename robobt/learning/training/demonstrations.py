@@ -19,7 +19,6 @@ The schema's metadata holds, under ``robobt``, JSON: ``format``, ``task``,
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -31,11 +30,12 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from robobt import __version__
+from robobt.config.atomic import replacing
+from robobt.config.errors import RobobtError, naming
 from robobt.learning.agents.nstep import NStep, Transitions
 from robobt.learning.envs import GoToBallSettings, GoToBallTask, ShootSettings, ShootTask, TaskSettings
 from robobt.learning.envs.task import BoolArray, FloatArray
 from robobt.learning.training.teachers import TEACHERS
-from robobt.match.problems import naming
 
 FORMAT = "robobt-demonstrations-1"
 
@@ -46,7 +46,7 @@ _MEANINGS = ("action", "period", "reward", "contact")
 """Settings that say what an action and a reward are; with others the critic would learn what is not so."""
 
 
-class DemonstrationsError(ValueError):
+class DemonstrationsError(RobobtError, ValueError):
     """A file of demonstrations cannot be used; the message is one line that names it."""
 
 
@@ -116,13 +116,8 @@ class Demonstrations:
             "success": pa.array(self.success),
         }
         table = pa.table(columns).replace_schema_metadata({"robobt": json.dumps(self.about)})
-        temporary = path.with_name(f".{path.name}.{os.getpid()}")
-        try:
-            with naming(path):
-                pq.write_table(table, temporary)
-                temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with replacing(path) as temporary, naming(path):
+            pq.write_table(table, temporary)
 
 
 def read_demonstrations(path: str | Path) -> Demonstrations:

@@ -22,21 +22,21 @@ from types import TracebackType
 from typing import Any, Self
 
 import torch
-import yaml
 
 from robobt import __version__
+from robobt.config.atomic import write_atomically
+from robobt.config.errors import RobobtError, naming
+from robobt.config.yaml import read_yaml, write_yaml
 from robobt.learning.agents.networks import Actor
 from robobt.learning.training import checkpoint
-from robobt.learning.training.checkpoint import Arrays, CheckpointError, write_atomically
+from robobt.learning.training.checkpoint import Arrays, CheckpointError
 from robobt.learning.training.settings import SettingsError, TrainSettings, settings_of
-from robobt.match.problems import naming
-from robobt.match.yaml_reader import YamlError, read_yaml
 
 SETTINGS, LOG, CHECKPOINT = "settings.yaml", "log.jsonl", "checkpoint"
 ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensorboard"
 
 
-class RunFolderError(ValueError):
+class RunFolderError(RobobtError, ValueError):
     """A run's folder cannot be used; the message is one line that names it."""
 
 
@@ -131,8 +131,7 @@ class RunFolder:
             raise RunFolderError(f"{path}: holds other files; give a new folder")
         else:
             path.mkdir(parents=True, exist_ok=True)
-            text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
-            write_atomically(path / SETTINGS, text.encode())
+            write_atomically(path / SETTINGS, write_yaml(settings.model_dump(mode="json")))
 
     def __enter__(self) -> Self:
         kept = self._kept_lines()
@@ -179,8 +178,8 @@ class RunFolder:
         name = f"seed {result.settings.seed}"
         draw_curves({name: result.judged}, title_of(result.settings), self.path / CURVES)
         text = json.dumps(result.figures, indent=2, allow_nan=False) + "\n"
-        write_atomically(self.path / RESULT, text.encode())
-        for path in (*self._checkpoints(), *self.path.glob(f".{CHECKPOINT}.*")):
+        write_atomically(self.path / RESULT, text)
+        for path in (*self._checkpoints(), *self.path.glob(f".*.{CHECKPOINT}")):
             path.unlink(missing_ok=True)
 
     def _has_begun(self) -> bool:
@@ -252,9 +251,7 @@ def read_settings(folder: Path) -> TrainSettings:
     """
     path = folder / SETTINGS
     try:
-        return settings_of(read_yaml(path), str(path))
-    except YamlError as error:
-        raise RunFolderError(f"{path}: {error}") from error
+        return settings_of(read_yaml(path, SettingsError), str(path))
     except SettingsError as error:
         raise RunFolderError(str(error)) from error
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from robobt.learning.training.checkpoint import write_atomically
+from robobt.config.atomic import write_atomically
 from robobt.learning.training.curves import draw_curves
 from robobt.learning.training.run_folder import (
     CURVES,
@@ -68,7 +68,7 @@ def train_seeds(
         _side_by_side(jobs, min(workers, len(jobs)), resume, on_progress)
         results = [load_run(folder) for _, folder in jobs]
     text = json.dumps(together(results), indent=2, allow_nan=False) + "\n"
-    write_atomically(out / RESULT, text.encode())
+    write_atomically(out / RESULT, text)
     draw_curves({f"seed {r.settings.seed}": r.judged for r in results}, title_of(settings), out / CURVES)
     return results
 

@@ -8,9 +8,10 @@ from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from robobt.config.errors import ConfigError
+from robobt.config.validation import first_problem
+from robobt.config.yaml import read_yaml
 from robobt.learning.envs import GoToBallSettings, ShootSettings, TaskSettings
-from robobt.match.problems import first_problem
-from robobt.match.yaml_reader import YamlError, read_yaml
 
 _PRESETS = Path(__file__).parent / "presets"
 SWITCHES = _PRESETS / "switches.yaml"
@@ -22,8 +23,8 @@ ENVIRONMENTS: dict[str, type[TaskSettings]] = {"go_to_ball": GoToBallSettings, "
 """The settings of each task's environment."""
 
 
-class SettingsError(ValueError):
-    """Settings are wrong; the message is one line that names the file and the field."""
+class SettingsError(ConfigError):
+    """Settings that cannot be used."""
 
 
 class _Settings(BaseModel):
@@ -209,9 +210,8 @@ def load_settings(task: str, preset: str = "fast", changes: Mapping[str, Any] | 
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
     if settings.task not in ENVIRONMENTS:
-        raise SettingsError(
-            f"{source}: task: there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
-        )
+        problem = f"there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
+        raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
@@ -241,7 +241,7 @@ def _validated(model: type[_M], data: dict[str, Any], source: str, group: str) -
     except ValidationError as error:
         field, problem = first_problem(error, model, data)
         place = ".".join([part for part in (group, field) if part])
-        raise SettingsError(f"{source}: {place + ': ' if place else ''}{problem}") from error
+        raise SettingsError(source, problem, place) from error
 
 
 def _read(task: str, preset: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
@@ -250,19 +250,14 @@ def _read(task: str, preset: str, seen: tuple[str, ...]) -> tuple[dict[str, Any]
     if path is not bundled and path.suffix not in (".yaml", ".yml"):
         known = presets(task)
         if not known:
-            raise SettingsError(f"no task is called {task!r}; there are {', '.join(ENVIRONMENTS)}")
-        raise SettingsError(f"no preset of {task} is called {preset!r}; there are {', '.join(known)}")
-    try:
-        data = read_yaml(path)
-    except YamlError as error:
-        raise SettingsError(f"{path}: {error}") from error
-    if not isinstance(data, dict):
-        raise SettingsError(f"{path}: must hold a mapping of settings")
+            raise SettingsError("", f"no task is called {task!r}; there are {', '.join(ENVIRONMENTS)}")
+        raise SettingsError("", f"no preset of {task} is called {preset!r}; there are {', '.join(known)}")
+    data = read_yaml(path, SettingsError)
     base = data.pop("extends", None)
     if base is None:
         return data, str(path)
     if not isinstance(base, str) or base in seen:
-        raise SettingsError(f"{path}: extends: must name another preset")
+        raise SettingsError(str(path), "must name another preset", "extends")
     return _merged(_read(task, base, (*seen, preset, base))[0], data), str(path)
 
 
@@ -279,7 +274,7 @@ def _assign(data: dict[str, Any], path: list[str], value: Any, name: str) -> Non
     for group in groups:
         inner = data.get(group, {})
         if not isinstance(inner, dict):
-            raise SettingsError(f"{name}: {group} holds a value, not settings")
+            raise SettingsError("", f"{group} holds a value, not settings", name)
         data[group] = inner = dict(inner)
         data = inner
     data[last] = value

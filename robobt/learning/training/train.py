@@ -14,6 +14,7 @@ import numpy as np
 import torch
 
 from robobt import __version__
+from robobt.config.errors import RobobtError
 from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.agents.nstep import NStep
@@ -29,7 +30,7 @@ _SHOW_EVERY = 0.5
 """Time between reports of progress [s]."""
 
 
-class TrainError(RuntimeError):
+class TrainError(RobobtError, RuntimeError):
     """A run cannot go on; the message is one line."""
 
 

@@ -20,7 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from robobt.match.problems import naming
+from robobt.config.atomic import write_atomically
 from robobt.match.recording import RecordedNode, RecordedRobot, Recording
 from robobt.tree.interop.btcpp import OTHER_TAGS, TAGS
 from robobt.world.state import RobotId
@@ -43,11 +43,7 @@ def write_btlog(recording: Recording, robot: RobotId, path: str | Path) -> Path:
         OSError: the file cannot be written.
     """
     path = Path(path)
-    data = btlog(recording, robot)
-    unfinished = path.with_name(f".{path.name}.part")
-    with naming(path):
-        unfinished.write_bytes(data)
-        unfinished.replace(path)
+    write_atomically(path, btlog(recording, robot))
     return path
 
 

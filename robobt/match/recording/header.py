@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from robobt import __version__
+from robobt.config.errors import RobobtError
 from robobt.tree.drawing import NodeKind
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -20,7 +21,7 @@ FORMAT = "robobt-recording"
 VERSION = 2
 
 
-class RecordingError(ValueError):
+class RecordingError(RobobtError, ValueError):
     """A file is not a recording that can be read.
 
     Attributes:

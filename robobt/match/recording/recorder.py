@@ -20,7 +20,7 @@ from typing import Any, BinaryIO, Self
 
 import numpy as np
 
-from robobt.match.problems import naming
+from robobt.config.errors import naming
 from robobt.match.recording.header import (
     FORMAT,
     VERSION,

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from robobt.match.problems import naming
+from robobt.config.errors import naming
 from robobt.match.recording import Recording, RobotFlag, load_recording
 from robobt.world.game import GameState
 from robobt.world.geometry import FloatArray

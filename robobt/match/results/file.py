@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any, Self, TextIO
 
 from robobt import __version__
-from robobt.match.problems import naming
+from robobt.config.errors import RobobtError, naming
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import is_play_file
@@ -20,7 +20,7 @@ from robobt.plays.files import is_play_file
 FORMAT = "robobt-results"
 
 
-class ResultsFileError(ValueError):
+class ResultsFileError(RobobtError, ValueError):
     """A results file cannot be continued; the message is one line that names it."""
 
 

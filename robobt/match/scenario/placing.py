@@ -7,9 +7,8 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from robobt.match.problems import FieldError
+from robobt.config.errors import FieldError, short_repr
 from robobt.match.scenario.starts import Around, BallStart, Box, Disc, RobotStart
-from robobt.tree.parameters import say_value
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point, wrap_angle
@@ -36,7 +35,7 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
             taken.append(("the ball", *ball.position, BALL_RADIUS))
     elif holder not in robots:
         there = ", ".join(map(str, robots))
-        raise FieldError("ball.held_by", f"no robot is called {say_value(ball.held_by)}; there are {there}")
+        raise FieldError("ball.held_by", f"no robot is called {short_repr(ball.held_by)}; there are {there}")
     for robot, start in robots.items():
         where = _field_of(robot, robots)
         position = start.position

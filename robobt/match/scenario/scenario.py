@@ -10,19 +10,20 @@ from typing import Any, Literal, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.match.problems import FieldError, first_problem, message_of, one_line
+from robobt.config.errors import ConfigError, FieldError, RobobtError, message_of, one_line, short_repr
+from robobt.config.resources import bundled_scenarios
+from robobt.config.validation import first_problem
+from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_starts
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
-from robobt.match.yaml_reader import YamlError, read_yaml
 from robobt.plays import PLAYS
 from robobt.plays.files import find_play, is_play_file
-from robobt.resources import bundled_scenarios
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
 from robobt.tree.devtools import substitute
 from robobt.tree.interop import TreeFileError
-from robobt.tree.parameters import ParameterError, check_parameters, say_value
+from robobt.tree.parameters import ParameterError, check_parameters
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
@@ -36,28 +37,8 @@ MAX_SEED = 2**53 - 1
 """Largest seed: what every JSON reader still reads exactly."""
 
 
-class ScenarioError(ValueError):
-    """Something is wrong with a scenario; the message is one line.
-
-    Attributes:
-        source: the file, or the scenario's name.
-        field: where in it ("robots.blue.0.play"), empty when it is not one field.
-    """
-
-    def __init__(self, source: str, problem: str, field: str = "") -> None:
-        self.source, self.field = source, field
-        parts = [source, field, problem] if field else [source, problem]
-        super().__init__(one_line(": ".join(parts)))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_restore, (self.source, self.field, str(self)))
-
-
-def _restore(source: str, field: str, message: str) -> ScenarioError:
-    # An exception is pickled by its message, which is not what its constructor takes.
-    error = ScenarioError(source, "", field)
-    error.args = (message,)
-    return error
+class ScenarioError(ConfigError):
+    """A scenario that cannot be played; the file is the scenario's name when it came from no file."""
 
 
 class RobotSetup(Part):
@@ -81,7 +62,7 @@ class RobotSetup(Part):
     @classmethod
     def _known(cls, play: str) -> str:
         if not is_play_file(play) and play not in PLAYS:
-            there = f"no play is called {say_value(play)}; there are {', '.join(PLAYS)}"
+            there = f"no play is called {short_repr(play)}; there are {', '.join(PLAYS)}"
             raise ValueError(PLAYS.problem_with(play) or there)
         return play
 
@@ -123,7 +104,7 @@ class RobotSetup(Part):
         return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
 
 
-class _SubstitutionError(ValueError):
+class _SubstitutionError(RobobtError, ValueError):
     """A rule for nodes to be replaced is wrong."""
 
 
@@ -227,7 +208,7 @@ class Scenario(Part):
         if not isinstance(value, str):
             return value
         if value not in FIELDS:
-            raise ValueError(f"no field is called {say_value(value)}; there are {', '.join(FIELDS)}")
+            raise ValueError(f"no field is called {short_repr(value)}; there are {', '.join(FIELDS)}")
         return FIELDS[value]
 
     @field_validator("simulator", mode="before")
@@ -301,10 +282,7 @@ def load_scenario(source: str | Path) -> Scenario:
         missing = True
     if missing:
         raise ScenarioError(where, f"no such file or bundled scenario; bundled are {', '.join(bundled)}")
-    try:
-        data = read_yaml(path)
-    except YamlError as error:
-        raise ScenarioError(str(path), str(error)) from error
+    data = read_yaml(path, ScenarioError)
     # From here, not from the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))
     scenario = scenario_from(data, str(path))

@@ -15,6 +15,7 @@ from typing import Any
 import pyarrow as pa
 
 from robobt import __version__
+from robobt.config.atomic import write_atomically
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.data.files import csv_text, read_shots, write_shots
 from robobt.shots.data.problems import ShotDataError
@@ -141,6 +142,4 @@ class CollectionFile:
             },
             indent=1,
         )
-        draft = self.description.with_name(f".{self.description.name}.part")
-        draft.write_text(text + "\n", encoding="utf-8")
-        draft.replace(self.description)
+        write_atomically(self.description, text + "\n")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from robobt.config.errors import RobobtError
 from robobt.shots.collect.balanced import balanced_attempt
 from robobt.shots.collect.paper import PARTS, paper_attempt
 from robobt.shots.collect.plan import CollectionSettings
@@ -19,7 +20,7 @@ _AHEAD = 4
 """Trials a worker holds at a time: they take milliseconds."""
 
 
-class CollectionError(RuntimeError):
+class CollectionError(RobobtError, RuntimeError):
     """A trial could not be played to its end; the message is one line."""
 
 

@@ -7,6 +7,7 @@ from math import isnan
 from pathlib import Path
 from typing import TypeVar
 
+from robobt.config.errors import RobobtError
 from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
@@ -28,7 +29,7 @@ _LIMIT = 1.0 + 1e-4
 """Largest action that rounding in single precision explains."""
 
 
-class PolicyError(RuntimeError):
+class PolicyError(RobobtError, RuntimeError):
     """A policy answered what is no action; the robot must not act on it."""
 
 

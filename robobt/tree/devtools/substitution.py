@@ -13,8 +13,8 @@ from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Composite, Parallel
 from py_trees.decorators import Decorator
 
-from robobt.tree.interop.errors import TreeFileError
-from robobt.tree.interop.plain_yaml import MAX_BYTES, Marked, YamlError, read_marked
+from robobt.config.yaml import MAX_BYTES, Marked, parse_marked, read_limited
+from robobt.tree.interop.model import TreeFileError
 from robobt.tree.runner import node_path
 
 
@@ -73,17 +73,8 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
         TreeFileError: the first thing that is wrong, with file and line.
     """
     source = str(path)
-    try:
-        with Path(path).open("rb") as opened:
-            content = opened.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise TreeFileError(source, None, f"cannot be read: {reason}") from error
-    try:
-        marked = read_marked(content)
-    except YamlError as error:
-        raise TreeFileError(source, error.line, str(error)) from error
-    return _rules(marked, source)
+    content = read_limited(Path(path), MAX_BYTES, TreeFileError)
+    return _rules(parse_marked(content, source, TreeFileError), source)
 
 
 def substitutions(rules: Mapping[str, Any], source: str = "rules") -> list[Substitution]:
@@ -121,7 +112,9 @@ def substitute(root: Behaviour, rules: Iterable[Substitution] | Mapping[str, Any
     replaced = _choose(root, chosen, matched)
     for number, rule in enumerate(chosen):
         if number not in matched:
-            raise TreeFileError(rule.source, rule.line, f"no node of the tree is left for {rule.pattern!r}")
+            raise TreeFileError(
+                rule.source, f"no node of the tree is left for {rule.pattern!r}", line=rule.line
+            )
     for node, rule in replaced:
         leaf = ScriptedLeaf(node.name, rule.script)
         if node is root:
@@ -154,7 +147,7 @@ def _replace(node: Behaviour, leaf: Behaviour) -> None:
 def _rules(marked: Marked, source: str) -> list[Substitution]:
     if not isinstance(marked.value, dict) or not marked.value:
         problem = "rules map patterns of paths to statuses: '*/HasBall': SUCCESS"
-        raise TreeFileError(source, marked.line or None, problem)
+        raise TreeFileError(source, problem, line=marked.line or None)
     return [
         Substitution(pattern, _script(pattern, part, source), source, part.line or None)
         for pattern, part in marked.value.items()
@@ -167,25 +160,25 @@ def _script(pattern: str, marked: Marked, source: str) -> tuple[Status, ...]:
         for key, part in marked.value.items():
             if key not in ("status", "script"):
                 problem = f"{pattern}: unknown key {key!r}; a rule has status or script"
-                raise TreeFileError(source, part.line or None, problem)
+                raise TreeFileError(source, problem, line=part.line or None)
         if len(marked.value) != 1:
-            raise TreeFileError(source, line, f"{pattern}: a rule has either status or script")
+            raise TreeFileError(source, f"{pattern}: a rule has either status or script", line=line)
         ((key, marked),) = marked.value.items()
         if isinstance(marked.value, list) is not (key == "script"):
             one = "a list of statuses" if key == "script" else "one status"
-            raise TreeFileError(source, marked.line or None, f"{pattern}: {key} is {one}")
+            raise TreeFileError(source, f"{pattern}: {key} is {one}", line=marked.line or None)
     steps = marked.value if isinstance(marked.value, list) else [marked]
     if not steps:
-        raise TreeFileError(source, line, f"{pattern}: the script is empty")
+        raise TreeFileError(source, f"{pattern}: the script is empty", line=line)
     return tuple(_status(pattern, step, source) for step in steps)
 
 
 def _status(pattern: str, marked: Marked, source: str) -> Status:
     for status in (Status.SUCCESS, Status.FAILURE, Status.RUNNING):
-        if marked.value is status or marked.value == status.value:
+        if marked.value == status.value:
             return status
     problem = f"{pattern}: {_say(marked.value)} is not SUCCESS, FAILURE or RUNNING"
-    raise TreeFileError(source, marked.line or None, problem)
+    raise TreeFileError(source, problem, line=marked.line or None)
 
 
 def _say(value: Any) -> str:
@@ -196,7 +189,7 @@ def _say(value: Any) -> str:
 def _marked(value: Any) -> Marked:
     """Given data in the form of read data; its lines are 0, for there are none."""
     if isinstance(value, Mapping):
-        return Marked({str(key): _marked(part) for key, part in value.items()}, 0)
+        return Marked({str(key): _marked(part) for key, part in value.items()}, 0, 0)
     if isinstance(value, list | tuple):
-        return Marked([_marked(part) for part in value], 0)
-    return Marked(value, 0)
+        return Marked([_marked(part) for part in value], 0, 0)
+    return Marked(value.value if isinstance(value, Status) else value, 0, 0)

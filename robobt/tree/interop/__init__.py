@@ -2,8 +2,7 @@
 
 from robobt.tree.interop.build import build_tree
 from robobt.tree.interop.describe import describe_tree, tree_differences
-from robobt.tree.interop.errors import TreeFileError
-from robobt.tree.interop.model import Entry, TreeFile
+from robobt.tree.interop.model import Entry, TreeFile, TreeFileError
 from robobt.tree.interop.play import FILE_ENDINGS, FilePlay, load_tree_file, try_build
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.interop.xml import parse_xml, write_xml

@@ -9,8 +9,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from robobt.config.errors import short_repr
 from robobt.tree.check import entries_of
-from robobt.tree.interop.errors import TreeFileError
 from robobt.tree.interop.formula import evaluate
 from robobt.tree.interop.model import (
     Choice,
@@ -23,10 +23,11 @@ from robobt.tree.interop.model import (
     SubTree,
     Text,
     TreeFile,
+    TreeFileError,
     Value,
 )
 from robobt.tree.interop.vocabulary import NodeType, Vocabulary
-from robobt.tree.parameters import Parameter, ParameterError, parameters_of, say_value
+from robobt.tree.parameters import Parameter, ParameterError, parameters_of
 
 MAX_NODES = 10_000
 """Most nodes of a tree that is built from a file."""
@@ -50,7 +51,7 @@ def build_tree(
     try:
         return _Builder(file, vocabulary).tree(definition, given or {}, None)
     except RecursionError as error:
-        raise TreeFileError(file.source, definition.line, "it is nested too deeply") from error
+        raise TreeFileError(file.source, "it is nested too deeply", line=definition.line) from error
 
 
 @dataclass(slots=True)
@@ -126,7 +127,7 @@ class _Builder:
             root = play(**converted)
             if isinstance(root, Behaviour):
                 return root
-        raise self._error(spec.line, f"{spec.tree} is no play: it made {say_value(root)}")
+        raise self._error(spec.line, f"{spec.tree} is no play: it made {short_repr(root)}")
 
     def _node(self, spec: Node, scope: _Scope) -> Behaviour:
         known = self.vocabulary.type(spec.type)
@@ -217,10 +218,10 @@ class _Builder:
         if isinstance(by, str) and by in choice.cases:
             return choice.cases[by]
         cases = ", ".join(choice.cases)
-        raise self._error(choice.line, f"there is no case for {say_value(by)}; there are {cases}")
+        raise self._error(choice.line, f"there is no case for {short_repr(by)}; there are {cases}")
 
     def _error(self, line: int | None, problem: str) -> TreeFileError:
-        return TreeFileError(self.file.source, line, problem)
+        return TreeFileError(self.file.source, problem, line=line)
 
     @contextmanager
     def _at(self, line: int, what: str) -> Iterator[None]:

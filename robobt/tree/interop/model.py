@@ -6,8 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from robobt.config.errors import ConfigError
 from robobt.tree.interop.formula import formula_names
 from robobt.tree.parameters import Parameter
+
+
+class TreeFileError(ConfigError):
+    """A tree file, or a file of substitution rules, that cannot be used."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,9 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from robobt.config.yaml import read_limited
 from robobt.tree.interop.build import build_tree
-from robobt.tree.interop.errors import TreeFileError
-from robobt.tree.interop.model import Name, Text, TreeFile
+from robobt.tree.interop.model import Name, Text, TreeFile, TreeFileError
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.interop.xml import parse_xml
 from robobt.tree.interop.xml_reader import MAX_BYTES
@@ -69,15 +69,9 @@ def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
     """
     path = Path(path)
     if path.suffix not in FILE_ENDINGS:
-        raise TreeFileError(str(path), None, f"its ending is none of {', '.join(FILE_ENDINGS)}")
+        raise TreeFileError(str(path), f"its ending is none of {', '.join(FILE_ENDINGS)}")
     parse = parse_xml if path.suffix == ".xml" else parse_yaml
-    try:
-        with path.open("rb") as opened:
-            content = opened.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise TreeFileError(str(path), None, f"cannot be read: {reason}") from error
-    file = parse(content, vocabulary, str(path))
+    file = parse(read_limited(path, MAX_BYTES, TreeFileError), vocabulary, str(path))
     try_build(file, vocabulary)
     return file
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 
-from robobt.tree.interop.errors import TreeFileError
 from robobt.tree.interop.model import (
     Choice,
     Definition,
@@ -17,6 +16,7 @@ from robobt.tree.interop.model import (
     SubTree,
     Text,
     TreeFile,
+    TreeFileError,
     Value,
     names_in,
 )
@@ -41,7 +41,7 @@ def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
         for definition in file.trees.values():
             verifier.definition(definition)
     except RecursionError as error:
-        raise TreeFileError(file.source, None, "it is nested too deeply") from error
+        raise TreeFileError(file.source, "it is nested too deeply") from error
 
 
 class _Verifier:
@@ -166,7 +166,7 @@ class _Verifier:
                 raise self._error(line, f"the tree has no parameter {name!r}; {there}")
 
     def _error(self, line: int, problem: str) -> TreeFileError:
-        return TreeFileError(self.file.source, line, problem)
+        return TreeFileError(self.file.source, problem, line=line)
 
 
 def unknown_type(name: str, vocabulary: Vocabulary, tags: Iterable[str] = ()) -> str:

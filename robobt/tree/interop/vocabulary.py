@@ -16,10 +16,11 @@ from py_trees.common import OneShotPolicy, ParallelPolicy
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
+from robobt.config.errors import short_repr
 from robobt.tree import nodes
 from robobt.tree.interop.model import Entry
 from robobt.tree.leaf import Bound
-from robobt.tree.parameters import Parameter, ParameterError, parameters_of, say_value
+from robobt.tree.parameters import Parameter, ParameterError, parameters_of
 
 
 class Named(Protocol):
@@ -176,7 +177,7 @@ class Vocabulary:
                 first = first or error
                 if self._is_refused(parameter, value):
                     raise
-        raise ParameterError(parameter.name, f"{say_value(text)} is no {parameter.kind}") from first
+        raise ParameterError(parameter.name, f"{short_repr(text)} is no {parameter.kind}") from first
 
     def to_text(self, parameter: Parameter | None, value: Any) -> str:
         """The text that :meth:`from_text` reads as this plain data; for any type where none is named."""

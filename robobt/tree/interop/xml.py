@@ -18,7 +18,6 @@ from robobt.tree.interop.btcpp import (
     Attribute,
     Tag,
 )
-from robobt.tree.interop.errors import TreeFileError
 from robobt.tree.interop.kinds import hint_of, say_kind
 from robobt.tree.interop.model import (
     Choice,
@@ -30,11 +29,12 @@ from robobt.tree.interop.model import (
     SubTree,
     Text,
     TreeFile,
+    TreeFileError,
     Value,
 )
 from robobt.tree.interop.verify import sub_trees, unknown_type, verify
 from robobt.tree.interop.vocabulary import NodeType, Vocabulary, is_pointer, takes_entry
-from robobt.tree.interop.xml_reader import Element, XmlError, read_element
+from robobt.tree.interop.xml_reader import Element, read_element
 from robobt.tree.parameters import Parameter, ParameterError
 
 
@@ -51,11 +51,9 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
         TreeFileError: the first thing that is wrong.
     """
     try:
-        file = _Reader(vocabulary, source).file(read_element(text))
-    except XmlError as error:
-        raise TreeFileError(source, error.line, str(error)) from error
+        file = _Reader(vocabulary, source).file(read_element(text, source))
     except RecursionError as error:
-        raise TreeFileError(source, None, "it is nested too deeply") from error
+        raise TreeFileError(source, "it is nested too deeply") from error
     verify(file, vocabulary)
     return file
 
@@ -335,7 +333,7 @@ class _Reader:
         return text
 
     def _error(self, element: Element, problem: str) -> TreeFileError:
-        return TreeFileError(self.source, element.line, problem)
+        return TreeFileError(self.source, problem, line=element.line)
 
 
 class _Writer:

@@ -10,23 +10,13 @@ from dataclasses import dataclass, field
 from typing import NoReturn
 from xml.parsers import expat
 
+from robobt.tree.interop.model import TreeFileError
+
 MAX_BYTES = 1024 * 1024
 """Largest text that is read."""
 
 MAX_DEPTH = 100
 """Deepest nesting that is followed."""
-
-
-class XmlError(ValueError):
-    """What is wrong with a text.
-
-    Attributes:
-        line: where, counted from 1; None when unknown.
-    """
-
-    def __init__(self, line: int | None, problem: str) -> None:
-        super().__init__(problem)
-        self.line = line
 
 
 @dataclass(slots=True)
@@ -48,30 +38,36 @@ class Element:
     text: str = ""
 
 
-def read_element(content: bytes | str) -> Element:
-    """The outermost element of a document.
+def read_element(content: bytes | str, source: str) -> Element:
+    """Return the outermost element of a document.
+
+    Args:
+        content: the text.
+        source: name of the text for messages.
 
     Raises:
-        XmlError: it is no well-formed XML, or has what is not allowed.
+        TreeFileError: the text is not well-formed XML, or has what is not allowed.
     """
     if len(content) > MAX_BYTES:
-        raise XmlError(None, f"is larger than {MAX_BYTES // 1024} KiB")
-    reader = _Reader()
+        raise TreeFileError(source, f"is larger than {MAX_BYTES // 1024} KiB")
+    reader = _Reader(source)
     try:
         reader.parser.Parse(content, True)
     except expat.ExpatError as error:
-        raise XmlError(error.lineno, f"is no XML: {expat.ErrorString(error.code)}") from error
+        problem = f"is no XML: {expat.ErrorString(error.code)}"
+        raise TreeFileError(source, problem, line=error.lineno) from error
     except (LookupError, UnicodeError, ValueError) as error:
         # An encoding that does not exist, or that the text does not keep to.
-        if isinstance(error, XmlError):
+        if isinstance(error, TreeFileError):
             raise
-        raise XmlError(reader.line, f"is not text: {error}") from error
+        raise TreeFileError(source, f"is not text: {error}", line=reader.line) from error
     assert reader.root is not None
     return reader.root
 
 
 class _Reader:
-    def __init__(self) -> None:
+    def __init__(self, source: str) -> None:
+        self.source = source
         self.root: Element | None = None
         self.open: list[Element] = []
         self.parser = parser = expat.ParserCreate()
@@ -91,7 +87,7 @@ class _Reader:
     def _start(self, tag: str, attributes: list[str]) -> None:
         element = Element(tag, dict(zip(attributes[::2], attributes[1::2], strict=True)), self.line)
         if len(self.open) >= MAX_DEPTH:
-            raise XmlError(self.line, f"nested deeper than {MAX_DEPTH} levels")
+            raise TreeFileError(self.source, f"nested deeper than {MAX_DEPTH} levels", line=self.line)
         if self.open:
             self.open[-1].children.append(element)
         else:
@@ -105,7 +101,9 @@ class _Reader:
         self.open[-1].text += text
 
     def _no_doctype(self, *_: object) -> NoReturn:
-        raise XmlError(self.line, "a document type and entities of one's own are not allowed")
+        raise TreeFileError(
+            self.source, "a document type and entities of one's own are not allowed", line=self.line
+        )
 
     def _no_instruction(self, target: str, _data: str) -> NoReturn:
-        raise XmlError(self.line, f"the instruction <?{target}?> is not allowed")
+        raise TreeFileError(self.source, f"the instruction <?{target}?> is not allowed", line=self.line)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from robobt.tree.interop.errors import TreeFileError
+from robobt.config import yaml
+from robobt.config.yaml import Marked, parse_marked
 from robobt.tree.interop.formula import formula_names
 from robobt.tree.interop.kinds import choices_hint, choices_of, hint_of, kind_of, say_kind
 from robobt.tree.interop.model import (
@@ -18,9 +19,9 @@ from robobt.tree.interop.model import (
     SubTree,
     Text,
     TreeFile,
+    TreeFileError,
     Value,
 )
-from robobt.tree.interop.plain_yaml import Marked, YamlError, read_marked, write_plain
 from robobt.tree.interop.verify import is_written_out, unknown_type, verify
 from robobt.tree.interop.vocabulary import NodeType, Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError
@@ -36,12 +37,9 @@ def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") 
         TreeFileError: the first thing that is wrong.
     """
     try:
-        marked = read_marked(text)
-        file = _Reader(vocabulary, source).file(marked)
-    except YamlError as error:
-        raise TreeFileError(source, error.line, str(error)) from error
+        file = _Reader(vocabulary, source).file(parse_marked(text, source, TreeFileError))
     except RecursionError as error:
-        raise TreeFileError(source, None, "it is nested too deeply") from error
+        raise TreeFileError(source, "it is nested too deeply") from error
     verify(file, vocabulary)
     return file
 
@@ -62,7 +60,7 @@ def write_yaml(file: TreeFile) -> str:
     if others:
         data["trees"] = others
     data["tree"] = root
-    return write_plain(data)
+    return yaml.write_yaml(data)
 
 
 class _Reader:
@@ -74,7 +72,7 @@ class _Reader:
         self._keys("a tree file", marked, ("play", *_TREE_KEYS, "trees"), needed=("play", "tree"))
         main = self._tree(self._word(parts["play"], "play"), marked, ("play", "trees"))
         trees = {main.name: main}
-        for name, part in self._mapping(parts.get("trees", Marked({}, 1)), "trees").items():
+        for name, part in self._mapping(parts.get("trees", Marked({}, 1, 1)), "trees").items():
             if name in trees:
                 raise self._error(part, f"the tree {name!r} is there twice")
             trees[name] = self._tree(name, part, ())
@@ -89,10 +87,10 @@ class _Reader:
             if not isinstance(description.value, str):
                 raise self._error(description, "the description is text")
             definition.description = description.value
-        for parameter, part in self._mapping(parts.get("params", Marked({}, 1)), "params").items():
+        for parameter, part in self._mapping(parts.get("params", Marked({}, 1, 1)), "params").items():
             self._check_identifier(parameter, part)
             definition.parameters[parameter] = self._parameter(parameter, part)
-        for value, part in self._mapping(parts.get("let", Marked({}, 1)), "let").items():
+        for value, part in self._mapping(parts.get("let", Marked({}, 1, 1)), "let").items():
             self._check_identifier(value, part)
             if value in definition.parameters:
                 raise self._error(part, f"{value!r} is a parameter already")
@@ -140,21 +138,23 @@ class _Reader:
 
     def _spec(self, marked: Marked) -> Spec:
         if isinstance(marked.value, str):
-            return self._node(marked.value, Marked({}, marked.line), marked)
+            return self._node(marked.value, Marked({}, marked.line, marked.column), marked)
         if self._is_choice(marked):
             return self._choice(marked, self._spec)
         if not isinstance(marked.value, dict) or len(marked.value) != 1:
             raise self._error(marked, "a node is a name, or one name with its parameters: Wall: {place: 0}")
         ((name, body),) = marked.value.items()
         if body.value is None:
-            body = Marked({}, body.line)
+            body = Marked({}, body.line, body.column)
         if not isinstance(body.value, dict):
             raise self._error(body, f"{name} takes its parameters by name: {name}: {{name: value}}")
         return self._sub_tree(body, marked) if name == "SubTree" else self._node(name, body, marked)
 
     def _sub_tree(self, body: Marked, marked: Marked) -> SubTree:
-        self._keys("SubTree", Marked(body.value, marked.line), ("tree", "params"), needed=("tree",))
-        params = self._mapping(body.value.get("params", Marked({}, body.line)), "params")
+        self._keys(
+            "SubTree", Marked(body.value, marked.line, marked.column), ("tree", "params"), needed=("tree",)
+        )
+        params = self._mapping(body.value.get("params", Marked({}, body.line, body.column)), "params")
         return SubTree(
             self._word(body.value["tree"], "tree"),
             {name: self._value(part) for name, part in params.items()},
@@ -260,7 +260,7 @@ class _Reader:
             raise self._error(marked, f"{name!r} is no name of a parameter")
 
     def _error(self, marked: Marked, problem: str) -> TreeFileError:
-        return TreeFileError(self.source, marked.line, problem)
+        return TreeFileError(self.source, problem, line=marked.line)
 
 
 def _tree_data(definition: Definition) -> dict[str, Any]:

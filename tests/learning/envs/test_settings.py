@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-import yaml
 from pydantic import ValidationError
 
+from robobt.config.yaml import parse_marked
 from robobt.learning.envs import HARDWARE_CHALLENGE, SHOOT_REWARDS, GoToBallSettings, ShootSettings
 from robobt.models.actions import ActionScaling
 from robobt.sim import preset
@@ -24,7 +24,7 @@ randomisation: {friction: [0.8, 1.2]}
 
 
 def test_settings_come_from_yaml() -> None:
-    settings = GoToBallSettings.model_validate(yaml.safe_load(TEXT))
+    settings = GoToBallSettings.model_validate(parse_marked(TEXT, "yaml").plain())
     assert settings.field == HARDWARE_CHALLENGE
     assert settings.simulator.ball == preset("grsim").ball
     assert settings.simulator.realism.command_delay == 0.003
@@ -35,7 +35,7 @@ def test_settings_come_from_yaml() -> None:
 @pytest.mark.parametrize(
     "settings",
     [
-        GoToBallSettings.model_validate(yaml.safe_load(TEXT)),
+        GoToBallSettings.model_validate(parse_marked(TEXT, "yaml").plain()),
         ShootSettings.model_validate({"reward": "sparse", "simulator": "sumatra"}),
     ],
 )

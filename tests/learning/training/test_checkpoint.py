@@ -3,14 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robobt.learning.training.checkpoint import (
-    CheckpointError,
-    load,
-    load_latest,
-    previous,
-    save,
-    write_atomically,
-)
+from robobt.learning.training.checkpoint import CheckpointError, load, load_latest, previous, save
 
 ARRAYS = {"weights": np.arange(100, dtype=np.float32).reshape(10, 10), "empty": np.zeros((0, 3))}
 PLAIN = {"steps": 7, "rng": {"state": 2**127 + 1}, "best": None}
@@ -65,17 +58,3 @@ def test_a_damaged_checkpoint_falls_back_on_the_one_before(tmp_path):
 def test_with_neither_the_newest_is_named(tmp_path):
     with pytest.raises(CheckpointError, match="c: cannot be read"):
         load_latest(tmp_path / "c")
-
-
-def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    write_atomically(tmp_path / "c", b"old")
-
-    def full(handle):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(OSError, match="No space left") as caught:
-        write_atomically(tmp_path / "c", b"new")
-    assert caught.value.filename == str(tmp_path / "c")
-    assert (tmp_path / "c").read_bytes() == b"old"
-    assert [path.name for path in tmp_path.iterdir()] == ["c"]

@@ -1,8 +1,8 @@
 from __future__ import annotations
 
 import pytest
-import yaml
 
+from robobt.config.yaml import parse_marked, write_yaml
 from robobt.learning.training.compare import variants
 from robobt.learning.training.settings import (
     ENVIRONMENTS,
@@ -85,8 +85,8 @@ def test_a_preset_may_be_a_file_that_extends_another(tmp_path):
 
 def test_settings_survive_being_written_and_read():
     settings = load_settings("shoot", "ddpgfd", {"environment.simulator": "robobulls"})
-    text = yaml.safe_dump(settings.model_dump(mode="json"))
-    assert TrainSettings.model_validate(yaml.safe_load(text)) == settings
+    text = write_yaml(settings.model_dump(mode="json"))
+    assert TrainSettings.model_validate(parse_marked(text, "yaml").plain()) == settings
     assert environment_of(settings).simulator.dribbler.kind == "glue"
 
 
@@ -123,7 +123,7 @@ def test_wrong_settings_are_one_line_that_names_file_and_field(changes, said):
         ("[1, 2]", "must hold a mapping"),
         ("extends: [a]", "extends: must name another preset"),
         ("{extends: fast, agent: {tau: -1}}", r"mine.yaml: agent\.tau: .*greater than 0"),
-        ("agent: {tau: ", "line 1"),
+        ("agent: {tau: ", r"mine.yaml:1: "),
         ("extends: nothing", "no preset of go_to_ball is called 'nothing'"),
     ],
 )

@@ -9,10 +9,12 @@ from __future__ import annotations
 import copy
 import random
 from collections.abc import Sequence
+from io import StringIO
 from typing import Any
 
-import yaml
+from ruamel.yaml import YAML
 
+from robobt.config.yaml import parse_marked
 from robobt.plays import PLAYS
 from robobt.tree.parameters import parameters_of
 
@@ -37,7 +39,7 @@ FRAGMENTS = (
 
 def mutated(rng: random.Random, texts: Sequence[str]) -> bytes:
     """The bytes of one mutated scenario file."""
-    data = yaml.safe_load(rng.choice(texts))
+    data = parse_marked(rng.choice(texts), "seed").plain()
     for _ in range(rng.choice((0, 1, 1, 1, 2, 2, 3, 5, 8))):
         data = rng.choice(_DATA_MUTATIONS)(rng, data)
     content = _dump(rng, data)
@@ -48,10 +50,11 @@ def mutated(rng: random.Random, texts: Sequence[str]) -> bytes:
 
 
 def _dump(rng: random.Random, data: Any) -> bytes:
-    text = yaml.safe_dump(
-        data, allow_unicode=rng.random() < 0.5, default_flow_style=rng.choice((None, True, False))
-    )
-    return text.encode(rng.choice(("utf-8", "utf-8", "utf-8", "utf-16", "latin-1")), "replace")
+    writer, text = YAML(typ="safe", pure=True), StringIO()
+    writer.allow_unicode = rng.random() < 0.5
+    writer.default_flow_style = rng.choice((None, True, False))
+    writer.dump(data, text)
+    return text.getvalue().encode(rng.choice(("utf-8", "utf-8", "utf-8", "utf-16", "latin-1")), "replace")
 
 
 def _spots(data: Any) -> list[tuple[Any, Any]]:

@@ -2,8 +2,8 @@
 
 import pytest
 
+from robobt.config.resources import bundled_scenarios
 from robobt.match import load_scenario, play_match, run_trials, summarise
-from robobt.resources import bundled_scenarios
 from robobt.worlds import sim_world
 
 

@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-import yaml
 
+from robobt.config.resources import bundled_scenarios
+from robobt.config.yaml import write_yaml
 from robobt.match import ScenarioError, load_scenario, play_match
-from robobt.resources import bundled_scenarios
 from robobt.worlds import sim_world
 from tests.match.scenario.mutation import mutated
 from tests.match.scripted import data
@@ -24,7 +24,7 @@ HANG = 60
 
 
 def texts() -> list[str]:
-    return [path.read_text() for path in bundled_scenarios().values()] + [yaml.safe_dump(data())]
+    return [path.read_text() for path in bundled_scenarios().values()] + [write_yaml(data())]
 
 
 @contextmanager

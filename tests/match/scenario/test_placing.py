@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.match.problems import FieldError
+from robobt.config.errors import FieldError
 from robobt.match.scenario.placing import HELD_DISTANCE, Placer, check_starts
 from robobt.match.scenario.starts import BallStart, RobotStart
 from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS, Placement, RobotId, Team

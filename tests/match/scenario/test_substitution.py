@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
+from robobt.config.yaml import write_yaml
 from robobt.match import Scenario, ScenarioError, load_scenario, run_trials
 from robobt.match.results.file import ResultsFileError
 from robobt.match.scenario.scenario import scenario_from
@@ -42,7 +42,7 @@ def test_the_rules_may_be_in_a_file_beside_the_scenario(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "rules.yaml").write_text('"*/GoToBall": FAILURE\n')
-    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(two_robots(substitute="rules.yaml")))
+    (tmp_path / "mine.yaml").write_text(write_yaml(two_robots(substitute="rules.yaml")))
     scenario = load_scenario(str(tmp_path / "mine.yaml"))
     assert scripted_nodes(scenario)["blue 0"] == ["GoToBall"]
     out = tmp_path / "results.jsonl"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import yaml
 
+from robobt.config.yaml import write_yaml
 from robobt.match import ScenarioError, load_scenario, run_trials
 from robobt.match.scenario.scenario import scenario_from
 from robobt.plays import PLAYS
@@ -27,7 +27,7 @@ def scenario(folder: Path, children: str, play: str = "kicker.yaml") -> Path:
     (folder / "kicker.yaml").write_text(TREE.format(children=children))
     path = folder / "own.yaml"
     robot = {"number": 1, "play": play, "start": {"position": [-1.0, 0.0]}}
-    path.write_text(yaml.safe_dump({"robots": {"blue": [robot]}, "ends": {"time_limit": 8.0}}))
+    path.write_text(write_yaml({"robots": {"blue": [robot]}, "ends": {"time_limit": 8.0}}))
     return path
 
 

@@ -6,12 +6,14 @@ import copy
 import random
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
+from robobt.config.yaml import parse_marked
 from robobt.plays.files import VOCABULARY as PLAYS_VOCABULARY
 from robobt.plays.files import play_files
 from robobt.tree import Behaviour
@@ -62,7 +64,7 @@ tree:
 """
 
 YAML_SEEDS = [EVERYTHING, *[play_files()[name].read_text() for name in ("attack_support", "keeper")]]
-YAML_DATA = {text: yaml.safe_load(text) for text in YAML_SEEDS}
+YAML_DATA = {text: parse_marked(text, "seed").plain() for text in YAML_SEEDS}
 XML_SEEDS = [path.read_text() for path in sorted((Path(__file__).parent / "data").glob("*.xml"))]
 
 # Pieces that mean something to YAML, to XML, to numbers or to the files' own languages.
@@ -191,7 +193,9 @@ def mutated_yaml(rng: random.Random, text: str, others: list[str]) -> bytes:
             )
         if not list(places_in(data)):
             break
-    return yaml.safe_dump(data, sort_keys=False, allow_unicode=True).encode("utf-8", "surrogatepass")
+    written = StringIO()
+    YAML(typ="safe", pure=True).dump(data, written)
+    return written.getvalue().encode("utf-8", "surrogatepass")
 
 
 def places_in(data: Any) -> Any:

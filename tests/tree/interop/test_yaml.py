@@ -28,7 +28,6 @@ from robobt.tree.interop import (
     write_yaml,
 )
 from robobt.tree.interop.formula import evaluate
-from robobt.tree.interop.plain_yaml import read_marked, write_plain
 from robobt.tree.interop.vocabulary import CONTROL
 from robobt.tree.nodes import Cooldown, TickDivider
 from robobt.tree.parameters import parameters_of
@@ -363,9 +362,6 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("tree: Stop", "needs 'play'"),
         ("play: p\ntree: Stop\nroot: Stop", "test.yaml:3: a tree file has no 'root'"),
         ("play: p\nplay: q\ntree: Stop", "test.yaml:2: the key 'play' is given twice"),
-        ("play: p\nparams: {a: 010}\ntree: Stop", "test.yaml:2: write 8, not '010', as a number"),
-        ("play: p\nparams: {a: 1:30}\ntree: Stop", "test.yaml:2: write 90, not '1:30', as a number"),
-        ("play: p\nparams: {a: -1:30.5}\ntree: Stop", "test.yaml:2: write -90.5, not '-1:30.5', as a number"),
         ("play: 3\ntree: Stop", "play is a text on one line"),
         ("play: p\ndescription: [1]\ntree: Stop", "test.yaml:2: the description is text"),
         ("play: p\ntree: Sotp", "test.yaml:2: no node is called 'Sotp'; is it Stop"),
@@ -477,11 +473,11 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
             "n: q needs this parameter",
         ),
         ("play: p\ntree: !!python/name:os.system", "the tag .* is not allowed"),
-        ("play: p\ntree: &a Stop\nlet: {b: *a}", r"aliases \(\*name\) are not allowed"),
+        ("play: p\ntree: &a Stop", r"anchors \(&name\) are not allowed"),
         ("play: p\ntree: {Wall: {1: 2}}", "the key '1' is not a name"),
         ("play: p\ntree: 2020-13-45\n", "no node is called '2020-13-45'"),
         ("play: p\ntree: [", "test.yaml:2: "),
-        ("play: p\n---\nplay: q", "expected a single document|but found another document"),
+        ("play: p\n---\nplay: q", "test.yaml:2: a second document begins here"),
         ("play: \x07p", "is not text"),
         ("play: p\ntree: " + "[" * 200, "nested deeper than"),
         ("#" * 200_000, "is larger than 128 KiB"),
@@ -588,28 +584,6 @@ def test_a_play_is_found_by_its_name_or_its_file(tmp_path: Path) -> None:
     for missing in ("no.yaml", "no\x00.xml"):
         with pytest.raises(TreeFileError, match="cannot be read"):
             find_play(missing, tmp_path)
-
-
-plain = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(min_size=1), inner, max_size=4),
-    max_leaves=12,
-)
-
-
-def strip(marked: Any) -> Any:
-    value = marked.value
-    if isinstance(value, list):
-        return [strip(part) for part in value]
-    if isinstance(value, dict):
-        return {key: strip(part) for key, part in value.items()}
-    return value
-
-
-@given(plain)
-@settings(max_examples=200, deadline=None)
-def test_plain_data_written_and_read_is_the_same_and_of_the_same_types(data: Any) -> None:
-    assert repr(strip(read_marked(write_plain(data)))) == repr(data)
 
 
 def test_a_made_up_signature_is_listed_like_a_plays() -> None:

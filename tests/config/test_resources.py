@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt import resources
+from robobt.config import resources
 
 
 def test_a_checkout_has_them_beside_the_package():

@@ -1,0 +1,51 @@
+"""Atomic files: readers find the old or the new one, whole, even after a crash."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from robobt.config.errors import naming
+
+
+def write_atomically(path: Path, content: bytes | str) -> None:
+    """Replace a file by this content; text is written as UTF-8.
+
+    Raises:
+        OSError: the file cannot be written; the error names ``path``.
+    """
+    with replacing(path) as temporary, naming(path):
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give the path of a temporary file that takes the place of ``path`` when the block ends.
+
+    The temporary file lies in the same folder and its name ends like that of ``path``. It is removed when the
+    block raises.
+
+    Raises:
+        OSError: the file cannot be put in place; the error names ``path``.
+    """
+    temporary = path.with_name(f".{os.getpid()}.{path.name}")
+    try:
+        yield temporary
+        with naming(path):
+            _sync(temporary, os.O_RDWR)
+            temporary.replace(path)
+            # A rename is on disk once its folder is; some systems cannot open folders.
+            if hasattr(os, "O_DIRECTORY"):
+                _sync(path.parent, os.O_RDONLY | os.O_DIRECTORY)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _sync(path: Path, flags: int) -> None:
+    handle = os.open(path, flags)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

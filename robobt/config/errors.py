@@ -1,0 +1,78 @@
+"""The one base class of robobt's errors, and how a message names a file, a line and a field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Self
+
+
+class RobobtError(Exception):
+    """Base class of every error that robobt raises on purpose; the message is one readable line."""
+
+
+class ConfigError(RobobtError, ValueError):
+    """Something is wrong with a file that a person writes, or with one of its fields.
+
+    The message is one line: ``file:line: field: problem``, without the parts that are unknown.
+
+    Attributes:
+        file: path of the file, or the name of the text; empty for values that come from no file.
+        problem: what is wrong and what to do.
+        field: dotted path of the field ("robots.blue.0.play"); empty when it is not one field.
+        line: line of the file, counted from 1; None when it is not one place.
+    """
+
+    def __init__(self, file: str, problem: str, field: str = "", line: int | None = None) -> None:
+        self.file, self.problem, self.field, self.line = file, one_line(problem), field, line
+        where = file if line is None else f"{file}:{line}"
+        super().__init__(": ".join([one_line(part) for part in (where, field, self.problem) if part]))
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, str, int | None]]:
+        return (type(self), (self.file, self.problem, self.field, self.line))
+
+
+class FieldError(RobobtError, ValueError):
+    """A problem with a field further down than the one that is being validated.
+
+    Attributes:
+        field: dotted path from the validated field on ("0.number").
+    """
+
+    def __init__(self, field: str, problem: str) -> None:
+        super().__init__(problem)
+        self.field = field
+
+
+def message_of(error: Exception) -> str:
+    """Return the message of an exception; a KeyError's comes without quotes around it."""
+    return str(error.args[0]) if error.args else type(error).__name__
+
+
+def one_line(text: str, limit: int = 500) -> str:
+    """Return the text on one line, printable, and no longer than ``limit`` characters."""
+    words = " ".join(text.split())
+    shown = "".join([character if character.isprintable() else "?" for character in words])
+    return shown if len(shown) <= limit else shown[: limit - 3] + "..."
+
+
+def short_repr(value: object) -> str:
+    """Return the ``repr`` of a value for a message, at most 60 characters long."""
+    shown = repr(value)
+    return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Make an OSError from the block name this file.
+
+    Errors without a file name (a full disk) and errors about a temporary file that was to
+    be renamed to this one would otherwise not tell the reader which file is meant.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None or error.filename2 is not None:
+            error.filename = str(path)
+        raise

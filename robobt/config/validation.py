@@ -1,0 +1,81 @@
+"""Validation of plain data by pydantic, with one readable line for whatever does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from robobt.config.errors import FieldError, message_of, short_repr
+
+
+def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
+    """Return the field and the message of the first problem, with the number of further ones.
+
+    Args:
+        error: what pydantic raised.
+        model: the model that the data was validated as.
+        data: the plain data; needed to name fields inside unions.
+    """
+    problems = error.errors(include_url=False)
+    problem = _most_telling(problems)
+    place = [str(part) for part in problem["loc"]] if data is None else _path_in(problem["loc"], data)
+    cause = problem.get("ctx", {}).get("error")
+    message = problem["msg"].replace("valid array", "list").replace("an object", "a mapping")
+    if isinstance(cause, Exception):
+        message = message_of(cause)
+        if isinstance(cause, FieldError):
+            place += cause.field.split(".")
+    elif problem["type"] == "missing":
+        message = "is missing"
+    elif problem["type"] == "extra_forbidden":
+        known = ", ".join(_fields_at(model, problem["loc"][:-1]))
+        message = f"there is no such field; there are {known}"
+    elif not isinstance(problem["input"], Mapping | list):
+        message = f"{message}, not {short_repr(problem['input'])}"
+    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+    return ".".join(place), message[:1].lower() + message[1:] + more
+
+
+def _most_telling(problems: list[ErrorDetails]) -> ErrorDetails:
+    """Return the first problem; an unknown field comes before a missing one beside it, as a likely typo."""
+    first = problems[0]
+    if first["type"] == "missing":
+        for other in problems:
+            if other["type"] == "extra_forbidden" and other["loc"][:-1] == first["loc"][:-1]:
+                return other
+    return first
+
+
+def _path_in(loc: tuple[int | str, ...], data: object) -> list[str]:
+    """Return the path to the field without the names of union members that pydantic inserts."""
+    place: list[str] = []
+    for depth, part in enumerate(loc):
+        inside = isinstance(data, dict) and part in data
+        if inside or (isinstance(data, list) and isinstance(part, int) and part < len(data)):
+            place.append(str(part))
+            data = data[part]  # type: ignore[index]
+        elif depth == len(loc) - 1 and isinstance(data, dict | list):
+            place.append(str(part))
+    return place
+
+
+def _fields_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
+    """Return the fields that the part of a model at ``loc`` may have."""
+    models = [model]
+    for part in loc:
+        below = [hint.annotation for model in models if (hint := model.model_fields.get(str(part)))]
+        if below:
+            models = [model for hint in below for model in _models_in(hint)]
+        else:
+            # A position in a list, or the name of a union's member.
+            models = [model for model in models if model.__name__ == part] or models
+    return [name for model in models for name in model.model_fields]
+
+
+def _models_in(hint: object) -> list[type[BaseModel]]:
+    if isinstance(hint, type) and issubclass(hint, BaseModel):
+        return [hint]
+    return [model for part in get_args(hint) for model in _models_in(part)]
