@@ -16,6 +16,7 @@ from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.geometry import FloatArray, Point, direction
+from robobt.world.rules import in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
 
@@ -60,10 +61,7 @@ def goal_map(
     probability = np.full((len(y), len(x)), np.nan)
     for i, ball_y in enumerate(y.tolist()):
         for j, ball_x in enumerate(x.tolist()):
-            in_area = (
-                ball_x > field.half_length - field.defense_depth and abs(ball_y) < field.defense_width / 2
-            )
-            if in_area:
+            if in_their_defense_area(field, ball_x, ball_y):
                 continue
             frame = _scene(field, (ball_x, ball_y))
             chances = rater.chances(frame, (ball_x, ball_y), frame.own[0], points)

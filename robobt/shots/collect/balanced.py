@@ -23,6 +23,7 @@ from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, Collecti
 from robobt.skills.aim.raters.goal_line import POST_GAP
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point, direction
+from robobt.world.rules import in_their_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
 FARTHEST = 4.8
@@ -210,9 +211,7 @@ def _blocker(
         else:
             x = float(rng.uniform(0.0, field.half_length - field.defense_depth))
             y = float(rng.uniform(-field.half_width + 0.2, field.half_width - 0.2))
-        inside = x > field.half_length - field.defense_depth - ROBOT_RADIUS and (
-            abs(y) < field.defense_width / 2.0 + ROBOT_RADIUS
-        )
+        inside = in_their_defense_area(field, x, y, ROBOT_RADIUS)
         on_field = x < field.half_length - 0.1 and abs(y) < field.half_width - 0.1
         if on_field and not inside and all(hypot(x - a, y - b) > 0.25 for a, b in taken):
             return (x, y)
