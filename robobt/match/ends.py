@@ -1,4 +1,4 @@
-"""When a trial is over, and how it went."""
+"""The end of a trial: when it is over, and its outcome."""
 
 from __future__ import annotations
 
@@ -61,10 +61,11 @@ class EndJudge:
     def judge(
         self, truth: Frame, game: GameState, kicks: int, kicked: Sequence[RobotId] = ()
     ) -> Outcome | None:
-        """Whether the match is over at this frame.
+        """Decide whether the match is over at this frame; None while it is not.
 
         Args:
-            game: the referee's word.
+            truth: what really is on the field, seen from blue's side.
+            game: the state of the game.
             kicks: how often the ball has been kicked so far.
             kicked: who kicked it since the frame before.
         """

@@ -56,7 +56,7 @@ class Match:
         world: where it is played.
         players: the robots in the order of teams and scenario.
         measures: figures so far.
-        game: the referee's word on the last frame.
+        game: the state of the game as of the last frame.
         outcome: how it ended, None while it is being played.
 
     Raises:
@@ -122,7 +122,7 @@ class Match:
             self._recorder = None
 
     def tick(self) -> bool:
-        """One control period; False when the match is over, in which case nobody has acted.
+        """Play one control period; False when the match is over, in which case nobody has acted.
 
         Raises:
             TreeError: a tree raised, and the scenario's ``on_error`` is "raise"; robot and node are named.
@@ -157,7 +157,7 @@ class Match:
         return True
 
     def result(self, wall_time: float = 0.0) -> MatchResult:
-        """The figures so far; a match that is not over counts as one that ran out of time.
+        """Return the figures so far; a match that is not over counts as one that ran out of time.
 
         Args:
             wall_time: how long it took, for the real-time factor [s].
@@ -199,7 +199,7 @@ class Match:
         return players
 
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
-        """Tick every tree once on this frame and return what each robot is told, the world left alone.
+        """Tick every tree once on this frame and return each robot's command, the world left alone.
 
         A robot that is not seen is not ticked and stands still.
         """
@@ -301,7 +301,7 @@ def play_match(
 
 
 def _fault_of(command: object) -> str | None:
-    """Why a robot cannot be sent what its tree decided, None when it can."""
+    """Return why a robot cannot be sent what its tree decided, None when it can."""
     if not isinstance(command, RobotCommand):
         return f"command is no RobotCommand: {short_repr(command)}"
     try:

@@ -99,7 +99,7 @@ class SimWorld(World):
         return not (self._delayed or self._noisy or self._lossy)
 
     def observe(self) -> Frame:
-        """What the cameras report: late, noisy and with gaps where the settings say so.
+        """Return what the cameras report: late, noisy and with gaps where the settings say so.
 
         Velocities carry no noise of their own; a missing detection repeats the last one.
         """
@@ -111,7 +111,7 @@ class SimWorld(World):
         return self._frame(robots, [x, y, vx, vy])
 
     def truth(self) -> Frame:
-        """The simulated state itself."""
+        """Return the simulated state itself."""
         return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
 
     @property
@@ -190,7 +190,7 @@ class SimWorld(World):
         return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
 
     def _rows(self) -> FloatArray:
-        """Robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, 0, vx, vy, 0)."""
+        """Return robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, 0, vx, vy, 0)."""
         rows = np.zeros((len(self._ids) + 1, 6))
         rows[:-1] = self._arenas.robots[0]
         rows[-1, :2] = self._arenas.balls[0, :2]

@@ -1,4 +1,4 @@
-"""What is on a field: geometry, states, commands, the referee's word, observations."""
+"""What is on a field: geometry, states, commands, the state of the game, observations."""
 
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B, FIELDS, FieldGeometry

@@ -1,4 +1,4 @@
-"""What a tree tells its robot to do for one control period."""
+"""What a tree commands its robot to do for one control period."""
 
 from __future__ import annotations
 
@@ -36,5 +36,5 @@ class RobotCommand:
     dribbler: bool = False
 
     def finite(self) -> bool:
-        """Whether every number in it is finite; one that is not must not reach a robot."""
+        """Return whether every number in it is finite; one that is not must not reach a robot."""
         return isfinite(self.vx) and isfinite(self.vy) and isfinite(self.omega) and isfinite(self.kick_speed)

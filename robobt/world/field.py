@@ -60,7 +60,7 @@ class FieldGeometry(BaseModel):
         return (-self.length / 2, 0.0)
 
     def contains(self, x: float, y: float, tolerance: float = 0.0) -> bool:
-        """Whether (x, y) lies inside the lines, grown outwards by ``tolerance`` [m]."""
+        """Return whether (x, y) lies inside the lines, grown outwards by ``tolerance`` [m]."""
         return abs(x) <= self.half_length + tolerance and abs(y) <= self.half_width + tolerance
 
 

@@ -1,4 +1,4 @@
-"""The referee's word: command, stage, score. Held by every frame."""
+"""The state of the game: command, stage, score. Held by every frame."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Restart(StrEnum):
 
 @dataclass(slots=True, frozen=True)
 class GameState:
-    """What the referee has said, as of one frame.
+    """The state of the game as of one frame, as the referee decided it.
 
     Attributes:
         command: the last command.
@@ -91,21 +91,21 @@ class GameState:
 
     @property
     def halted(self) -> bool:
-        """Every robot has to stand still."""
+        """Whether every robot has to stand still."""
         return self.command in _HALTED
 
     @property
     def stopped(self) -> bool:
-        """Robots are slow (1.5 m/s) and keep 0.5 m from the ball."""
+        """Whether robots have to be slow (1.5 m/s) and keep 0.5 m from the ball."""
         return self.command is RefereeCommand.STOP
 
     @property
     def in_play(self) -> bool:
-        """The ball is free for both teams."""
+        """Whether the ball is free for both teams."""
         return self.restart is None and self.command in _STARTED
 
     def mirrored(self) -> GameState:
-        """The same state in coordinates turned by 180 degrees."""
+        """Return the same state in coordinates turned by 180 degrees."""
         if self.placement is None:
             return self
         return replace(self, placement=(-self.placement[0], -self.placement[1]))

@@ -17,29 +17,29 @@ _TAU = 2.0 * pi
 
 
 def wrap_angle(angle: float) -> float:
-    """The same direction in (-pi, pi]."""
+    """Return the same direction in (-pi, pi]."""
     wrapped = angle % _TAU
     return wrapped - _TAU if wrapped > pi else wrapped
 
 
 def wrap_angles(angles: ArrayLike) -> FloatArray:
-    """Elementwise :func:`wrap_angle`; any shape."""
+    """Apply :func:`wrap_angle` elementwise; any shape."""
     wrapped = np.mod(np.asarray(angles, dtype=np.float64), _TAU)
     return np.where(wrapped > pi, wrapped - _TAU, wrapped)
 
 
 def direction(origin: Point, target: Point) -> float:
-    """Angle of the ray from ``origin`` to ``target``; 0 when they coincide."""
+    """Return the angle of the ray from ``origin`` to ``target``; 0 when they coincide."""
     return atan2(target[1] - origin[1], target[0] - origin[0])
 
 
 def distance(a: Point, b: Point) -> float:
-    """Euclidean distance [m]."""
+    """Return the Euclidean distance [m]."""
     return hypot(b[0] - a[0], b[1] - a[1])
 
 
 def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
-    """The point of the segment nearest to ``point``; ``start`` for a segment of no length."""
+    """Return the point of the segment nearest to ``point``; ``start`` for a segment of no length."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     length_squared = dx * dx + dy * dy
     if length_squared <= 0.0:
@@ -50,12 +50,12 @@ def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
 
 
 def segment_distance(point: Point, start: Point, end: Point) -> float:
-    """Distance of ``point`` from the segment [m]."""
+    """Return the distance of ``point`` from the segment [m]."""
     return distance(point, closest_point_on_segment(point, start, end))
 
 
 def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
-    """y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
+    """Return y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
 
     None when the ray points away from the line or runs along it.
     """
@@ -67,7 +67,7 @@ def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
 
 
 def clearances(origin: ArrayLike, targets: ArrayLike, obstacles: ArrayLike) -> FloatArray:
-    """Distance of every obstacle from every segment origin -> target.
+    """Compute the distance of every obstacle from every segment origin -> target.
 
     Args:
         origin: (..., 2).
@@ -89,13 +89,13 @@ def clearances(origin: ArrayLike, targets: ArrayLike, obstacles: ArrayLike) -> F
 
 
 def to_robot_frame(vx: float, vy: float, heading: float) -> Point:
-    """A field-frame vector in the frame of a robot with this heading."""
+    """Return a field-frame vector in the frame of a robot with this heading."""
     c, s = cos(heading), sin(heading)
     return (c * vx + s * vy, c * vy - s * vx)
 
 
 def limit_norm(x: float, y: float, most: float) -> Point:
-    """The vector shortened to length ``most`` when it is longer."""
+    """Return the vector shortened to length ``most`` when it is longer."""
     squared = x * x + y * y
     if squared <= most * most:
         return (x, y)

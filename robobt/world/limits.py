@@ -47,7 +47,7 @@ class RobotLimits(BaseModel):
         return self.turn_acceleration if self.turn_braking is None else self.turn_braking
 
     def scaled(self, factor: float) -> RobotLimits:
-        """The same robot with its top speed and turning rate times ``factor``.
+        """Return the same robot with its top speed and turning rate times ``factor``.
 
         Accelerations stay: a goalkeeper at half speed is a robot told to drive
         half as fast, not a weaker one.

@@ -1,4 +1,4 @@
-"""What is seen late, brought up to now with the commands that are on their way."""
+"""Late observations, predicted to the present with the commands that are on their way."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _STEP = 0.005
 """Longest step of the motion model [s]."""
 
 _LONGEST_GAP = 0.1
-"""A robot that is seen in the same place for longer stands there, whatever it was told [s]."""
+"""A robot that is seen in the same place for longer stands there, whatever was commanded [s]."""
 
 _CARRIED = 0.03
 """A ball that was seen no farther from its place in the mouth than this lies there [m]."""
@@ -30,7 +30,7 @@ class PredictedWorld(World):
 
     Every robot is driven on from where it was seen, under the commands that were in
     force since and within its limits. A ball in the mouth, which the robot's own sensor
-    tells without delay, goes with its robot; any other rolls on as it was seen to.
+    reports without delay, goes with its robot; any other rolls on as it was seen to.
 
     Args:
         world: the world that is seen late.
@@ -60,7 +60,7 @@ class PredictedWorld(World):
         self._now = 0.0
 
     def observe(self) -> Frame:
-        """What the world reports, brought up to the moment at which the next command takes effect."""
+        """Return what the world reports, predicted to the moment at which the next command takes effect."""
         seen = self.world.observe()
         self._now = seen.time
         own = tuple([self._moved(RobotId(seen.team, robot.id), robot) for robot in seen.own])

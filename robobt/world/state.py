@@ -97,7 +97,7 @@ class Frame:
         team: whose view this is.
         ball: the ball.
         own, opponents: robots on the field, in order of their numbers.
-        game: what the referee has said.
+        game: the state of the game.
         last_touch: who touched the ball last, None before anybody did.
     """
 
@@ -112,22 +112,22 @@ class Frame:
     last_touch: RobotId | None = None
 
     def robot(self, number: int) -> RobotState | None:
-        """The own robot with this number, None when it is not on the field."""
+        """Return the own robot with this number, None when it is not on the field."""
         for robot in self.own:
             if robot.id == number:
                 return robot
         return None
 
     def others(self, number: int) -> list[RobotState]:
-        """Every robot on the field but the own one with this number."""
+        """Return every robot on the field but the own one with this number."""
         return [robot for robot in self.own if robot.id != number] + list(self.opponents)
 
     def teammates(self, number: int) -> list[RobotState]:
-        """The own robots without the one with this number."""
+        """Return the own robots without the one with this number."""
         return [robot for robot in self.own if robot.id != number]
 
     def mirrored(self) -> Frame:
-        """The same instant seen by the other team: all turned by 180 degrees.
+        """Return the same instant seen by the other team: all turned by 180 degrees.
 
         A turn, not a reflection, so velocities and commands in a robot's own
         frame are the same in both views.
@@ -146,7 +146,7 @@ class Frame:
         )
 
     def seen_by(self, team: Team) -> Frame:
-        """This frame from ``team``'s side; itself when it already is."""
+        """Return this frame from ``team``'s side; itself when it already is."""
         return self if team is self.team else self.mirrored()
 
 

@@ -12,7 +12,7 @@ class Touches:
 
     Attributes:
         now: robots that touch the ball in this frame.
-        last: who touched it last; the world's word where it has one, else the contact seen.
+        last: who touched it last, as the world reports it, or else by the contact seen.
         where: where the ball was when it was last touched [m].
         carrier: who keeps the ball at its hull, None when nobody does.
         carried: how far the carrier has taken it, as the crow flies [m].
@@ -40,13 +40,13 @@ class Touches:
                     if identity == self.carrier:
                         carrier = robot
         self.now = touching
-        told = frame.last_touch
-        if told is None and touching and self.last not in touching:
-            told = touching[0]
-        if touching or (told is not None and told != self.last):
+        toucher = frame.last_touch
+        if toucher is None and touching and self.last not in touching:
+            toucher = touching[0]
+        if touching or (toucher is not None and toucher != self.last):
             self.where = ball.position
-        if told is not None:
-            self.last = told
+        if toucher is not None:
+            self.last = toucher
         self._follow_carrier(ball, carrier)
 
     def _follow_carrier(self, ball: BallState, carrier: RobotState | None) -> None:

@@ -13,7 +13,7 @@ from robobt.world.game import GameState, Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 _KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
-"""A ball was kicked that leaves its robot with this share of the speed asked for, or this fast [m/s]."""
+"""A ball was kicked that leaves its robot with this share of the commanded speed, or this fast [m/s]."""
 
 
 @dataclass(slots=True)
@@ -58,7 +58,9 @@ class Measures:
         """Take in the next true frame.
 
         Args:
-            commands: what the robots were told at the frame before.
+            truth: what really is on the field, seen from blue's side.
+            game: the state of the game.
+            commands: the robots' commands at the frame before.
         """
         self.ticks += 1
         self.kicked.clear()
@@ -78,7 +80,7 @@ class Measures:
                     del self._outgoing[identity]
 
     def _look_for_kick(self, identity: RobotId, robot: RobotState, truth: Frame, speed: float) -> None:
-        """A kick: told to, near the ball, and the ball now leaves along the heading as it did not before."""
+        """Count a kick: commanded, near the ball, and the ball now leaves along the heading as not before."""
         away = _leaving(robot, truth.ball)
         before = self._outgoing.get(identity, 0.0)
         self._outgoing[identity] = away
@@ -105,7 +107,7 @@ class Trace:
         self._hash = hashlib.blake2b(digest_size=16)
 
     def update(self, truth: Frame, game: GameState) -> None:
-        """Take in the next true frame and the referee's word on it."""
+        """Take in the next true frame and the state of the game."""
         ball = truth.ball
         numbers = [truth.time, ball.x, ball.y, ball.vx, ball.vy]
         for robots in (truth.own, truth.opponents):
@@ -125,14 +127,14 @@ class Trace:
         self._hash.update(pack(f"<{len(numbers)}d", *numbers))
 
     def event(self, text: str) -> None:
-        """Take in something that happened."""
+        """Take in an event."""
         self._hash.update(text.encode())
 
     def hexdigest(self) -> str:
-        """The hash so far, 32 hexadecimal digits."""
+        """Return the hash so far, 32 hexadecimal digits."""
         return self._hash.hexdigest()
 
 
 def _leaving(robot: RobotState, ball: BallState) -> float:
-    """Speed of the ball along the robot's heading, relative to the robot [m/s]."""
+    """Return the speed of the ball along the robot's heading, relative to the robot [m/s]."""
     return (ball.vx - robot.vx) * cos(robot.heading) + (ball.vy - robot.vy) * sin(robot.heading)

@@ -1,4 +1,4 @@
-"""Puts robots and ball where a scenario's starts allow, without anything touching."""
+"""Placing robots and ball where a scenario's starts allow, without anything touching."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TRIES = 1000
 
 
 def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], ball: BallStart) -> None:
-    """Find what no random number can help: places off the field, fixed starts that overlap.
+    """Check what no random number can help: places off the field, fixed starts that overlap.
 
     Raises:
         FieldError: with the place in the scenario ("robots.blue.0.start").
@@ -54,7 +54,7 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
 
 
 class Placer:
-    """Samples one placement: what is fixed first, then the ball, then the other robots.
+    """A sampler of one placement: what is fixed first, then the ball, then the other robots.
 
     Args:
         field: dimensions.
@@ -80,7 +80,7 @@ class Placer:
         self._ball: Point | None = None
 
     def place(self) -> Placement:
-        """Everything's place, in world coordinates.
+        """Sample everything's place, in world coordinates.
 
         Raises:
             FieldError: an object found no free place in a bounded number of tries.
@@ -179,7 +179,7 @@ def _check_inside(position: object, field: FieldGeometry, where: str) -> None:
 
 
 def _turned(robot: RobotId, place: Point) -> Point:
-    """From the robot's view to the world's, or back: half a turn is its own inverse."""
+    """Turn from the robot's view to the world's, or back: half a turn is its own inverse."""
     return place if robot.team is Team.BLUE else (-place[0], -place[1])
 
 

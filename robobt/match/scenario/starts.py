@@ -1,7 +1,7 @@
 """Where robots and ball may stand at the start: fixed places and distributions.
 
-Everything a robot's start says is in its own team's view: its goal at -x. A
-start can be sampled and printed.
+A robot's start is in its own team's view: its goal at -x. A start can be sampled
+and printed.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Box(Part):
     y: _Range = Field(description="least and greatest y [m]")
 
     def sample(self, rng: np.random.Generator) -> Point:
-        """A point of the box [m]."""
+        """Sample a point of the box [m]."""
         return (float(rng.uniform(*self.x)), float(rng.uniform(*self.y)))
 
     def __str__(self) -> str:
@@ -61,7 +61,7 @@ class Disc(Part):
     radius: float = Field(gt=0, le=50, description="[m]")
 
     def sample(self, rng: np.random.Generator) -> Point:
-        """A point of the disc [m]."""
+        """Sample a point of the disc [m]."""
         reach, angle = self.radius * sqrt(float(rng.random())), float(rng.uniform(-pi, pi))
         return (self.center[0] + reach * cos(angle), self.center[1] + reach * sin(angle))
 
@@ -79,7 +79,7 @@ class Around(Part):
     )
 
     def sample(self, rng: np.random.Generator, middle: Point) -> Point:
-        """A point around ``middle`` [m]."""
+        """Sample a point around ``middle`` [m]."""
         reach, angle = float(rng.uniform(*self.distance)), float(rng.uniform(*self.bearing))
         return (middle[0] + reach * cos(angle), middle[1] + reach * sin(angle))
 
@@ -140,7 +140,7 @@ class RobotStart(Part):
     def sample_heading(
         self, rng: np.random.Generator, place: Point, ball: Point | None, field: FieldGeometry
     ) -> float:
-        """A heading for a robot at ``place`` [rad]; ``ball`` in the same view."""
+        """Sample a heading for a robot at ``place`` [rad]; ``ball`` in the same view."""
         if isinstance(self.heading, tuple):
             return float(rng.uniform(*self.heading))
         if self.heading == "towards goal":
