@@ -52,7 +52,7 @@ class Marked:
         column: column where it begins, counted from 1.
     """
 
-    value: Any
+    value: Scalar | list[Marked] | dict[str, Marked]
     line: int
     column: int
 

@@ -1,6 +1,6 @@
 """A recorded tick as a test case: what one robot's tree did then, and does it still do so.
 
-Trees remember: places in sequences, timers, the last shot, the team's roles. None of
+Trees remember: places in sequences, timers, the last shot, who attacks. None of
 that can be put back from outside, so a case holds the match from its start up to the
 tick. It is played again with the recorded frames in place of a simulator: all trees of
 the scenario are built anew, given the same seeds and ticked on every frame, the

@@ -24,8 +24,6 @@ from robobt.tree.interop import (
 VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch,), {ShotRater: RATERS}, Store)
 """What the files of plays may name."""
 
-_FOLDER = Path(__file__).resolve().parent / "trees"
-
 
 def load_play(path: str | Path) -> FilePlay:
     """A play from a file (.yaml, .xml), to be called like those of :data:`~robobt.plays.base.PLAYS`.
@@ -66,11 +64,6 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
 @lru_cache(maxsize=64)
 def _load_once(path: Path, _changed: int, _size: int) -> Play:
     return load_play(path)
-
-
-def play_files() -> dict[str, Path]:
-    """The files of the plays that ship, by the plays' names."""
-    return {path.stem: path for path in sorted(_FOLDER.glob("*.yaml"))}
 
 
 def tree_yaml(root: Behaviour, name: str) -> str:

@@ -64,9 +64,7 @@ from robobt.skills.store import Pass as Pass
 from robobt.skills.store import Shot as Shot
 from robobt.skills.store import Store as Store
 from robobt.skills.store import TeamStore as TeamStore
-from robobt.skills.team.assign_roles import AssignRoles as AssignRoles
 from robobt.skills.team.best_field_position import BestFieldPosition as BestFieldPosition
-from robobt.skills.team.has_role import HasRole as HasRole
 from robobt.skills.team.is_attacker import IsAttacker as IsAttacker
 from robobt.skills.team.mate_aims_at_me import MateAimsAtMe as MateAimsAtMe
 from robobt.skills.team.pass_is_coming import PassIsComing as PassIsComing

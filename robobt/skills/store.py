@@ -67,9 +67,6 @@ class TeamStore:
         kicker: who took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
         agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
-        role_players: numbers of the robots that share the roles.
-        roles: the role of each of them.
-        roles_agreed_on: the frame that ``roles`` holds for.
     """
 
     passer: int | None = None
@@ -83,9 +80,6 @@ class TeamStore:
     kicker: int | None = None
     restart_pending: bool = False
     agreed_on: Frame | None = None
-    role_players: set[int] = field(default_factory=set)
-    roles: dict[int, str] = field(default_factory=dict)
-    roles_agreed_on: Frame | None = None
 
 
 @dataclass(slots=True)

@@ -387,17 +387,16 @@ class TestTree:
 
     def test_mistakes_are_looked_for(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
-        children = ["HasBall", "KickToTarget"]
-        tree = {"Sequence": {"name": "shoot", "memory": True, "children": children}}
+        tree = {"Repeat": {"name": "again", "num_success": -1, "child": "KickToTarget"}}
         path.write_text(write_yaml({"play": "mine", "tree": tree}))
         printed = robobt("tree", path, "--lint", code=1).stdout
-        assert "shoot/HasBall: is not asked again while 'KickToTarget' runs" in printed
+        assert "again: repeats its child for ever [unbounded]" in printed
         assert (
-            "shoot/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
+            "again/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
         )
         found = json.loads(robobt("tree", path, "--lint", "--json", code=1).stdout)
         assert "reads 'shot' or 'pass_', but no other node" in robobt("tree", path).stderr
-        assert found["findings"][0]["rule"] == "forgotten-condition"
+        assert found["findings"][0]["rule"] == "unbounded"
         assert len(found["wiring"]) == 1
         explained = help_of("tree")
         assert all(key in explained for key in (*found, *found["findings"][0], *found["nodes"][0]))

@@ -1,5 +1,4 @@
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,8 @@ from robobt.match import Match
 from robobt.match.recording import load_recording
 from robobt.match.regression_cases import CaseError, CaseFailedError, check_case, load_case, save_case
 from robobt.match.scenario.scenario import load_scenario
-from robobt.plays.files import play_files
+from robobt.plays import PLAYS
+from robobt.plays.files import tree_yaml
 from robobt.skills import SelectShot
 from robobt.tree import Status
 from robobt.world import RobotId, Team
@@ -65,7 +65,7 @@ def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytes
     here, there, tests, nowhere = (tmp_path / name for name in ("here", "there", "tests/cases", "nowhere"))
     for folder in (here, there, nowhere):
         folder.mkdir()
-    shutil.copy(play_files()["attack_main"], here / "mine.yaml")
+    (here / "mine.yaml").write_text(tree_yaml(PLAYS["attack_main"](), "mine"))
     (here / "rules.yaml").write_text('"*/KickToTarget": RUNNING\n')
     scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "substitute": "rules.yaml"}

@@ -9,10 +9,8 @@ from typing import Literal
 import pytest
 
 from robobt.plays import go_to_ball_and_shoot
-from robobt.plays.files import VOCABULARY, load_play, play_files
 from robobt.skills import GoToBall, KickToTarget, Shoot
 from robobt.tree import preorder
-from robobt.tree.interop import tree_differences
 from tests.models.made_models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
 from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
 
@@ -40,14 +38,6 @@ def test_every_combination_scores(policy: str, shoot: Kick) -> None:
         eventually("the ball is in the goal", goal_for_us()),
         always("inside the field", inside_the_field),
     )
-
-
-@pytest.mark.parametrize("shoot", SHOTS)
-@pytest.mark.parametrize("policy", ["geometric", "ddpg"])
-def test_the_file_says_the_same(policy: str, shoot: Kick) -> None:
-    built = go_to_ball_and_shoot(policy=policy, shoot=shoot)
-    loaded = load_play(play_files()["go_to_ball_and_shoot"])(policy=policy, shoot=shoot)
-    assert tree_differences(built, loaded, VOCABULARY) == []
 
 
 def test_a_word_swaps_a_part() -> None:

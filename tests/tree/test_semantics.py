@@ -56,7 +56,6 @@ from robobt.tree.nodes import (
     TickDivider,
     Timeout,
     Wait,
-    assign_roles,
 )
 from robobt.world import Team
 from tests.skills.fixed_world import Alone, frame, robot
@@ -811,7 +810,7 @@ def test_81_stopping_a_gate_does_not_reach_a_child_that_never_ran(decorate: Any)
     assert log == []
 
 
-# Time, roles and errors
+# Time and errors
 
 
 @pytest.mark.parametrize("ticks", [1, 6, 7, 30, 59])
@@ -849,14 +848,6 @@ def test_83_a_clock_that_goes_backwards_ends_every_time() -> None:
     assert committed.ticked == "high"
 
 
-def test_84_roles_are_shared_out_for_least_cost_and_change_for_clear_gain() -> None:
-    costs = {1: {"attack": 1.0, "defend": 2.0}, 2: {"attack": 1.5, "defend": 5.0}}
-    assert assign_roles(costs, {}, margin=0.0) == {1: "defend", 2: "attack"}
-    current = {1: "attack", 2: "defend"}
-    assert assign_roles(costs, current, margin=2.5) == current
-    assert assign_roles(costs, current, margin=2.4) == {1: "defend", 2: "attack"}
-
-
 def broken_tree(script: str = "!") -> Behaviour:
     """Its second leaf raises while the first one runs."""
     policy = ParallelPolicy.SuccessOnAll()
@@ -864,7 +855,7 @@ def broken_tree(script: str = "!") -> Behaviour:
     return Selector("root", memory=False, children=[Scripted("guard", "F"), both])
 
 
-def test_85_an_exception_stops_the_tree_and_says_where() -> None:
+def test_84_an_exception_stops_the_tree_and_says_where() -> None:
     store = Notes()
     runner = TreeRunner(broken_tree("!R"), store)
     assert runner.tick() is INVALID
@@ -875,7 +866,7 @@ def test_85_an_exception_stops_the_tree_and_says_where() -> None:
     assert store.diary[:2] == ["guard starts", "guard ticked"]
 
 
-def test_86_an_exception_may_be_raised_with_its_path() -> None:
+def test_85_an_exception_may_be_raised_with_its_path() -> None:
     runner = TreeRunner(broken_tree(), Notes(), on_error="raise")
     with pytest.raises(TreeError, match=r"^root/both/broken: ZeroDivisionError: no \(") as raised:
         runner.tick()
@@ -885,7 +876,7 @@ def test_86_an_exception_may_be_raised_with_its_path() -> None:
 
 
 @pytest.mark.parametrize("script", ["!", "R!"])
-def test_87_after_an_exception_nothing_runs(script: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_86_after_an_exception_nothing_runs(script: str, caplog: pytest.LogCaptureFixture) -> None:
     class Stubborn(Scripted):
         def on_interrupt(self) -> None:
             super().on_interrupt()
@@ -911,7 +902,7 @@ def test_87_after_an_exception_nothing_runs(script: str, caplog: pytest.LogCaptu
 
 
 @pytest.mark.parametrize("what", [SystemExit("bye"), KeyboardInterrupt()])
-def test_rows_85_to_87_hold_when_a_leaf_would_end_the_program(what: BaseException) -> None:
+def test_rows_84_to_86_hold_when_a_leaf_would_end_the_program(what: BaseException) -> None:
     class Leaving(Scripted):
         def on_interrupt(self) -> None:
             raise SystemExit("bye")
@@ -936,7 +927,7 @@ def test_rows_85_to_87_hold_when_a_leaf_would_end_the_program(what: BaseExceptio
     assert runner.statuses() == "---"
 
 
-def test_88_a_fast_tree_finalises_its_visitors_when_a_node_raises() -> None:
+def test_87_a_fast_tree_finalises_its_visitors_when_a_node_raises() -> None:
     class Visits(VisitorBase):
         calls = ""
 
@@ -960,7 +951,7 @@ def test_88_a_fast_tree_finalises_its_visitors_when_a_node_raises() -> None:
     assert {node.status for node in preorder(root)} == {INVALID}
 
 
-def test_row_88_holds_for_ctrl_c() -> None:
+def test_row_87_holds_for_ctrl_c() -> None:
     class Interrupted(Behaviour):
         def update(self) -> Any:
             raise KeyboardInterrupt
@@ -971,7 +962,7 @@ def test_row_88_holds_for_ctrl_c() -> None:
     assert {node.status for node in preorder(root)} == {INVALID}
 
 
-def test_89_nothing_of_a_tree_is_shared_by_the_process() -> None:
+def test_88_nothing_of_a_tree_is_shared_by_the_process() -> None:
     def build() -> Behaviour:
         children = [Cooldown("rest", Scripted("kick", "S"), seconds=1.0), Scripted("go", "R")]
         return Selector("root", memory=False, children=children)

@@ -1,7 +1,6 @@
-"""Aids for writing and testing trees: a linter, substitution, statistics; see docs/trees.md."""
+"""Tools for writing and testing trees: a linter, substitution, statistics; see docs/trees.md."""
 
 from robobt.tree.devtools.linter import Finding, lint_tree
-from robobt.tree.devtools.possible_outcomes import Outcomes, outcomes
 from robobt.tree.devtools.statistics import NodeCounts, NodeStatistics
 from robobt.tree.devtools.substitution import (
     ScriptedLeaf,
@@ -15,11 +14,9 @@ __all__ = [
     "Finding",
     "NodeCounts",
     "NodeStatistics",
-    "Outcomes",
     "ScriptedLeaf",
     "Substitution",
     "lint_tree",
-    "outcomes",
     "read_substitutions",
     "substitute",
     "substitutions",

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from robobt.tree.interop.node_types import NodeType
+
 
 @dataclass(frozen=True)
 class Attribute:
@@ -117,3 +119,15 @@ METADATA = ("_uid", "_fullpath", "_collapsed", "_description")
 
 SCRIPTS = ("_skipIf", "_successIf", "_failureIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
 """Attributes with scripts."""
+
+
+def tags_of(kind: str) -> list[str]:
+    """Return the tags of BehaviorTree.CPP for a type of nodes."""
+    return [tag for tag, entry in TAGS.items() if entry.type == kind]
+
+
+def long_tags(kind: NodeType) -> tuple[str, ...]:
+    """Return the tags of the long form that a type may have, the usual one first."""
+    if kind.leaf:
+        return ("Action", "Condition")
+    return ("Decorator",) if "one" in kind.branches.values() else ("Control",)

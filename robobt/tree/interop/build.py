@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import short_repr
 from robobt.tree.check import entries_of
-from robobt.tree.interop.formula import evaluate
 from robobt.tree.interop.model import (
-    Choice,
     Definition,
     Entry,
-    Formula,
     Name,
     Node,
     Spec,
@@ -26,28 +22,26 @@ from robobt.tree.interop.model import (
     TreeFileError,
     Value,
 )
-from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.interop.node_types import Branches, NodeType, split_cases
+from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, parameters_of
 
 MAX_NODES = 10_000
 """Most nodes of a tree that is built from a file."""
 
 
-def build_tree(
-    file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value] | None = None, tree: str | None = None
-) -> Behaviour:
-    """A new tree.
+def build_tree(file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value] | None = None) -> Behaviour:
+    """Build a new main tree of a file.
 
     Args:
-        file: what is built; :func:`~robobt.tree.interop.verify.verify` has found nothing wrong with it.
-        vocabulary: what it names.
+        file: the trees; :func:`~robobt.tree.interop.verify.verify` has found nothing wrong with them.
+        vocabulary: the nodes and plays they name.
         given: values of the tree's parameters, plain data.
-        tree: which of the file's trees; None for its main tree.
 
     Raises:
         TreeFileError: a value does not fit, or a node cannot be made.
     """
-    definition = file.trees[file.main if tree is None else tree]
+    definition = file.trees[file.main]
     try:
         return _Builder(file, vocabulary).tree(definition, given or {}, None)
     except RecursionError as error:
@@ -59,7 +53,7 @@ class _Scope:
     """What names stand for in one tree.
 
     Attributes:
-        values: its parameters and what it computes from them.
+        values: its parameters.
         outside: where names that it does not know are looked up, None when nowhere.
     """
 
@@ -83,9 +77,6 @@ class _Builder:
         return root
 
     def spec(self, spec: Spec, scope: _Scope) -> Behaviour:
-        if isinstance(spec, Choice):
-            chosen: Spec = self._chosen(spec, scope)
-            return self.spec(chosen, scope)
         self.count += 1
         if self.count > MAX_NODES:
             raise self._error(spec.line, f"the tree has more than {MAX_NODES} nodes")
@@ -101,8 +92,6 @@ class _Builder:
             elif not parameter.required and outside is None:
                 default = parameter.default
                 scope.values[name] = Entry(default.name) if isinstance(default, Name) else default
-        for name, value in definition.let.items():
-            scope.values[name] = self._resolve(value, scope, definition.line)
         return scope
 
     def _sub_tree(self, spec: SubTree, scope: _Scope) -> Behaviour:
@@ -127,7 +116,7 @@ class _Builder:
             root = play(**converted)
             if isinstance(root, Behaviour):
                 return root
-        raise self._error(spec.line, f"{spec.tree} is no play: it made {short_repr(root)}")
+        raise self._error(spec.line, f"{spec.tree} is not a play: it made {short_repr(root)}")
 
     def _node(self, spec: Node, scope: _Scope) -> Behaviour:
         known = self.vocabulary.type(spec.type)
@@ -141,7 +130,7 @@ class _Builder:
                     self._check_entry(resolved)
                 if not self._wired(known, name, resolved):
                     given[name] = self._converted(known.parameters[name], resolved)
-        branches: dict[str, Any] = {}
+        branches: Branches = {}
         for name, branch in spec.branches.items():
             if isinstance(branch, list):
                 branches[name] = [self.spec(child, scope) for child in branch]
@@ -154,7 +143,7 @@ class _Builder:
             return known.make(spec.name, given, branches)
 
     def _wired(self, known: NodeType, name: str, value: Value) -> bool:
-        """Whether the value only says which entry a leaf uses, and says what it does anyway."""
+        """Return whether the value only names an entry that the leaf uses anyway."""
         if name not in (*known.reads, *known.writes):
             return False
         if isinstance(value, Entry):
@@ -177,20 +166,15 @@ class _Builder:
                 f"there are {', '.join(entries_of(store))}",
             )
 
-    def _converted(self, parameter: Parameter, value: Value) -> Any:
+    def _converted(self, parameter: Parameter, value: Value) -> object:
         if isinstance(value, Text):
             value = self.vocabulary.from_text(parameter, value.text)
         return self.vocabulary.convert(parameter, value)
 
     def _resolve(self, value: Value, scope: _Scope, line: int) -> Value:
-        """The value with everything that stands for something else replaced by that."""
+        """Return the value with every name in it replaced by what it stands for."""
         if isinstance(value, Name):
             return self._find(value.name, scope, line)
-        if isinstance(value, Formula):
-            with self._at(line, "formula"):
-                return evaluate(value.text, scope.values)
-        if isinstance(value, Choice):
-            return self._resolve(self._chosen(value, scope), scope, line)
         if isinstance(value, list):
             return [self._resolve(part, scope, line) for part in value]
         if isinstance(value, dict):
@@ -210,22 +194,15 @@ class _Builder:
         raise self._error(
             line,
             f"the tree {self.open[-1]!r} is not given {name!r}: in BehaviorTree.CPP it would be the "
-            f'sub-tree\'s own entry, which robobt has not; give it {name}="{{{name}}}" or _autoremap',
+            f'sub-tree\'s own entry, which robobt does not have; give it {name}="{{{name}}}" or _autoremap',
         )
-
-    def _chosen(self, choice: Choice, scope: _Scope) -> Any:
-        by = self._resolve(choice.by, scope, choice.line)
-        if isinstance(by, str) and by in choice.cases:
-            return choice.cases[by]
-        cases = ", ".join(choice.cases)
-        raise self._error(choice.line, f"there is no case for {short_repr(by)}; there are {cases}")
 
     def _error(self, line: int | None, problem: str) -> TreeFileError:
         return TreeFileError(self.file.source, problem, line=line)
 
     @contextmanager
     def _at(self, line: int, what: str) -> Iterator[None]:
-        """Whatever a constructor or a play raises is an error at this line."""
+        """Turn whatever a constructor or a play raises into an error at this line."""
         try:
             yield
         except (TreeFileError, RecursionError):
@@ -233,10 +210,5 @@ class _Builder:
         except ParameterError as error:
             raise self._error(line, f"{what}: {error.parameter}: {error}") from error
         except Exception as error:
-            said = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
-            raise self._error(line, f"{what}: {said}") from error
-
-
-def split_cases(cases: str) -> list[str]:
-    """The cases that one branch of a switch serves: ``halt | stop``."""
-    return [case.strip() for case in cases.split("|")]
+            problem = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+            raise self._error(line, f"{what}: {problem}") from error

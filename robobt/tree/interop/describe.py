@@ -7,7 +7,8 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from robobt.tree.interop.model import Definition, Node, TreeFile
-from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.interop.node_types import NodeType
+from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import ParameterError
 from robobt.tree.runner import node_path
 
@@ -24,31 +25,6 @@ def describe_tree(root: Behaviour, vocabulary: Vocabulary, name: str) -> TreeFil
         ValueError: files cannot say it; the message names the node's path.
     """
     return TreeFile(name, name, {name: Definition(name, _describe(root, vocabulary))}, "yaml")
-
-
-def tree_differences(one: Behaviour, other: Behaviour, vocabulary: Vocabulary) -> list[str]:
-    """Where two trees differ in types, names, parameters and children, a line each; none when equal.
-
-    Raises:
-        ValueError: a node is of a type that no file can name.
-    """
-    path = node_path(one)
-    if type(one) is not type(other) or one.name != other.name:
-        return [f"{path}: {_say(one)} and {_say(other)}"]
-    kind = _type_of(one, vocabulary)
-    mine, theirs = kind.arguments(one), kind.arguments(other)
-    found = [
-        f"{path}: {name} is {mine[name]!r} and {theirs[name]!r}"
-        for name in mine
-        if mine[name] != theirs[name]
-    ]
-    if _cases(one, kind) != _cases(other, kind):
-        found.append(f"{path}: the cases differ")
-    if len(one.children) != len(other.children):
-        found.append(f"{path}: {len(one.children)} children and {len(other.children)}")
-    for child, its in zip(one.children, other.children, strict=False):
-        found += tree_differences(child, its, vocabulary)
-    return found
 
 
 def _describe(node: Behaviour, vocabulary: Vocabulary) -> Node:
@@ -105,17 +81,3 @@ def _by_child(cases: dict[str, Behaviour]) -> dict[int, tuple[list[str], Behavio
     for case, child in cases.items():
         shared.setdefault(id(child), ([], child))[0].append(case)
     return shared
-
-
-def _cases(node: Behaviour, kind: NodeType) -> list[tuple[str, int]]:
-    """Which child serves which case."""
-    return [
-        (case, node.children.index(child))
-        for name, shape in kind.branches.items()
-        if shape == "cases"
-        for case, child in getattr(node, name).items()
-    ]
-
-
-def _say(node: Behaviour) -> str:
-    return f"{type(node).__name__} {node.name!r}"

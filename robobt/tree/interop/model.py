@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from robobt.config.errors import ConfigError
-from robobt.tree.interop.formula import formula_names
 from robobt.tree.parameters import Parameter
 
 
@@ -34,34 +33,35 @@ class Name:
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
-    """In the place of a number: what numbers and parameters amount to."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
 class Text:
     """A value whose type is known only where it is used, as attributes of XML are."""
 
     text: str
 
 
-@dataclass(slots=True)
-class Choice:
-    """One of several values or branches, chosen by the value of a parameter as the tree is built."""
+Value: TypeAlias = object
+"""Plain data as JSON has it, in which any part may be a Name, an Entry or a Text."""
 
-    by: Value
-    cases: dict[str, Any]
+
+@dataclass(slots=True, kw_only=True)
+class _Placed:
+    """Something in a file.
+
+    Attributes:
+        line: line where it begins.
+        lines: lines of its parameters.
+    """
+
     line: int = field(default=0, compare=False)
+    lines: dict[str, int] = field(default_factory=dict, compare=False)
 
-
-Value: TypeAlias = Any
-"""Plain data as JSON has it, in which any part may be a Name, a Formula, a Text or a Choice."""
+    def line_of(self, parameter: str) -> int:
+        """Return the line of a parameter."""
+        return self.lines.get(parameter, self.line)
 
 
 @dataclass(slots=True)
-class Node:
+class Node(_Placed):
     """One node.
 
     Attributes:
@@ -70,23 +70,15 @@ class Node:
         parameters: what its constructor is given.
         branches: its children: a node, a list of nodes, or nodes by case, as the
             type's constructor takes them.
-        line: where it begins in the file.
-        lines: where its parameters are.
     """
 
     type: str
     name: str | None = None
     parameters: dict[str, Value] = field(default_factory=dict)
     branches: dict[str, Spec | list[Spec] | dict[str, Spec]] = field(default_factory=dict)
-    line: int = field(default=0, compare=False)
-    lines: dict[str, int] = field(default_factory=dict, compare=False)
-
-    def line_of(self, parameter: str) -> int:
-        """Where a parameter is."""
-        return self.lines.get(parameter, self.line)
 
     def children(self) -> Iterator[Spec]:
-        """The children, in their order."""
+        """Yield the children in their order."""
         for branch in self.branches.values():
             if isinstance(branch, list):
                 yield from branch
@@ -97,30 +89,23 @@ class Node:
 
 
 @dataclass(slots=True)
-class SubTree:
+class SubTree(_Placed):
     """In the place of a node: another tree of the file, or a play.
 
     Attributes:
-        tree: its name.
+        tree: name of the tree or play.
         parameters: what it is given.
-        autoremap: whether names it is not given mean what they mean outside of it.
+        autoremap: whether names that it is not given are looked up outside of it.
         label: name of the place it is put in; only kept.
-        line, lines: as in :class:`Node`.
     """
 
     tree: str
     parameters: dict[str, Value] = field(default_factory=dict)
     autoremap: bool = False
     label: str | None = None
-    line: int = field(default=0, compare=False)
-    lines: dict[str, int] = field(default_factory=dict, compare=False)
-
-    def line_of(self, parameter: str) -> int:
-        """Where a parameter is."""
-        return self.lines.get(parameter, self.line)
 
 
-Spec: TypeAlias = "Node | SubTree | Choice"
+Spec: TypeAlias = "Node | SubTree"
 """What may stand in the place of a node."""
 
 
@@ -132,15 +117,13 @@ class Definition:
         name: how sub-trees refer to it.
         root: its root.
         parameters: what it can be given.
-        let: values computed from them, in this order.
-        description: for people.
-        line: where it begins.
+        description: text for people.
+        line: line where it begins.
     """
 
     name: str
     root: Spec
     parameters: dict[str, Parameter] = field(default_factory=dict)
-    let: dict[str, Value] = field(default_factory=dict)
     description: str = ""
     line: int = field(default=0, compare=False)
 
@@ -152,7 +135,7 @@ class TreeFile:
     Attributes:
         source: the file, for messages.
         main: name of the tree that is meant when none is named.
-        trees: all of them.
+        trees: all of them by name.
         language: in XML a name that is no parameter is an entry of the store.
     """
 
@@ -162,19 +145,15 @@ class TreeFile:
     language: Literal["yaml", "xml"]
 
 
+def parts_of(value: Value) -> Iterator[Value]:
+    """Yield what a value is made of: itself, or the parts of a list or mapping, however deep."""
+    if isinstance(value, list | dict):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from parts_of(part)
+    else:
+        yield value
+
+
 def names_in(value: Value) -> Iterator[str]:
-    """The names that a value refers to, those in formulas included."""
-    if isinstance(value, Name):
-        yield value.name
-    elif isinstance(value, Formula):
-        yield from formula_names(value.text)
-    elif isinstance(value, Choice):
-        yield from names_in(value.by)
-        for case in value.cases.values():
-            yield from names_in(case)
-    elif isinstance(value, list):
-        for part in value:
-            yield from names_in(part)
-    elif isinstance(value, dict):
-        for part in value.values():
-            yield from names_in(part)
+    """Yield the names that a value refers to."""
+    return (part.name for part in parts_of(value) if isinstance(part, Name))

@@ -12,8 +12,8 @@ from robobt.config.yaml import read_limited
 from robobt.tree.interop.build import build_tree
 from robobt.tree.interop.model import Name, Text, TreeFile, TreeFileError
 from robobt.tree.interop.vocabulary import Vocabulary
-from robobt.tree.interop.xml import parse_xml
-from robobt.tree.interop.xml_reader import MAX_BYTES
+from robobt.tree.interop.xml_elements import MAX_BYTES
+from robobt.tree.interop.xml_reader import parse_xml
 from robobt.tree.interop.yaml import parse_yaml
 
 FILE_ENDINGS = (".yaml", ".yml", ".xml")

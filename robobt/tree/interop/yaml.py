@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any
 
 from robobt.config import yaml
 from robobt.config.yaml import Marked, parse_marked
-from robobt.tree.interop.formula import formula_names
-from robobt.tree.interop.kinds import choices_hint, choices_of, hint_of, kind_of, say_kind
+from robobt.tree.interop.hints import hint_of, words_of, words_of_default
 from robobt.tree.interop.model import (
-    Choice,
     Definition,
-    Formula,
     Name,
     Node,
     Spec,
@@ -22,16 +18,19 @@ from robobt.tree.interop.model import (
     TreeFileError,
     Value,
 )
+from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.verify import is_written_out, unknown_type, verify
-from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError
 
 
 def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
-    """The trees of a YAML text.
+    """Return the trees of a YAML text.
 
     Args:
-        source: what messages call it.
+        text: the text.
+        vocabulary: what it may name.
+        source: name of the text for messages.
 
     Raises:
         TreeFileError: the first thing that is wrong.
@@ -45,14 +44,14 @@ def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") 
 
 
 def write_yaml(file: TreeFile) -> str:
-    """The YAML text of a file.
+    """Return the YAML text of a file.
 
     Raises:
-        ValueError: it has been read from XML and holds what YAML cannot say; build
+        ValueError: the file was read from XML and holds what YAML cannot express; build
             its tree and describe that.
     """
     main = file.trees[file.main]
-    data: dict[str, Any] = {"play": main.name}
+    data: dict[str, object] = {"play": main.name}
     others = {name: _tree_data(tree) for name, tree in file.trees.items() if name != file.main}
     tree = _tree_data(main)
     root = tree.pop("tree")
@@ -68,79 +67,57 @@ class _Reader:
         self.vocabulary, self.source = vocabulary, source
 
     def file(self, marked: Marked) -> TreeFile:
-        parts = self._mapping(marked, "a tree file")
-        self._keys("a tree file", marked, ("play", *_TREE_KEYS, "trees"), needed=("play", "tree"))
-        main = self._tree(self._word(parts["play"], "play"), marked, ("play", "trees"))
+        parts = self._fields("a tree file", marked, ("play", *_TREE_KEYS, "trees"), needed=("play", "tree"))
+        own = {key: part for key, part in parts.items() if key not in ("play", "trees")}
+        main = self._tree(self._word(parts["play"], "play"), Marked(own, marked.line, marked.column))
         trees = {main.name: main}
-        for name, part in self._mapping(parts.get("trees", Marked({}, 1, 1)), "trees").items():
+        for name, part in self._optional_mapping(parts, "trees").items():
             if name in trees:
                 raise self._error(part, f"the tree {name!r} is there twice")
-            trees[name] = self._tree(name, part, ())
+            trees[name] = self._tree(name, part)
         return TreeFile(self.source, main.name, trees, "yaml")
 
-    def _tree(self, name: str, marked: Marked, besides: tuple[str, ...]) -> Definition:
-        parts = self._mapping(marked, f"the tree {name!r}")
-        self._keys(f"the tree {name!r}", marked, (*_TREE_KEYS, *besides), needed=("tree",))
+    def _tree(self, name: str, marked: Marked) -> Definition:
+        parts = self._fields(f"the tree {name!r}", marked, _TREE_KEYS, needed=("tree",))
         definition = Definition(name, self._spec(parts["tree"]), line=marked.line)
         if "description" in parts:
             description = parts["description"]
             if not isinstance(description.value, str):
                 raise self._error(description, "the description is text")
             definition.description = description.value
-        for parameter, part in self._mapping(parts.get("params", Marked({}, 1, 1)), "params").items():
-            self._check_identifier(parameter, part)
+        for parameter, part in self._optional_mapping(parts, "params").items():
+            if not _IDENTIFIER.fullmatch(parameter):
+                raise self._error(part, f"{parameter!r} is not a name of a parameter")
             definition.parameters[parameter] = self._parameter(parameter, part)
-        for value, part in self._mapping(parts.get("let", Marked({}, 1, 1)), "let").items():
-            self._check_identifier(value, part)
-            if value in definition.parameters:
-                raise self._error(part, f"{value!r} is a parameter already")
-            definition.let[value] = self._value(part)
         return definition
 
     def _parameter(self, name: str, marked: Marked) -> Parameter:
-        try:
-            if not isinstance(marked.value, dict):
-                default = self._plain(marked)
-                return self._with_default(Parameter(name, hint_of(kind_of(default))), default, marked)
-            self._keys(f"the parameter {name!r}", marked, ("type", "choices", "default"), needed=())
-            hint = self._hint(marked)
-        except ValueError as error:
-            if isinstance(error, TreeFileError):
-                raise
-            raise self._error(marked, f"{name}: {error}") from error
-        if "default" not in marked.value:
-            return Parameter(name, hint)
-        part = marked.value["default"]
-        return self._with_default(Parameter(name, hint), self._plain(part), part)
-
-    def _hint(self, marked: Marked) -> Any:
-        parts: dict[str, Marked] = marked.value
-        if "choices" in parts:
+        default: Marked | None = marked
+        words: str | None = None
+        if isinstance(marked.value, dict):
+            parts = self._fields(f"the parameter {name!r}", marked, ("type", "default"), needed=())
+            default = parts.get("default")
             if "type" in parts:
-                raise self._error(parts["type"], "a parameter has choices or a type")
-            choices = self._plain(parts["choices"])
-            words = isinstance(choices, list) and choices and all(isinstance(word, str) for word in choices)
-            if not words:
-                raise self._error(parts["choices"], "choices is a list of words")
-            return choices_hint(choices)
-        if "type" in parts:
-            return hint_of(self._word(parts["type"], "type"))
-        if "default" not in parts:
-            raise ValueError("it needs a type, choices or a default")
-        return hint_of(kind_of(self._plain(parts["default"])))
-
-    def _with_default(self, parameter: Parameter, default: Any, marked: Marked) -> Parameter:
+                words = self._word(parts["type"], "type")
+            elif default is None:
+                raise self._error(marked, f"{name}: it needs a type or a default")
         try:
-            parameter.convert(default)
+            value = None if default is None else self._plain(default)
+            parameter = Parameter(name, hint_of(words_of_default(value) if words is None else words))
+            if default is None:
+                return parameter
+            parameter.convert(value)
         except ParameterError as error:
-            raise self._error(marked, f"{error.parameter}: {error}") from error
-        return Parameter(parameter.name, parameter.hint, default)
+            raise self._error(default or marked, f"{error.parameter}: {error}") from error
+        except TreeFileError:
+            raise
+        except ValueError as error:
+            raise self._error(marked, f"{name}: {error}") from error
+        return Parameter(name, parameter.hint, value)
 
     def _spec(self, marked: Marked) -> Spec:
         if isinstance(marked.value, str):
             return self._node(marked.value, Marked({}, marked.line, marked.column), marked)
-        if self._is_choice(marked):
-            return self._choice(marked, self._spec)
         if not isinstance(marked.value, dict) or len(marked.value) != 1:
             raise self._error(marked, "a node is a name, or one name with its parameters: Wall: {place: 0}")
         ((name, body),) = marked.value.items()
@@ -151,12 +128,11 @@ class _Reader:
         return self._sub_tree(body, marked) if name == "SubTree" else self._node(name, body, marked)
 
     def _sub_tree(self, body: Marked, marked: Marked) -> SubTree:
-        self._keys(
-            "SubTree", Marked(body.value, marked.line, marked.column), ("tree", "params"), needed=("tree",)
-        )
-        params = self._mapping(body.value.get("params", Marked({}, body.line, body.column)), "params")
+        at_node = Marked(body.value, marked.line, marked.column)
+        parts = self._fields("SubTree", at_node, ("tree", "params"), needed=("tree",))
+        params = self._optional_mapping(parts, "params")
         return SubTree(
-            self._word(body.value["tree"], "tree"),
+            self._word(parts["tree"], "tree"),
             {name: self._value(part) for name, part in params.items()},
             line=marked.line,
             lines={name: part.line for name, part in params.items()},
@@ -170,7 +146,7 @@ class _Reader:
         if kind is None:
             raise self._error(marked, unknown_type(name, self.vocabulary))
         node = Node(name, line=marked.line)
-        for key, part in body.value.items():
+        for key, part in self._mapping(body, name).items():
             node.lines[key] = part.line
             if key == "name":
                 node.name = self._word(part, "name")
@@ -192,48 +168,22 @@ class _Reader:
 
     def _value(self, marked: Marked) -> Value:
         value = marked.value
-        if isinstance(value, str) and value.startswith("$"):
-            return self._reference(value, marked)
         if isinstance(value, list):
             return [self._value(part) for part in value]
-        if self._is_choice(marked):
-            return self._choice(marked, self._value)
         if isinstance(value, dict):
             return {key: self._value(part) for key, part in value.items()}
-        return value
+        if not isinstance(value, str) or not value.startswith("$"):
+            return value
+        if value.startswith("$$"):
+            return value[1:]
+        if not _IDENTIFIER.fullmatch(value[1:]):
+            raise self._error(marked, f"{value!r} is not $name; write a text that begins with $ as $$")
+        return Name(value[1:])
 
-    def _reference(self, text: str, marked: Marked) -> Value:
-        if text.startswith("$$"):
-            return text[1:]
-        if text.startswith("$(") and text.endswith(")"):
-            try:
-                formula_names(text[2:-1])
-            except ValueError as error:
-                raise self._error(marked, str(error)) from error
-            return Formula(text[2:-1])
-        if not _IDENTIFIER.fullmatch(text[1:]):
-            raise self._error(
-                marked, f"{text!r} is neither $name nor $(formula); a text that begins with $ is written $$"
-            )
-        return Name(text[1:])
-
-    def _is_choice(self, marked: Marked) -> bool:
-        return isinstance(marked.value, dict) and "choose" in marked.value
-
-    def _choice(self, marked: Marked, read: Any) -> Choice:
-        self._keys("choose", marked, ("choose", "cases"), needed=("choose", "cases"))
-        cases = self._mapping(marked.value["cases"], "cases")
-        if not cases:
-            raise self._error(marked, "choose: there are no cases")
-        by = self._value(marked.value["choose"])
-        if not isinstance(by, Name):
-            raise self._error(marked, "choose takes the name of a parameter: $name")
-        return Choice(by, {case: read(part) for case, part in cases.items()}, marked.line)
-
-    def _plain(self, marked: Marked) -> Any:
+    def _plain(self, marked: Marked) -> Value:
         value = self._value(marked)
         if not is_written_out(value):
-            raise self._error(marked, "a default hangs on no other parameter")
+            raise self._error(marked, "a default depends on no other parameter")
         return value
 
     def _mapping(self, marked: Marked, what: str) -> dict[str, Marked]:
@@ -241,13 +191,20 @@ class _Reader:
             raise self._error(marked, f"{what} is a mapping")
         return marked.value
 
-    def _keys(self, what: str, marked: Marked, known: tuple[str, ...], needed: tuple[str, ...]) -> None:
-        for key, part in marked.value.items():
+    def _optional_mapping(self, parts: dict[str, Marked], key: str) -> dict[str, Marked]:
+        return self._mapping(parts[key], key) if key in parts else {}
+
+    def _fields(
+        self, what: str, marked: Marked, known: tuple[str, ...], needed: tuple[str, ...]
+    ) -> dict[str, Marked]:
+        parts = self._mapping(marked, what)
+        for key, part in parts.items():
             if key not in known:
                 raise self._error(part, f"{what} has no {key!r}; it has {', '.join(known)}")
         for key in needed:
-            if key not in marked.value:
+            if key not in parts:
                 raise self._error(marked, f"{what} needs {key!r}")
+        return parts
 
     def _word(self, marked: Marked, what: str) -> str:
         value = marked.value
@@ -255,46 +212,38 @@ class _Reader:
             raise self._error(marked, f"{what} is a text on one line")
         return value
 
-    def _check_identifier(self, name: str, marked: Marked) -> None:
-        if not _IDENTIFIER.fullmatch(name):
-            raise self._error(marked, f"{name!r} is no name of a parameter")
-
     def _error(self, marked: Marked, problem: str) -> TreeFileError:
         return TreeFileError(self.source, problem, line=marked.line)
 
 
-def _tree_data(definition: Definition) -> dict[str, Any]:
-    data: dict[str, Any] = {}
+def _tree_data(definition: Definition) -> dict[str, object]:
+    data: dict[str, object] = {}
     if definition.description:
         data["description"] = definition.description
     if definition.parameters:
         data["params"] = {name: _parameter_data(entry) for name, entry in definition.parameters.items()}
-    if definition.let:
-        data["let"] = {name: _value_data(value) for name, value in definition.let.items()}
     data["tree"] = _spec_data(definition.root)
     return data
 
 
-def _parameter_data(parameter: Parameter) -> Any:
-    default = {} if parameter.required else {"default": _value_data(parameter.default)}
-    choices = choices_of(parameter.hint)
-    if choices is not None:
-        return {"choices": choices, **default}
+def _parameter_data(parameter: Parameter) -> object:
+    words = words_of(parameter.hint)
+    if parameter.required:
+        return {"type": words}
+    default = _value_data(parameter.default)
     try:
-        if not parameter.required and hint_of(kind_of(parameter.default)) == parameter.hint:
-            return default["default"]
+        if words_of_default(parameter.default) == words:
+            return default
     except ValueError:
         pass
-    return {"type": say_kind(parameter.hint), **default}
+    return {"type": words, "default": default}
 
 
-def _spec_data(spec: Spec) -> Any:
-    if isinstance(spec, Choice):
-        return _choice_data(spec, _spec_data)
+def _spec_data(spec: Spec) -> object:
     if isinstance(spec, SubTree):
         if spec.autoremap or spec.label is not None:
-            raise ValueError(f"the sub-tree {spec.tree!r} is one of XML; build the tree first")
-        body: dict[str, Any] = {"tree": spec.tree}
+            raise ValueError(f"the sub-tree {spec.tree!r} can only be written in XML; build the tree first")
+        body: dict[str, object] = {"tree": spec.tree}
         if spec.parameters:
             body["params"] = {name: _value_data(value) for name, value in spec.parameters.items()}
         return {"SubTree": body}
@@ -310,15 +259,11 @@ def _spec_data(spec: Spec) -> Any:
     return {spec.type: body} if body else spec.type
 
 
-def _value_data(value: Value) -> Any:
+def _value_data(value: Value) -> object:
     if isinstance(value, Text):
         raise ValueError(f"{value.text!r} has no type in XML; build the tree first")
     if isinstance(value, Name):
         return f"${value.name}"
-    if isinstance(value, Formula):
-        return f"$({value.text})"
-    if isinstance(value, Choice):
-        return _choice_data(value, _value_data)
     if isinstance(value, str):
         return f"${value}" if value.startswith("$") else value
     if isinstance(value, list):
@@ -328,10 +273,5 @@ def _value_data(value: Value) -> Any:
     return value
 
 
-def _choice_data(choice: Choice, write: Any) -> Any:
-    cases = {case: write(part) for case, part in choice.cases.items()}
-    return {"choose": _value_data(choice.by), "cases": cases}
-
-
-_TREE_KEYS = ("description", "params", "let", "tree")
+_TREE_KEYS = ("description", "params", "tree")
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")

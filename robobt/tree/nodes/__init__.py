@@ -10,7 +10,6 @@ from robobt.tree.nodes.delay import Delay
 from robobt.tree.nodes.gate import Gate
 from robobt.tree.nodes.hold_success import HoldSuccess
 from robobt.tree.nodes.parallel_count import ParallelCount
-from robobt.tree.nodes.role_assignment import assign_roles
 from robobt.tree.nodes.sequence_with_memory import SequenceWithMemory
 from robobt.tree.nodes.switch import Switch
 from robobt.tree.nodes.tick_divider import TickDivider
@@ -33,5 +32,4 @@ __all__ = [
     "Timeout",
     "Timer",
     "Wait",
-    "assign_roles",
 ]

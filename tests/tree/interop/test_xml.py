@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,13 +40,13 @@ from robobt.tree.interop import (
     load_tree_file,
     parse_xml,
     parse_yaml,
-    tree_differences,
     write_xml,
 )
 from robobt.tree.interop.btcpp import TAGS
 from robobt.tree.nodes import Cooldown, ParallelCount, SequenceWithMemory, Timeout, Wait
 from robobt.world.game import Restart
 from robobt.world.limits import RobotLimits
+from tests.tree.interop.differences import tree_differences
 from tests.tree.tutorial_nodes import VOCABULARY, Aim, House, SaySomething
 
 DATA = Path(__file__).parent / "data"
@@ -180,7 +181,7 @@ def test_t07_the_main_tree_is_the_one_that_is_named() -> None:
     house = House()
     run(build_tree(file, VOCABULARY), house)
     assert house.said == ["the whole", "part A", "part B"]
-    run(build_tree(file, VOCABULARY, tree="PartB"), house)
+    run(build_tree(replace(file, main="PartB"), VOCABULARY), house)
     assert house.said[-1] == "part B"
 
 
@@ -458,7 +459,7 @@ def test_the_palettes_own_defaults_are_what_leaving_them_out_means() -> None:
 def test_a_yaml_file_with_parameters_and_sub_trees_keeps_them_in_xml() -> None:
     text = """
         play: main
-        params: {message: hello, times: {type: int, default: 2}, tone: {choices: [soft, loud], default: soft}}
+        params: {message: hello, times: {type: int, default: 2}, tone: soft}
         trees:
           part:
             params: {word: {type: str}, times: 1}
@@ -746,26 +747,15 @@ def test_what_xml_cannot_say_is_an_error(root: Behaviour, problem: str) -> None:
         write_xml(describe_tree(root, vocabulary, "Main"), vocabulary)
 
 
-@pytest.mark.parametrize(
-    "node",
-    [
-        "{Repeat: {name: r, num_success: $(n + 1), child: Stop}}",
-        "{choose: $way, cases: {left: Stop, right: Wall}}",
-    ],
-)
-def test_yamls_formulas_and_choices_have_to_be_built_before_they_are_xml(node: str) -> None:
-    file = parse_yaml(f"play: p\nparams: {{n: 1, way: left}}\ntree: {node}\n", PLAY_VOCABULARY)
+def test_names_within_values_have_to_be_built_before_they_are_xml() -> None:
+    text = "play: p\nparams: {n: 1.0}\ntree: {GoToPose: {limits: {max_speed: $n}}}\n"
+    file = parse_yaml(text, PLAY_VOCABULARY)
     with pytest.raises(ValueError, match="build the tree first"):
         write_xml(file, PLAY_VOCABULARY)
-    text = write_xml(describe_tree(build_tree(file, PLAY_VOCABULARY), PLAY_VOCABULARY, "p"), PLAY_VOCABULARY)
-    assert (
-        tree_differences(
-            build_tree(read(text, PLAY_VOCABULARY), PLAY_VOCABULARY),
-            build_tree(file, PLAY_VOCABULARY),
-            PLAY_VOCABULARY,
-        )
-        == []
-    )
+    root = build_tree(file, PLAY_VOCABULARY)
+    text = write_xml(describe_tree(root, PLAY_VOCABULARY, "p"), PLAY_VOCABULARY)
+    again = build_tree(read(text, PLAY_VOCABULARY), PLAY_VOCABULARY)
+    assert tree_differences(again, root, PLAY_VOCABULARY) == []
 
 
 def test_the_documents_table_is_the_table_that_is_used() -> None:

@@ -1,0 +1,50 @@
+"""The types of a tree file's own parameters, as words."""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import or_
+from typing import Any
+
+from robobt.tree.parameters import say_hint
+
+_WORDS: dict[str, Any] = {
+    "bool": bool,
+    "int": int,
+    "float": float,
+    "str": str,
+    "point": tuple[float, float],
+    "none": type(None),
+}
+
+
+def hint_of(words: str) -> Any:
+    """Return the type that words such as ``float | none`` stand for.
+
+    Raises:
+        ValueError: a word is unknown.
+    """
+    members = [word.strip() for word in words.split("|")]
+    for word in members:
+        if word not in _WORDS:
+            raise ValueError(f"{word!r} is not a type of a parameter; there are {', '.join(_WORDS)}")
+    return reduce(or_, [_WORDS[word] for word in members])
+
+
+def words_of_default(default: object) -> str:
+    """Return the words for the type of a default.
+
+    Raises:
+        ValueError: the default does not determine a type.
+    """
+    for word in ("bool", "int", "float", "str"):
+        if type(default) is _WORDS[word]:
+            return word
+    if isinstance(default, list) and len(default) == 2 and {type(part) for part in default} <= {int, float}:
+        return "point"
+    raise ValueError("its type does not follow from its default; write {type: ..., default: ...}")
+
+
+def words_of(hint: object) -> str:
+    """Return the words for a type, as :func:`hint_of` reads them."""
+    return say_hint(hint).replace("tuple[float, float]", "point")

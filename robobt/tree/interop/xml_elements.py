@@ -1,0 +1,109 @@
+"""XML elements, with lines, out of a text that anybody may have written.
+
+No document type, no entities, no processing instructions: there is no file
+beside this one and nothing grows as it is read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NoReturn
+from xml.parsers import expat
+
+from robobt.tree.interop.model import TreeFileError
+
+MAX_BYTES = 1024 * 1024
+"""Largest text that is read."""
+
+MAX_DEPTH = 100
+"""Deepest nesting that is followed."""
+
+
+@dataclass(slots=True)
+class Element:
+    """One element.
+
+    Attributes:
+        tag: its name.
+        attributes: in the order they are written.
+        line: where it begins, counted from 1.
+        children: the elements in it.
+        text: the text in it, outside of its children.
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+
+def read_element(content: bytes | str, source: str) -> Element:
+    """Return the outermost element of a document.
+
+    Args:
+        content: the text.
+        source: name of the text for messages.
+
+    Raises:
+        TreeFileError: the text is not well-formed XML, or has what is not allowed.
+    """
+    if len(content) > MAX_BYTES:
+        raise TreeFileError(source, f"is larger than {MAX_BYTES // 1024} KiB")
+    reader = _Reader(source)
+    try:
+        reader.parser.Parse(content, True)
+    except expat.ExpatError as error:
+        problem = f"is no XML: {expat.ErrorString(error.code)}"
+        raise TreeFileError(source, problem, line=error.lineno) from error
+    except (LookupError, UnicodeError, ValueError) as error:
+        # An encoding that does not exist, or that the text does not keep to.
+        if isinstance(error, TreeFileError):
+            raise
+        raise TreeFileError(source, f"is not text: {error}", line=reader.line) from error
+    assert reader.root is not None
+    return reader.root
+
+
+class _Reader:
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.root: Element | None = None
+        self.open: list[Element] = []
+        self.parser = parser = expat.ParserCreate()
+        parser.ordered_attributes = True
+        parser.buffer_text = True
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._text
+        parser.StartDoctypeDeclHandler = self._no_doctype
+        parser.EntityDeclHandler = self._no_doctype
+        parser.ProcessingInstructionHandler = self._no_instruction
+
+    @property
+    def line(self) -> int:
+        return self.parser.CurrentLineNumber
+
+    def _start(self, tag: str, attributes: list[str]) -> None:
+        element = Element(tag, dict(zip(attributes[::2], attributes[1::2], strict=True)), self.line)
+        if len(self.open) >= MAX_DEPTH:
+            raise TreeFileError(self.source, f"nested deeper than {MAX_DEPTH} levels", line=self.line)
+        if self.open:
+            self.open[-1].children.append(element)
+        else:
+            self.root = element
+        self.open.append(element)
+
+    def _end(self, _tag: str) -> None:
+        self.open.pop()
+
+    def _text(self, text: str) -> None:
+        self.open[-1].text += text
+
+    def _no_doctype(self, *_: object) -> NoReturn:
+        raise TreeFileError(
+            self.source, "a document type and entities of one's own are not allowed", line=self.line
+        )
+
+    def _no_instruction(self, target: str, _data: str) -> NoReturn:
+        raise TreeFileError(self.source, f"the instruction <?{target}?> is not allowed", line=self.line)
