@@ -10,8 +10,9 @@ asks the shipped predictor beside one that does not.
 import sys
 
 from robobt.match import load_scenario, run_trials, summarise
-from robobt.shots import goals, make_predictor, read_shots, shot_inputs
-from robobt.shots.collect.collect import CollectionSettings, collect_shots
+from robobt.shots.collect import CollectionSettings, collect_shots
+from robobt.shots.data import goals, read_shots, shot_inputs
+from robobt.shots.predict import best_predictor
 from robobt.statistics import wilson_interval
 from robobt.worlds import sim_world
 
@@ -21,7 +22,7 @@ def main(shots: int = 600, trials: int = 20) -> None:
     table = read_shots("out/example_shots.parquet")
     inputs, scored = shot_inputs(table), goals(table)
     train = len(scored) * 2 // 3
-    predictor = make_predictor("quadratic").fit(inputs[:train], scored[:train])
+    predictor = best_predictor().fit(inputs[:train], scored[:train])
     right = int((predictor.predict(inputs[train:]) == scored[train:]).sum())
     low, high = wilson_interval(right, len(scored) - train)
     print(f"{len(scored)} shots, {scored.mean():.0%} scored")

@@ -5,6 +5,7 @@ scipy is imported by the functions that need it: matches use this module too and
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 from statistics import NormalDist
 from typing import Literal, NamedTuple
@@ -201,78 +202,8 @@ def mcnemar_p(
     return max(0.0, 1.0 - seen / 2.0 if only_first == only_second else both_tails - seen)
 
 
-class Fold(NamedTuple):
-    """A run of a cross-validation: indices to train on and to test on, each in ascending order."""
-
-    train: Indices
-    test: Indices
-
-
-def repeated_stratified_folds(
-    labels: ArrayLike, folds: int = 10, repeats: int = 10, seed: int = 0
-) -> list[Fold]:
-    """Folds of a repeated stratified cross-validation.
-
-    Each repeat tests every sample once; sizes of folds differ by at most one, and
-    so do the counts of every class in them.
-
-    Args:
-        labels: (n,) class of every sample.
-
-    Returns:
-        repeats x folds runs, repeat by repeat.
-
-    Raises:
-        ValueError: fewer than 2 folds, no repeat, or a class with fewer samples than folds.
-    """
-    classes, members = np.unique(np.asarray(labels), return_inverse=True)
-    if folds < 2 or repeats < 1:
-        raise ValueError(f"{repeats} repeats of {folds} folds are no cross-validation")
-    counts = np.bincount(members, minlength=len(classes))
-    if len(counts) == 0 or counts.min() < folds:
-        raise ValueError(f"every class needs at least {folds} samples, one a fold")
-    rng = np.random.default_rng(seed)
-    everyone = np.arange(len(members))
-    runs = []
-    for _ in range(repeats):
-        # Dealt out like cards, class after class, to the folds in a random order.
-        deck = np.concatenate([rng.permutation(np.flatnonzero(members == c)) for c in range(len(classes))])
-        owner = np.empty(len(members), dtype=np.intp)
-        owner[deck] = rng.permutation(folds)[everyone % folds]
-        runs += [Fold(np.flatnonzero(owner != k), np.flatnonzero(owner == k)) for k in range(folds)]
-    return runs
-
-
-def stratified_hold_out(labels: ArrayLike, share: float, rng: np.random.Generator) -> Fold:
-    """One random split that keeps the classes' shares: ceil(share x n) samples are held out.
-
-    Which class gives the samples that do not divide evenly is settled by largest
-    remainder. Each class keeps at least one sample on both sides.
-
-    Raises:
-        ValueError: a share that is not between 0 and 1, or a class with fewer than two samples.
-    """
-    classes, members = np.unique(np.asarray(labels), return_inverse=True)
-    counts = np.bincount(members, minlength=len(classes))
-    if not 0.0 < share < 1.0:
-        raise ValueError(f"the held-out share must lie between 0 and 1, not {share}")
-    if len(counts) == 0 or counts.min() < 2:
-        raise ValueError("every class needs at least two samples to be split")
-    total = int(np.ceil(share * len(members)))
-    wanted = counts * total / len(members)
-    held = np.floor(wanted).astype(int)
-    most_left = np.argsort(held - wanted, kind="stable")
-    held[most_left[: total - held.sum()]] += 1
-    held = np.clip(held, 1, counts - 1)
-    out = np.concatenate(
-        [rng.permutation(np.flatnonzero(members == c))[: held[c]] for c in range(len(classes))]
-    )
-    mask = np.zeros(len(members), dtype=bool)
-    mask[out] = True
-    return Fold(np.flatnonzero(~mask), np.flatnonzero(mask))
-
-
-class ReliabilityBin(NamedTuple):
+@dataclass(frozen=True)
+class ReliabilityBin:
     """Trials with predictions in ``low`` to ``high``: how many, mean prediction, share of successes."""
 
     low: float
@@ -315,17 +246,6 @@ def calibration_error(probabilities: ArrayLike, outcomes: ArrayLike, bins: int =
     table = reliability(probabilities, outcomes, bins)
     total = sum(row.trials for row in table)
     return sum(row.trials * abs(row.predicted - row.observed) for row in table) / total
-
-
-def log_loss(probabilities: ArrayLike, outcomes: ArrayLike) -> float:
-    """Mean negative log-likelihood of 0/1 outcomes; a certainty that fails counts as 1e-15.
-
-    Raises:
-        ValueError: as for :func:`reliability`.
-    """
-    predicted, came = _forecasts(probabilities, outcomes)
-    given = np.where(came == 1.0, predicted, 1.0 - predicted)
-    return float(-np.log(np.maximum(given, 1e-15)).mean())
 
 
 def _forecasts(

@@ -3,19 +3,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy import stats
-from sklearn.metrics import log_loss as sklearn_log_loss
 
 from robobt.statistics import (
+    ReliabilityBin,
     calibration_error,
     clopper_pearson_interval,
     corrected_resampled_t_test,
-    log_loss,
     mcnemar,
     mcnemar_p,
     mean_interval,
     reliability,
-    repeated_stratified_folds,
-    stratified_hold_out,
     wilson_interval,
 )
 
@@ -149,12 +146,6 @@ def test_equal_differences_leave_no_doubt_whatever_their_rounding_error():
     assert (found.variance, found.t, found.p) == (0.0, np.inf, 0.0)
 
 
-@pytest.mark.parametrize(("predicted", "came"), [([], []), ([0.5, 0.5], [1]), ([np.nan], [1]), ([0.5], [2])])
-def test_a_log_loss_of_no_forecasts_is_refused(predicted: list[float], came: list[int]):
-    with pytest.raises(ValueError, match="outcomes"):
-        log_loss(predicted, came)
-
-
 def test_a_mean_of_what_is_no_number_is_refused():
     with pytest.raises(ValueError, match="finite"):
         mean_interval([1.0, np.nan])
@@ -179,58 +170,11 @@ def test_mcnemar_counts_the_trials_on_which_two_classifiers_differ():
         mcnemar_p(1, 2, "magic")  # type: ignore[arg-type]
 
 
-@given(st.integers(10, 60), st.integers(10, 60), st.integers(2, 10), st.integers(0, 5))
-def test_each_repeat_tests_every_sample_once_and_keeps_the_shares(
-    ones: int, zeros: int, folds: int, seed: int
-):
-    labels = np.random.default_rng(seed).permutation([1] * ones + [0] * zeros)
-    runs = repeated_stratified_folds(labels, folds, 2, seed)
-    assert len(runs) == 2 * folds
-    for repeat in (runs[:folds], runs[folds:]):
-        assert sorted(np.concatenate([run.test for run in repeat])) == list(range(len(labels)))
-        for run in repeat:
-            assert sorted(np.concatenate(run)) == list(range(len(labels)))
-        sizes = [len(run.test) for run in repeat]
-        assert max(sizes) - min(sizes) <= 1
-        for kind in (0, 1):
-            counts = [(labels[run.test] == kind).sum() for run in repeat]
-            assert max(counts) - min(counts) <= 1
-
-
-def test_a_seed_fixes_the_folds_and_repeats_differ():
-    labels = np.arange(60) % 3 == 0
-    one, same, other = (repeated_stratified_folds(labels, 5, 2, seed) for seed in (1, 1, 2))
-    assert all((a.test == b.test).all() for a, b in zip(one, same, strict=True))
-    assert any((a.test != b.test).any() for a, b in zip(one, other, strict=True))
-    assert any((a.test != b.test).any() for a, b in zip(one[:5], one[5:], strict=True))
-
-
-@pytest.mark.parametrize(("folds", "repeats"), [(1, 1), (5, 0), (11, 1)])
-def test_impossible_folds_are_refused(folds: int, repeats: int):
-    with pytest.raises(ValueError, match=r"cross-validation|samples"):
-        repeated_stratified_folds([0, 1] * 10, folds, repeats)
-
-
-def test_the_hold_out_of_the_published_split():
-    # 33 % of 542 with 165 goals: 363 with 111 goals and 179 with 54.
-    labels = np.arange(542) < 165
-    fold = stratified_hold_out(labels, 0.33, np.random.default_rng(3))
-    assert (len(fold.train), labels[fold.train].sum()) == (363, 111)
-    assert (len(fold.test), labels[fold.test].sum()) == (179, 54)
-    assert sorted(np.concatenate(fold)) == list(range(542))
-
-
-@pytest.mark.parametrize(("labels", "share"), [([0, 1, 1], 0.5), ([0, 0, 1, 1], 1.0)])
-def test_impossible_hold_outs_are_refused(labels: list[int], share: float):
-    with pytest.raises(ValueError, match=r"samples|share"):
-        stratified_hold_out(labels, share, np.random.default_rng(0))
-
-
 def test_reliability_and_calibration_error_worked_out_by_hand():
     predicted, came = [0.1, 0.2, 0.9, 1.0], [0, 1, 1, 1]
     assert reliability(predicted, came, 2) == [
-        (0.0, 0.5, 2, pytest.approx(0.15), 0.5),
-        (0.5, 1.0, 2, pytest.approx(0.95), 1.0),
+        ReliabilityBin(0.0, 0.5, 2, pytest.approx(0.15), 0.5),
+        ReliabilityBin(0.5, 1.0, 2, pytest.approx(0.95), 1.0),
     ]
     assert calibration_error(predicted, came, 2) == pytest.approx(0.5 * 0.35 + 0.5 * 0.05)
 
@@ -242,9 +186,3 @@ def test_reliability_and_calibration_error_worked_out_by_hand():
 def test_impossible_reliabilities_are_refused(predicted: list[float], came: list[int], bins: int):
     with pytest.raises(ValueError, match=r"bins|outcomes"):
         reliability(predicted, came, bins)
-
-
-@given(st.lists(st.tuples(st.floats(0.001, 0.999), st.integers(0, 1)), min_size=1, max_size=30))
-def test_the_log_loss_agrees_with_scikit_learn(pairs: list[tuple[float, int]]):
-    predicted, came = zip(*pairs, strict=True)
-    assert log_loss(predicted, came) == pytest.approx(sklearn_log_loss(came, predicted, labels=[0, 1]))

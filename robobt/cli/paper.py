@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,7 +13,7 @@ from robobt.cli.deployed import deployed
 from robobt.cli.table4 import table4
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from robobt.experiments.table3 import Table3
 
 _Data = Annotated[
     Path | None,
@@ -64,33 +65,30 @@ def table2(
     with Progress("table 2", replications * len(HOLD_OUTS)) as progress:
         result = run(sets, replications, seed, progress.advance)
     if as_json:
-        print_json(result)
+        print_json(asdict(result))
         return
-    say(f"{result['source']}: {result['shots']} shots, {result['goals']} goals, {replications} replications")
-    for share, found in result["hold_outs"].items():
-        paper = found["paper"]
+    say(f"{result.source}: {result.shots} shots, {result.goals} goals, {replications} replications")
+    for share, found in result.hold_outs.items():
+        paper = found.paper
         listed = table(f"{share} held out", "paper", "mean", "95 % interval", "range")
-        for name, title in (
-            ("network", "network"),
-            ("logistic", "logistic regression"),
-            ("standardised", "standardised logistic regression"),
+        for title, published, ours in (
+            ("network", f"{paper.network:.2f} %", found.network),
+            ("logistic regression", f"{paper.logistic:.2f} %", found.logistic),
+            ("standardised logistic regression", "-", found.standardised),
         ):
-            published = f"{paper[name]:.2f} %" if name in paper else "-"
-            ours = found[name]
-            listed.add_row(
-                title,
-                published,
-                f"{ours['mean']:.2f} %",
-                _interval(ours["low"], ours["high"]),
-                f"{ours['least']:.2f} to {ours['most']:.2f}",
-            )
-        for name, title in (("test_logistic", "logistic"), ("test_standardised", "standardised")):
-            test = found[name]
+            interval = _interval(ours.low, ours.high)
+            spread = f"{ours.least:.2f} to {ours.most:.2f}"
+            listed.add_row(title, published, f"{ours.mean:.2f} %", interval, spread)
+        for title, test, row in (
+            ("logistic", found.test_logistic, paper),
+            ("standardised", found.test_standardised, None),
+        ):
             for key, digits in (("difference", 2), ("variance", 1), ("t", 2), ("p", 3)):
-                published = f"{paper[key]:.{digits + 1}f}" if name == "test_logistic" else "-"
-                spread = f"{test['least_p']:.3f} to {test['most_p']:.3f}" if key == "p" else ""
-                listed.add_row(f"  {key}, against {title}", published, f"{test[key]:.{digits}f}", "", spread)
-            listed.add_row(f"  p < 0.05, against {title}", "", f"{test['significant']} of {replications}")
+                published = "-" if row is None else f"{getattr(row, key):.{digits + 1}f}"
+                spread = f"{test.least_p:.3f} to {test.most_p:.3f}" if key == "p" else ""
+                ours_is = f"{getattr(test, key):.{digits}f}"
+                listed.add_row(f"  {key}, against {title}", published, ours_is, "", spread)
+            listed.add_row(f"  p < 0.05, against {title}", "", f"{test.significant} of {replications}")
         console.print(listed)
 
 
@@ -137,59 +135,60 @@ def table3(
         if name not in PREDICTORS:
             raise typer.BadParameter(f"no predictor is called {name!r}; there are {', '.join(PREDICTORS)}")
     sets = load_shot_sets(data)
-    with Progress("table 3", len(model or PREDICTORS) + 1) as progress:
-        result = run(sets, seeds, repeats, model, progress.advance)
+    models = model or list(PREDICTORS)
+    with Progress("table 3", len(models)) as progress:
+        result = run(sets, seeds, repeats, models, progress.advance)
     if picture is not None:
-        bins = {name: one["reliability"] for name, one in result["models"].items()}
-        draw_reliability(bins, f"{result['test']['shots']} test shots", picture)
+        bins = {name: one.reliability for name, one in result.models.items()}
+        draw_reliability(bins, f"{result.test.shots} test shots", picture)
     if as_json:
-        print_json(result)
+        print_json(asdict(result))
         return
     _print_table3(result)
     if picture is not None:
         say(f"Reliability diagram: {picture}")
 
 
-def _print_table3(result: Mapping[str, Any]) -> None:
-    train, test, paper = result["train"], result["test"], result["paper"]
+def _print_table3(result: Table3) -> None:
+    train, test, paper = result.train, result.test, result.paper
     say(
-        f"{result['source']}: trained on {train['shots']} shots ({train['goals']} goals), "
-        f"tested on {test['shots']} ({test['goals']} goals)"
+        f"{result.source}: trained on {train.shots} shots ({train.goals} goals), "
+        f"tested on {test.shots} ({test.goals} goals)"
     )
     listed = table("on the test shots", "confusion", "accuracy", "95 % interval", "log-loss", "calibration")
-    listed.add_row("paper", _matrix(paper["confusion"]), f"{paper['accuracy']:.2f} %")
-    for name, one in result["models"].items():
+    listed.add_row("paper", _matrix(paper.confusion), f"{paper.accuracy:.2f} %")
+    for name, one in result.models.items():
         listed.add_row(
             name,
-            _matrix(one["confusion"]),
-            f"{one['accuracy']:.2f} %",
-            _interval(one["low"], one["high"]),
-            f"{one['log_loss']:.3f}",
-            f"{one['calibration_error']:.3f}",
+            _matrix(one.confusion),
+            f"{one.accuracy:.2f} %",
+            _interval(one.low, one.high),
+            f"{one.log_loss:.3f}",
+            f"{one.calibration_error:.3f}",
         )
     console.print(listed)
-    compared = {name: one["mcnemar"] for name, one in result["models"].items() if one["mcnemar"] is not None}
+    compared = {name: one.mcnemar for name, one in result.models.items() if one.mcnemar is not None}
     if compared:
-        against = next(iter(compared.values()))["against"]
+        against = next(iter(compared.values())).against
         listed = table(f"against {against}", "only this right", "only that right", "McNemar p", "mid-p")
-        for name, test in compared.items():
-            counts = str(test["only_this"]), str(test["only_other"])
-            listed.add_row(name, *counts, f"{test['p']:.3f}", f"{test['mid_p']:.3f}")
+        for name, paired in compared.items():
+            counts = str(paired.only_this), str(paired.only_other)
+            listed.add_row(name, *counts, f"{paired.p:.3f}", f"{paired.mid_p:.3f}")
         console.print(listed)
-    validated = {name: one["cross_validation"] for name, one in result["models"].items()}
+    validated = {name: one.cross_validation for name, one in result.models.items()}
     if any(validated.values()):
         listed = table("cross-validated on the training shots", "accuracy", "log-loss", "calibration")
-        for name, one in validated.items():
-            if one is not None:
-                figures = f"{one['log_loss']:.3f}", f"{one['calibration_error']:.3f}"
-                listed.add_row(name, f"{one['accuracy']:.2f} %", *figures)
+        for name, mean in validated.items():
+            if mean is not None:
+                figures = f"{mean.log_loss:.3f}", f"{mean.calibration_error:.3f}"
+                listed.add_row(name, f"{mean.accuracy:.2f} %", *figures)
         console.print(listed)
-    again = result["retrained"]
+    again = result.retrained
     if again is not None:
         say(
-            f"The paper's recipe, {again['seeds']} seeds: mean accuracy {again['mean']:.2f} % "
-            f"({_interval(again['low'], again['high'])}), median {again['median']:.2f} %, "
-            f"range {again['least']:.1f} to {again['most']:.1f} %; the paper's {paper['accuracy']:.2f} %."
+            f"The paper's recipe, {again.seeds} seeds: mean accuracy {again.mean:.2f} % "
+            f"({_interval(again.low, again.high)}), median {again.median:.2f} %, "
+            f"range {again.least:.1f} to {again.most:.1f} %; the paper's {paper.accuracy:.2f} %."
         )
 
 

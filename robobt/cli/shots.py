@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from math import isnan
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated
 
 import typer
 
@@ -56,7 +57,15 @@ def train(
             model.value, table, out, seed=seed, epochs=epochs, on_epoch=lambda _: progress.advance()
         )
     if as_json:
-        print_json({"file": str(file), **figures._asdict()})
+        print_json(
+            {
+                "file": str(file),
+                "shots": figures.shots,
+                "accuracy": figures.accuracy,
+                "log_loss": figures.log_loss,
+                "calibration_error": figures.calibration_error,
+            }
+        )
         return
     say(
         f"{file}: on {figures.shots} shots that training never saw {figures.accuracy:.2%} right, log-loss "
@@ -87,6 +96,9 @@ def draw(
     found = goal_map(model, spacing)
     draw_goal_map(found, picture)
     if as_json:
-        print_json(cast("dict[str, Any]", {"picture": str(picture), **found.to_json()}))
+        rows = [[None if isnan(p) else p for p in row] for row in found.probability.tolist()]
+        print_json(
+            {"picture": str(picture), "x": found.x.tolist(), "y": found.y.tolist(), "probability": rows}
+        )
         return
     say(f"Map of the goal probability: {picture}")

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, hypot, sin
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from robobt.config.atomic import replacing
+from robobt.experiments.picture import new_figure, save_figure
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
@@ -25,36 +24,27 @@ class GoalMap:
     """Best probability of a goal by place of the ball.
 
     Attributes:
-        field: whose opponents' half.
-        x, y: (X,) and (Y,) coordinates of the ball [m].
+        x: (X,) coordinates of the ball [m].
+        y: (Y,) likewise.
         probability: (Y, X); not-a-number in the defence area.
     """
 
-    field: FieldGeometry
     x: FloatArray
     y: FloatArray
     probability: FloatArray
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain data; null where there is no probability."""
-        rows = [[None if np.isnan(p) else float(p) for p in row] for row in self.probability]
-        return {"x": self.x.tolist(), "y": self.y.tolist(), "probability": rows}
 
-
-def goal_map(
-    model: str = "shot_expected", spacing: float = 0.1, field: FieldGeometry = DIVISION_B
-) -> GoalMap:
-    """The best shot's probability from every place, past a goalkeeper at rest that covers the angle.
+def goal_map(model: str = "shot_expected", spacing: float = 0.1) -> GoalMap:
+    """Return the best shot's probability from every place, past a goalkeeper at rest that covers the angle.
 
     Args:
         model: predictor of the ``expected_goal`` rater.
         spacing: between places [m].
-        field: dimensions.
 
     Raises:
         ModelError: the model cannot be used.
     """
-    rater = ExpectedGoal(model=model)
+    field, rater = DIVISION_B, ExpectedGoal(model=model)
     points = goal_candidates(field)
     x = np.arange(0.0, field.half_length, spacing)
     y = np.arange(-field.half_width, field.half_width + spacing / 2.0, spacing)
@@ -67,20 +57,16 @@ def goal_map(
             chances = rater.chances(frame, (ball_x, ball_y), frame.own[0], points)
             if chances is not None:
                 probability[i, j] = chances.max()
-    return GoalMap(field, x, y, probability)
+    return GoalMap(x, y, probability)
 
 
 def draw_goal_map(found: GoalMap, path: Path) -> None:
-    """Write the map as a picture, whole or not at all; the ending says the form (.png, .svg, .pdf)."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 6.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    """Write the map as a picture; the ending decides the format (.png, .svg, .pdf)."""
+    figure = new_figure(7.0, 6.6)
     axes = figure.add_subplot()
     shown = axes.pcolormesh(found.x, found.y, found.probability, vmin=0.0, vmax=1.0, cmap="viridis")
     figure.colorbar(shown, ax=axes, label="probability of a goal")
-    field = found.field
+    field = DIVISION_B
     left, half = field.half_length - field.defense_depth, field.defense_width / 2.0
     edge = field.half_length
     axes.plot([edge, left, left, edge], [-half, -half, half, half], color="white", linewidth=1.2)
@@ -88,7 +74,7 @@ def draw_goal_map(found: GoalMap, path: Path) -> None:
     axes.plot([edge, edge], [-goal, goal], color="C3", linewidth=4)
     axes.set(xlabel="x of the ball [m]", ylabel="y of the ball [m]", aspect="equal")
     axes.set_title("best shot past a goalkeeper that covers the angle")
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArray], path: Path) -> None:
@@ -98,16 +84,13 @@ def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArra
         frame: the scene, seen from the shooter's side.
         me: the shooter.
         chances: (T,) for the points of :func:`goal_candidates`, by the rater's name.
-        path: the ending says the form (.png, .svg, .pdf).
+        path: the ending decides the format (.png, .svg, .pdf).
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from matplotlib.patches import Circle
 
     field, ball = frame.field, frame.ball
     points = goal_candidates(field)
-    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(9.0, 4.4)
     scene, line = figure.subplots(1, 2, width_ratios=(3, 2))
     first = next(iter(chances.values()))
     for point, chance in zip(points[::3], first[::3], strict=True):
@@ -131,7 +114,7 @@ def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArra
         xlim=(-0.02, 1.02), ylim=(-goal, goal), xlabel="probability of a goal", ylabel="y of the target [m]"
     )
     line.legend(loc="best", fontsize=8)
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def _scene(field: FieldGeometry, ball: Point) -> Frame:
@@ -153,9 +136,3 @@ def _scene(field: FieldGeometry, ball: Point) -> Frame:
         direction(goal, ball),
     )
     return Frame(0.0, field, BallState(*ball), (me,), (keeper,))
-
-
-def _save(figure: Any, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(path) as draft:
-        figure.savefig(draft, dpi=120)

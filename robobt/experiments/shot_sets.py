@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from sklearn.model_selection import train_test_split
 
 from robobt.config.resources import models_folder
-from robobt.shots.data.author_data import author_weights
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.inputs import goals
 from robobt.shots.data.problems import ShotDataError
-from robobt.statistics import stratified_hold_out
+from robobt.shots.predict.networks import ShotNetwork, author_network
 
 AUTHOR_WEIGHTS = "author_predictor.json"
 TEST_SHARE = 201 / 743
@@ -28,19 +27,20 @@ class ShotSets:
     """Shots to learn from and shots to test on.
 
     Attributes:
-        train, test: in the table of :mod:`robobt.shots.data.schema`.
+        train: in the table of :mod:`robobt.shots.data.schema`.
+        test: likewise.
         author: the published predictor where it lies beside the shots.
         source: where they come from, for whoever reads the result.
     """
 
     train: pa.Table
     test: pa.Table
-    author: dict[str, Any] | None
+    author: ShotNetwork | None
     source: str
 
 
 def load_shot_sets(data: str | Path | None = None, seed: int = 0) -> ShotSets:
-    """The shots of a folder or a file.
+    """Load the shots of a folder or a file.
 
     Args:
         data: a folder with ``train.csv`` and ``test.csv`` (or ``.parquet``), and the
@@ -60,7 +60,7 @@ def load_shot_sets(data: str | Path | None = None, seed: int = 0) -> ShotSets:
     return ShotSets(
         _one_of(place, "train"),
         _one_of(place, "test"),
-        author_weights(weights) if weights.is_file() else None,
+        author_network(weights) if weights.is_file() else None,
         str(place),
     )
 
@@ -87,10 +87,12 @@ def _split(table: pa.Table, place: Path, seed: int) -> ShotSets:
     named = np.array(table.column("early_stop_split").to_pylist()) == "test"
     if not named.any():
         try:
-            fold = stratified_hold_out(goals(table), TEST_SHARE, np.random.default_rng(seed))
+            everyone, labels = np.arange(len(named)), goals(table)
+            named[train_test_split(everyone, test_size=TEST_SHARE, random_state=seed, stratify=labels)[1]] = (
+                True
+            )
         except ValueError as error:
             raise ShotDataError(f"{place}: {error}") from error
-        named[fold.test] = True
     if named.all():
         raise ShotDataError(f"{place}: has shots to test on only")
     rows = np.arange(len(named))

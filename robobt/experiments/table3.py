@@ -3,193 +3,238 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-import pyarrow as pa
 import torch
 from numpy.typing import NDArray
+from sklearn.pipeline import Pipeline
 
 from robobt.experiments.shot_sets import ShotSets
-from robobt.shots.data.author_data import author_inputs
 from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
+from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.networks import network_from_keras
-from robobt.shots.predict.predictors import PREDICTORS, make_predictor
-from robobt.shots.predict.subsample import Subsampled
-from robobt.shots.predict.validation import judge, judge_repeats, predict_folds
-from robobt.statistics import (
-    log_loss,
-    mcnemar,
-    mean_interval,
-    reliability,
-    repeated_stratified_folds,
-    wilson_interval,
-)
+from robobt.shots.predict.predictors import PREDICTORS
+from robobt.shots.predict.validation import judge, judge_repeats, predict_folds, stratified_folds
+from robobt.statistics import ReliabilityBin, mcnemar, mean_interval, reliability, wilson_interval
 from robobt.world.geometry import FloatArray
 
-PAPER_CONFUSION = ((102, 20), (10, 69))
+PAPER_CONFUSION = [[102, 20], [10, 69]]
 """A row for failures and one for successes; columns: predicted as failure, as success."""
 
 RETRAINED = "table_one"
 """The model that is trained again and again with the paper's recipe."""
 
-MOST_FOR_RECIPE = 2000
-"""Shots that the recipe's small networks learn from at most: four times the paper's.
+MOST_SHOTS = 2000
+"""Shots that small networks learn from at most, and a cross-validation is made of: four times the paper's.
 
-Each step sees sixteen of them, and an epoch goes through all: more take hours and change nothing.
+Each step of a network's training sees sixteen of them: more take hours and change nothing.
 """
 
-MOST_TO_VALIDATE = 5000
-"""Data sets up to this size are cross-validated; for larger ones the test shots say enough."""
+
+@dataclass(frozen=True)
+class Paired:
+    """McNemar's test against another model: shots that only one of them predicts right."""
+
+    against: str
+    only_this: int
+    only_other: int
+    p: float
+    mid_p: float
+
+
+@dataclass(frozen=True)
+class CrossValidation:
+    """Means over the repeats; the accuracy in percent."""
+
+    accuracy: float
+    log_loss: float
+    calibration_error: float
+
+
+@dataclass(frozen=True)
+class ModelReport:
+    """One model on the test shots; its accuracy in percent, with its Wilson interval."""
+
+    confusion: list[list[int]]
+    accuracy: float
+    low: float
+    high: float
+    log_loss: float
+    calibration_error: float
+    reliability: list[ReliabilityBin]
+    mcnemar: Paired | None
+    cross_validation: CrossValidation | None
+
+
+@dataclass(frozen=True)
+class Retrained:
+    """Accuracies in percent of the network of Table 1 trained with many seeds; low and high of the mean."""
+
+    seeds: int
+    mean: float
+    low: float | None
+    high: float | None
+    sd: float | None
+    median: float
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many shots there are and how many of them scored."""
+
+    shots: int
+    goals: int
+
+
+@dataclass(frozen=True)
+class Published:
+    """The paper's table; the accuracy in percent."""
+
+    confusion: list[list[int]]
+    accuracy: float
+
+
+@dataclass(frozen=True)
+class Table3:
+    """The table for every model by name; ``author`` among them where his weights are at hand."""
+
+    source: str
+    train: Count
+    test: Count
+    paper: Published
+    retrained: Retrained | None
+    models: dict[str, ModelReport]
 
 
 def table3(
     sets: ShotSets,
     seeds: int = 100,
     repeats: int = 10,
-    models: Sequence[str] | None = None,
+    models: Sequence[str] = tuple(PREDICTORS),
     progress: Callable[[], object] = lambda: None,
-) -> dict[str, Any]:
+) -> Table3:
     """Judge predictors on the test shots, and by cross-validation on the training shots.
 
     The network of Table 1 is trained ``seeds`` times with the paper's recipe, on the
-    author's split for early stopping where the data names one; its confusion is that
+    author's split for early stopping where the data names one; its report is that
     of the run with the median accuracy. Every other predictor is fitted once on all
-    training shots.
+    training shots. McNemar's test is against the author's network, else the retrained one.
 
     Args:
+        sets: the shots.
         seeds: how often the network is trained, seeds 0, 1, ...
         repeats: of the tenfold cross-validation; 0 for none.
-        models: names of predictors; None for all.
+        models: names of :data:`~robobt.shots.predict.predictors.PREDICTORS`.
         progress: called after every model.
 
-    Returns:
-        ``source``, ``train``, ``test`` (shots and goals), ``paper`` (its confusion and
-        accuracy), ``retrained`` (``seeds``; of their accuracies ``mean`` with its 95 %
-        interval ``low`` and ``high``, ``sd``, ``median``, ``least``, ``most``) and
-        ``models``: for each, ``author`` among them where his weights are at hand,
-        ``confusion``, ``accuracy`` with its Wilson interval ``low`` and ``high``,
-        ``log_loss``, ``calibration_error``, ``reliability``, ``mcnemar`` against the
-        author's network (else the retrained one), and ``cross_validation`` (accuracy,
-        log_loss and calibration_error, means over the repeats) or null. Accuracies in percent.
-
     Raises:
-        ShotDataError: the data has too few shots for it, or lacks what a model needs.
+        ShotDataError: the data has too few shots for it.
         KeyError: no such model.
     """
-    names = list(PREDICTORS) if models is None else list(models)
-    predictors = {name: make_predictor(name) for name in names}
     x, y = shot_inputs(sets.train), goals(sets.train)
     test_x, test_y = shot_inputs(sets.test), goals(sets.test)
     if min(np.bincount(y, minlength=2)) < 10:
         raise ShotDataError(f"{sets.source}: has fewer than 10 goals or failures to learn from")
     predicted: dict[str, FloatArray] = {}
     if sets.author is not None:
-        predicted["author"] = author_outputs(sets.author, sets.test)
-    retrained = _retrain(predictors[RETRAINED], sets, seeds, test_x) if RETRAINED in predictors else None
-    if retrained is not None:
-        accuracy = np.array([np.mean((p >= 0.5) == (test_y == 1)) for p in retrained])
-        middle = int(np.argsort(accuracy, kind="stable")[len(accuracy) // 2])
-        predicted[RETRAINED] = retrained[middle]
-        progress()
-    folds = repeated_stratified_folds(y, 10, repeats) if repeats and len(y) <= MOST_TO_VALIDATE else []
-    validated: dict[str, dict[str, float]] = {}
-    for name, predictor in predictors.items():
-        if name != RETRAINED:
-            fitted = _sparing(predictor).fit(x, y)
+        with torch.inference_mode():
+            logits = sets.author(torch.tensor(paper_features(test_x), dtype=torch.float32))
+            predicted["author"] = torch.sigmoid(logits)[:, 0].numpy().astype(np.float64)
+    few = np.arange(len(y))
+    if len(y) > MOST_SHOTS:
+        few = np.random.default_rng(0).choice(few, MOST_SHOTS, replace=False)
+    folds = stratified_folds(y, repeats) if repeats and len(y) <= MOST_SHOTS else []
+    retrained = None
+    validated: dict[str, CrossValidation] = {}
+    for name in models:
+        predictor = PREDICTORS[name]()
+        if name == RETRAINED:
+            split = np.array(sets.train.column("early_stop_split").to_pylist())
+            runs = _retrain(predictor, (x[few], y[few]), split[few] == "valid", seeds, test_x)
+            accuracy = 100.0 * np.mean((runs >= 0.5) == (test_y == 1), axis=1)
+            predicted[name] = runs[np.argsort(accuracy, kind="stable")[seeds // 2]]
+            retrained = _spread(accuracy)
+        else:
+            used = few if isinstance(predictor[-1], NetworkClassifier) else np.arange(len(y))
+            fitted = PREDICTORS[name]().fit(x[used], y[used])
             predicted[name] = np.asarray(fitted.predict_proba(test_x)[:, 1])
         if folds:
-            judged = judge_repeats(predict_folds(predictor, x, y, folds), y, folds, repeats)
-            validated[name] = {
-                "accuracy": 100.0 * float(np.mean([one.accuracy for one in judged])),
-                "log_loss": float(np.mean([one.log_loss for one in judged])),
-                "calibration_error": float(np.mean([one.calibration_error for one in judged])),
-            }
+            judged = judge_repeats(predict_folds(predictor, x, y, folds), y, folds)
+            validated[name] = CrossValidation(
+                100.0 * float(np.mean([one.accuracy for one in judged])),
+                float(np.mean([one.log_loss for one in judged])),
+                float(np.mean([one.calibration_error for one in judged])),
+            )
         progress()
     reference = next((name for name in ("author", RETRAINED) if name in predicted), None)
-    return {
-        "source": sets.source,
-        "train": {"shots": len(y), "goals": int(y.sum())},
-        "test": {"shots": len(test_y), "goals": int(test_y.sum())},
-        "paper": {"confusion": [list(row) for row in PAPER_CONFUSION], "accuracy": 100.0 * (102 + 69) / 201},
-        "retrained": None if retrained is None else _spread(100.0 * accuracy),
-        "models": {
-            name: _report(p, test_y, predicted, reference) | {"cross_validation": validated.get(name)}
-            for name, p in predicted.items()
-        },
-    }
+    return Table3(
+        sets.source,
+        Count(len(y), int(y.sum())),
+        Count(len(test_y), int(test_y.sum())),
+        Published(PAPER_CONFUSION, 100.0 * (102 + 69) / 201),
+        retrained,
+        {name: _report(name, predicted, test_y, reference, validated.get(name)) for name in predicted},
+    )
 
 
-def author_outputs(author: dict[str, Any], shots: pa.Table) -> FloatArray:
-    """Probabilities (n,) that the published predictor gives shots."""
-    network = network_from_keras(author["layers"])
-    with torch.inference_mode():
-        logits = network(torch.tensor(author_inputs(shots), dtype=torch.float32))
-        return np.asarray(torch.sigmoid(logits).numpy(), dtype=np.float64)
+def _retrain(
+    predictor: Pipeline,
+    train: tuple[FloatArray, NDArray[np.int64]],
+    held_out: NDArray[np.bool_],
+    seeds: int,
+    test_inputs: FloatArray,
+) -> FloatArray:
+    """Return probabilities of the test shots (seeds, n) from networks trained with the paper's recipe."""
+    inputs, labels = predictor[:-1].fit_transform(train[0]), train[1]
+    named = held_out if held_out.any() and not held_out.all() else None
+    networks = predictor[-1].fit_many([(inputs, labels)] * seeds, named)
+    judged = predictor[:-1].transform(test_inputs)
+    return np.stack([one.predict_proba(judged)[:, 1] for one in networks])
 
 
-def _retrain(predictor: Any, sets: ShotSets, seeds: int, test_inputs: FloatArray) -> list[FloatArray]:
-    """Probabilities of the test shots from networks trained with the paper's recipe."""
-    features, network = predictor[0], predictor[-1]
-    inputs, labels = features.fit_transform(shot_inputs(sets.train)), goals(sets.train)
-    if len(labels) > MOST_FOR_RECIPE:
-        drawn = np.random.default_rng(0).choice(len(labels), MOST_FOR_RECIPE, replace=False)
-        inputs, labels = inputs[drawn], labels[drawn]
-        held = None
-    else:
-        held = np.array(sets.train.column("early_stop_split").to_pylist()) == "valid"
-        held = None if held.all() or not held.any() else held
-    networks = network.fit_many([(inputs, labels)] * seeds, held)
-    judged = features.transform(test_inputs)
-    return [np.asarray(one.predict_proba(judged)[:, 1]) for one in networks]
-
-
-def _sparing(predictor: Any) -> Any:
-    """A predictor that learns from no more shots than its recipe is for."""
-    last = getattr(predictor, "steps", [(None, predictor)])[-1][1]
-    return Subsampled(predictor, MOST_FOR_RECIPE) if isinstance(last, NetworkClassifier) else predictor
-
-
-def _spread(values: FloatArray) -> dict[str, Any]:
-    low, high = mean_interval(values) if len(values) > 1 else (None, None)
-    return {
-        "seeds": len(values),
-        "mean": float(values.mean()),
-        "low": low,
-        "high": high,
-        "sd": float(values.std(ddof=1)) if len(values) > 1 else None,
-        "median": float(np.median(values)),
-        "least": float(values.min()),
-        "most": float(values.max()),
-    }
+def _spread(values: FloatArray) -> Retrained:
+    several = len(values) > 1
+    low, high = mean_interval(values) if several else (None, None)
+    return Retrained(
+        len(values),
+        float(values.mean()),
+        low,
+        high,
+        float(values.std(ddof=1)) if several else None,
+        float(np.median(values)),
+        float(values.min()),
+        float(values.max()),
+    )
 
 
 def _report(
-    p: FloatArray, labels: NDArray[np.int64], predicted: dict[str, FloatArray], reference: str | None
-) -> dict[str, Any]:
-    judged = judge(p, labels)
-    right = (p >= 0.5) == (labels == 1)
+    name: str,
+    predicted: dict[str, FloatArray],
+    labels: NDArray[np.int64],
+    reference: str | None,
+    validated: CrossValidation | None,
+) -> ModelReport:
+    judged = judge(predicted[name], labels)
+    right = (predicted[name] >= 0.5) == (labels == 1)
     interval = wilson_interval(int(right.sum()), len(right))
-    report: dict[str, Any] = {
-        "confusion": [list(row) for row in judged.confusion],
-        "accuracy": 100.0 * judged.accuracy,
-        "low": 100.0 * interval.low,
-        "high": 100.0 * interval.high,
-        "log_loss": log_loss(p, labels),
-        "calibration_error": judged.calibration_error,
-        "reliability": [row._asdict() for row in reliability(p, labels)],
-        "mcnemar": None,
-    }
-    if reference is not None and predicted[reference] is not p:
+    paired = None
+    if reference is not None and reference != name:
         theirs = (predicted[reference] >= 0.5) == (labels == 1)
         test = mcnemar(right, theirs)
-        report["mcnemar"] = {
-            "against": reference,
-            "only_this": test.only_first,
-            "only_other": test.only_second,
-            "p": test.p,
-            "mid_p": mcnemar(right, theirs, "mid_p").p,
-        }
-    return report
+        mid_p = mcnemar(right, theirs, "mid_p").p
+        paired = Paired(reference, test.only_first, test.only_second, test.p, mid_p)
+    return ModelReport(
+        judged.confusion,
+        100.0 * judged.accuracy,
+        100.0 * interval.low,
+        100.0 * interval.high,
+        judged.log_loss,
+        judged.calibration_error,
+        reliability(predicted[name], labels),
+        paired,
+        validated,
+    )

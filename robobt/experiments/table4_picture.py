@@ -6,30 +6,26 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from robobt.config.atomic import replacing
+from robobt.experiments.picture import new_figure, save_figure
 
 _PARTS = (("approach", "approach", "C0"), ("pick_up", "pick-up", "C2"), ("shoot", "shoot", "C1"))
 
 
 def draw_table4(result: Mapping[str, Any], path: Path) -> None:
-    """Draw the times of every row, one panel a trial, and write a picture, whole or not at all.
+    """Draw the times of every row, one panel a trial.
 
     Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
     rows, whose approach and pick-up are one figure, are hatched.
 
     Args:
         result: of :func:`~robobt.experiments.table4.table4`.
-        path: the ending says the form (.png, .svg, .pdf).
+        path: the ending decides the format (.png, .svg, .pdf).
 
     Raises:
         ValueError: an ending that matplotlib does not know.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     trials = result["trials"]
-    figure = Figure(figsize=(6.5 * len(trials), 5.5), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(6.5 * len(trials), 5.5)
     for i, (trial, found) in enumerate(trials.items()):
         axes = figure.add_subplot(1, len(trials), i + 1)
         labels: list[str] = []
@@ -57,6 +53,4 @@ def draw_table4(result: Mapping[str, Any], path: Path) -> None:
             axes.barh(0, 0, color=color, label=title)
         axes.barh(0, 0, color="0.75", hatch="//", edgecolor="white", label="to the ball (paper)")
         axes.legend(loc="lower right", fontsize=8)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(path) as draft:
-        figure.savefig(draft, dpi=120)
+    save_figure(figure, path)

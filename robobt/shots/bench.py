@@ -1,8 +1,9 @@
-"""What training many networks in one saves."""
+"""What judging many shots and training many networks at once saves."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import pi
 from time import process_time
 from typing import NamedTuple
 
@@ -10,94 +11,106 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from robobt.shots.predict.batched import train_networks
-from robobt.shots.predict.networks import ShotNetwork
-from robobt.shots.predict.recipe import Recipe, Task, train_plainly
-from robobt.statistics import Fold, repeated_stratified_folds, stratified_hold_out
+from robobt.shots.predict.features import paper_features
+from robobt.shots.predict.network_classifier import NetworkClassifier
+from robobt.shots.predict.validation import FOLDS, stratified_folds
+from robobt.skills.aim.raters.goal_line import goal_candidates, obstacles
+from robobt.skills.aim.raters.nn_filtered import NNFiltered
+from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.world.features import SHOT, shot_features
+from robobt.world.field import DIVISION_B
 from robobt.world.geometry import FloatArray
+from robobt.world.state import BallState, Frame, RobotState
+
+OPPONENTS = 6
+_ROUNDS = 30
 
 
 class CrossValidationFigures(NamedTuple):
-    """Times of a cross-validation [s, of the processor] and mean accuracies [percent]."""
+    """A cross-validation of so many networks, all at once and one after the other [s, of the processor]."""
 
     cross_validation_s: float
-    cross_validation_plain_s: float
+    cross_validation_loop_s: float
     cross_validation_speedup: float
-    accuracy: float
-    accuracy_plain: float
     networks: int
 
 
 def bench_cross_validation(
-    inputs: FloatArray,
+    scenes: FloatArray,
     labels: NDArray[np.int64],
     networks: int = 100,
-    seed: int = 0,
-    recipe: Recipe = Recipe(),  # noqa: B008
     progress: Callable[[], object] = lambda: None,
 ) -> CrossValidationFigures:
-    """A tenfold cross-validation of the paper's network, all at once and one after the other.
+    """Time a tenfold cross-validation of the paper's network, all at once and one after the other.
 
-    Both train the same networks: the same data, first weights, order of samples and
-    rule for stopping. They run on one thread.
+    Both train the same networks, on one thread.
 
     Args:
-        inputs, labels: (n, F) and (n,).
+        scenes: (n, 34) of shots.
+        labels: (n,) which of them scored.
         networks: how many of the folds to train, 100 being ten times ten.
-        recipe: what both follow.
-        progress: called after every network of the plain loop.
+        progress: called after every network of the loop.
     """
     torch.set_num_threads(1)
-    folds = repeated_stratified_folds(labels, 10, -(-networks // 10), seed)[:networks]
-    x, y = torch.tensor(inputs, dtype=torch.float32), torch.tensor(labels, dtype=torch.float32)
-    tasks = []
-    rng = np.random.default_rng([seed, 1])
-    for i, fold in enumerate(folds):
-        inner = stratified_hold_out(labels[fold.train], 0.33, rng)
-        used, held = fold.train[inner.train], fold.train[inner.test]
-        tasks.append(Task(x[used], y[used], x[held], y[held], seed + i))
-    # What is done for the first time only is in neither time.
-    train_networks(tasks[:1], Recipe(warm_up=1, epochs=1))
-    train_plainly(tasks[0], Recipe(warm_up=1, epochs=1))
+    inputs = paper_features(scenes)
+    folds = stratified_folds(labels, -(-networks // FOLDS))[:networks]
+    sets = [(inputs[train], labels[train]) for train, _ in folds]
     begin = process_time()
-    together = train_networks(tasks, recipe)
-    batched = process_time() - begin
-    apart, plain = [], 0.0
-    for task in tasks:
-        begin = process_time()
-        apart.append(train_plainly(task, recipe))
-        plain += process_time() - begin
+    NetworkClassifier().fit_many(sets)
+    at_once = process_time() - begin
+    begin = process_time()
+    for i, (x, y) in enumerate(sets):
+        NetworkClassifier(random_state=i).fit(x, y)
         progress()
-    return CrossValidationFigures(
-        batched,
-        plain,
-        plain / batched,
-        _accuracy(together, x, labels, folds),
-        _accuracy(apart, x, labels, folds),
-        len(folds),
-    )
+    looped = process_time() - begin
+    return CrossValidationFigures(at_once, looped, looped / at_once, len(folds))
 
 
-def made_up_shots(count: int = 542, seed: int = 0) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Inputs like the paper's in number, units and spread, with goals by a simple law: (n, 5) and (n,).
+class GoalLineFigures(NamedTuple):
+    """The goal line judged for all opponents [ms, of the processor].
 
-    To measure times by where no recorded shots are at hand.
+    Attributes:
+        goal_line_ms: by the rater, features included, in one call.
+        goal_line_loop_ms: the same model asked about one target point and opponent after the
+            other; features not included.
+        goal_line_speedup: the one over the other.
+        points: target points on the goal line.
+        opponents: between the shooter and the goal.
     """
-    rng = np.random.default_rng(seed)
-    length = rng.uniform(2000.0, 4600.0, count)
-    x = length - rng.uniform(50.0, 900.0, count)
-    b = np.abs(rng.normal(390.0, 90.0, count))
-    logit = (b - 380.0 - (x - 2800.0) / 8.0) / 25.0 + rng.logistic(size=count) - 1.2
-    inputs = np.stack([np.arctan2(b, x), length, np.hypot(x, b), x, b], axis=-1)
-    return inputs, (logit > 0.0).astype(np.int64)
+
+    goal_line_ms: float
+    goal_line_loop_ms: float
+    goal_line_speedup: float
+    points: int
+    opponents: int
 
 
-def _accuracy(
-    networks: list[ShotNetwork], x: torch.Tensor, labels: NDArray[np.int64], folds: list[Fold]
-) -> float:
-    with torch.inference_mode():
-        right = [
-            np.mean((network(x[fold.test]).numpy() >= 0.0) == (labels[fold.test] == 1))
-            for network, fold in zip(networks, folds, strict=True)
-        ]
-    return 100.0 * float(np.mean(right))
+def bench_goal_line() -> GoalLineFigures:
+    """Time the shipped network on all target points past six opponents, in one call and in single calls."""
+    rng = np.random.default_rng(0)
+    opponents = [
+        RobotState(number, float(rng.uniform(2.5, 4.4)), float(rng.uniform(-1.0, 1.0)), pi)
+        for number in range(OPPONENTS)
+    ]
+    me = RobotState(0, 1.9, 0.3)
+    frame = Frame(0.0, DIVISION_B, BallState(2.0, 0.3), (me,), tuple(opponents))
+    points = goal_candidates(frame.field)
+    rater = NNFiltered()
+    ask = shot_predictor(rater.model, SHOT).single()
+    features = shot_features(np.array(me.position), points, obstacles(frame, me))
+    rows = list(features.reshape(-1, SHOT.size).astype(np.float32))
+    at_once = _median(lambda: rater.chances(frame, me, points), 10)
+    looped = _median(lambda: [ask(row) for row in rows], 1)
+    return GoalLineFigures(1e3 * at_once, 1e3 * looped, looped / at_once, len(points), OPPONENTS)
+
+
+def _median(action: Callable[[], object], repeats: int) -> float:
+    """Return the median over many rounds of the time that an action takes."""
+    action()
+    times = []
+    for _ in range(_ROUNDS):
+        begin = process_time()
+        for _ in range(repeats):
+            action()
+        times.append((process_time() - begin) / repeats)
+    return float(np.median(times))

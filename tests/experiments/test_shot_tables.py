@@ -1,4 +1,5 @@
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -8,9 +9,10 @@ import pytest
 from robobt.experiments.reliability_diagram import draw_reliability
 from robobt.experiments.shot_sets import load_shot_sets
 from robobt.experiments.table2 import table2
-from robobt.experiments.table3 import author_outputs, table3
+from robobt.experiments.table3 import table3
 from robobt.shots.data.files import write_shots
 from robobt.shots.data.problems import ShotDataError
+from robobt.statistics import ReliabilityBin
 from tests.shots.made_up import made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
@@ -65,30 +67,33 @@ def test_shots_to_test_on_only_are_refused(tmp_path: Path):
 
 def test_table_3_judges_every_model_on_the_test_shots(folder: Path):
     told: list[int] = []
-    models = ["table_one", "logistic", "quadratic"]
+    models = ["table_one", "logistic", "best"]
     result = table3(
         load_shot_sets(folder), seeds=3, repeats=1, models=models, progress=lambda: told.append(1)
     )
-    assert list(result["models"]) == models
-    assert len(told) == 4
-    for one in result["models"].values():
-        assert np.sum(one["confusion"]) == 60
-        assert one["low"] <= one["accuracy"] <= one["high"]
-        assert one["accuracy"] == pytest.approx(100 * np.trace(one["confusion"]) / 60)
-        assert sum(row["trials"] for row in one["reliability"]) == 60
-        assert one["cross_validation"]["accuracy"] > 50.0
-    assert result["models"]["logistic"]["mcnemar"]["against"] == "table_one"
-    retrained = result["retrained"]
-    assert retrained["least"] <= retrained["median"] <= retrained["most"]
-    assert retrained["median"] == result["models"]["table_one"]["accuracy"]
-    json.dumps(result, allow_nan=False)
+    assert list(result.models) == models
+    assert len(told) == 3
+    for one in result.models.values():
+        assert np.sum(one.confusion) == 60
+        assert one.low <= one.accuracy <= one.high
+        assert one.accuracy == pytest.approx(100 * np.trace(one.confusion) / 60)
+        assert sum(row.trials for row in one.reliability) == 60
+        assert one.cross_validation is not None
+        assert one.cross_validation.accuracy > 50.0
+    paired, retrained = result.models["logistic"].mcnemar, result.retrained
+    assert paired is not None
+    assert paired.against == "table_one"
+    assert retrained is not None
+    assert retrained.least <= retrained.median <= retrained.most
+    assert retrained.median == pytest.approx(result.models["table_one"].accuracy)
+    json.dumps(asdict(result), allow_nan=False)
 
 
 def test_table_3_without_cross_validation_and_without_the_network(folder: Path):
-    result = table3(load_shot_sets(folder), repeats=0, models=["physics_margin"])
-    assert result["retrained"] is None
-    assert result["models"]["physics_margin"]["cross_validation"] is None
-    assert result["models"]["physics_margin"]["mcnemar"] is None
+    result = table3(load_shot_sets(folder), repeats=0, models=["best"])
+    assert result.retrained is None
+    assert result.models["best"].cross_validation is None
+    assert result.models["best"].mcnemar is None
 
 
 def test_table_3_refuses_data_with_too_few_goals(tmp_path: Path):
@@ -104,22 +109,18 @@ def test_table_3_refuses_data_with_too_few_goals(tmp_path: Path):
 def test_table_2_compares_the_network_with_both_regressions(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)
     result = table2(load_shot_sets(folder), replications=1)
-    assert list(result["hold_outs"]) == ["33%", "25%"]
-    for found in result["hold_outs"].values():
-        for name in ("network", "logistic", "standardised"):
-            assert 50.0 < found[name]["mean"] <= 100.0
-            difference = found["network"]["mean"] - found["logistic"]["mean"]
-        assert found["test_logistic"]["difference"] == pytest.approx(difference)
-        assert 0.0 <= found["test_standardised"]["p"] <= 1.0
-    assert result["hold_outs"]["33%"]["paper"]["network"] == 87.4024
-    json.dumps(result, allow_nan=False)
+    assert list(result.hold_outs) == ["33%", "25%"]
+    for found in result.hold_outs.values():
+        for accuracy in (found.network, found.logistic, found.standardised):
+            assert 50.0 < accuracy.mean <= 100.0
+        assert found.test_logistic.difference == pytest.approx(found.network.mean - found.logistic.mean)
+        assert 0.0 <= found.test_standardised.p <= 1.0
+    assert result.hold_outs["33%"].paper.network == 87.4024
+    json.dumps(asdict(result), allow_nan=False)
 
 
 def test_a_reliability_diagram_is_a_picture(tmp_path: Path):
-    bins = [
-        {"predicted": 0.2, "observed": 0.1, "trials": 5},
-        {"predicted": 0.8, "observed": 0.9, "trials": 9},
-    ]
+    bins = [ReliabilityBin(0.2, 0.3, 5, 0.2, 0.1), ReliabilityBin(0.8, 0.9, 9, 0.8, 0.9)]
     file = tmp_path / "new" / "diagram.png"
     draw_reliability({"model": bins}, "title", file)
     assert file.read_bytes().startswith(b"\x89PNG")
@@ -132,23 +133,21 @@ def test_a_reliability_diagram_is_a_picture(tmp_path: Path):
 def test_the_authors_weights_give_the_published_confusion_matrix():
     sets = load_shot_sets(REAL_SHOTS)
     assert sets.author is not None
-    p = author_outputs(sets.author, sets.test)
-    np.testing.assert_allclose(p, sets.author["golden"]["test_probabilities"], atol=1e-6)
-    result = table3(sets, repeats=0, models=[])
-    assert result["models"]["author"]["confusion"] == [[102, 20], [10, 69]]
+    assert table3(sets, repeats=0, models=[]).models["author"].confusion == [[102, 20], [10, 69]]
 
 
 @needs_real_shots
 @pytest.mark.slow
 def test_retraining_with_the_papers_recipe_gives_the_papers_accuracy():
     result = table3(load_shot_sets(REAL_SHOTS), seeds=100, repeats=0, models=["table_one"])
-    assert 84.7 <= result["retrained"]["mean"] <= 85.8
+    assert result.retrained is not None
+    assert 84.7 <= result.retrained.mean <= 85.8
 
 
 @needs_real_shots
 @pytest.mark.slow
 def test_table_2_of_the_real_shots_is_that_of_the_paper():
     result = table2(load_shot_sets(REAL_SHOTS), replications=10)
-    for found in result["hold_outs"].values():
-        assert 86.8 <= found["network"]["mean"] <= 87.6
-        assert 84.4 <= found["logistic"]["mean"] <= 84.7
+    for found in result.hold_outs.values():
+        assert 86.8 <= found.network.mean <= 87.6
+        assert 84.4 <= found.logistic.mean <= 84.7

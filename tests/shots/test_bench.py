@@ -1,22 +1,23 @@
 import pytest
 
-from robobt.shots.bench import bench_cross_validation, made_up_shots
-from robobt.shots.predict.recipe import Recipe
+from robobt.shots.bench import bench_cross_validation, bench_goal_line
+from robobt.shots.data import goals, shot_inputs
+from tests.shots.made_up import made_up_table
 
 
-def test_made_up_shots_are_like_the_papers():
-    inputs, labels = made_up_shots()
-    assert inputs.shape == (542, 5)
-    assert 0.15 < labels.mean() < 0.5
-
-
-def test_both_ways_of_training_are_measured():
-    told: list[int] = []
-    recipe = Recipe(warm_up=2, epochs=3)
-    shots = made_up_shots(60)
-    figures = bench_cross_validation(*shots, networks=2, recipe=recipe, progress=lambda: told.append(1))
-    assert figures.networks == len(told) == 2
-    assert figures.cross_validation_speedup == pytest.approx(
-        figures.cross_validation_plain_s / figures.cross_validation_s
+def test_networks_are_trained_at_once_and_one_after_the_other():
+    table = made_up_table(60)
+    trained: list[int] = []
+    figures = bench_cross_validation(
+        shot_inputs(table), goals(table), networks=2, progress=lambda: trained.append(1)
     )
-    assert figures.accuracy == figures.accuracy_plain
+    assert figures.networks == len(trained) == 2
+    assert figures.cross_validation_speedup == pytest.approx(
+        figures.cross_validation_loop_s / figures.cross_validation_s
+    )
+
+
+def test_the_goal_line_is_judged_faster_in_one_call():
+    figures = bench_goal_line()
+    assert (figures.points, figures.opponents) == (94, 6)
+    assert figures.goal_line_speedup > 2.0

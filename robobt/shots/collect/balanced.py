@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from math import atan2, cos, hypot, pi, sin
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from robobt.match.scenario.starts import RobotStart
 from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, CollectionSettings
 from robobt.skills.aim.raters.goal_line import POST_GAP
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import Point, direction
+from robobt.world.geometry import FloatArray, Point, direction
 from robobt.world.rules import in_their_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
@@ -72,7 +72,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     keeper = _keeper(field, ball, target, widest * (2.0 * even[2] - 1.0), even[3])
     shooter = (start[0] - HELD_DISTANCE * cos(heading), start[1] - HELD_DISTANCE * sin(heading))
     speed = (0.5, 1.0)[int(rng.integers(2))]
-    params: dict[str, Any] = {
+    params: dict[str, float] = {
         "target_y": target[1],
         "place_x": ball[0],
         "place_y": ball[1],
@@ -114,9 +114,7 @@ _DIMENSIONS = 6
 
 
 @lru_cache(maxsize=8)
-def _sequence(
-    seed: int,
-) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
+def _sequence(seed: int) -> tuple[FloatArray, FloatArray]:
     # The root of x^(d + 1) = x + 1, whose powers make the most even additive sequence known.
     root = 1.5
     for _ in range(40):

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
+from robobt.config.errors import RobobtError
 from robobt.shots.collect.file import CollectionFile
 from robobt.shots.collect.paper import PARTS, TEST, TRAIN, splits
 from robobt.shots.collect.plan import CollectionSettings
-from robobt.shots.collect.workers import CollectionError, play_trials, streams
-from robobt.workers import MAX_WORKERS
+from robobt.shots.collect.trial import Taken, play_trial
+from robobt.shots.data.schema import Row
+from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 PAPER_COUNT = TRAIN + TEST
 """Shots of the paper's protocol."""
@@ -21,6 +23,13 @@ MAX_COUNT = 10_000_000
 
 _BARREN = 2000
 """So many trials in a row without a shot mean that none will come."""
+
+_AHEAD = 4
+"""Trials a worker holds at a time: they take milliseconds."""
+
+
+class CollectionError(RobobtError, RuntimeError):
+    """A collection could not be played to its end; the message is one line."""
 
 
 @dataclass(slots=True)
@@ -85,7 +94,6 @@ def collect_shots(
     if not 1 <= workers <= MAX_WORKERS:
         raise ValueError(f"workers must be 1 to {MAX_WORKERS}, not {workers}")
     quotas = [part.shots for part in PARTS] if paper else [count]
-    assert len(quotas) == streams(settings)
     done = Collected()
     started = perf_counter()
     with CollectionFile(out, settings) as file:
@@ -97,7 +105,8 @@ def collect_shots(
         if file.complete and len(file.rows) == count:
             rows = file.rows
         else:
-            results = play_trials(settings, tally.open_trials(), workers)
+            work = Work(partial(_play, settings), "trial", CollectionError)
+            results = run_tasks(work, tally.open_trials(), workers, ahead=_AHEAD)
             try:
                 for taken in results:
                     done.simulated += taken.time
@@ -126,6 +135,10 @@ def collect_shots(
     return done
 
 
+def _play(settings: CollectionSettings, trial: int, _report: object) -> Taken:
+    return play_trial(settings, trial)
+
+
 class _Tally:
     """Which trials have been played, and whether each series has its shots.
 
@@ -133,9 +146,9 @@ class _Tally:
     gap: which shots it consists of must not depend on who finished first.
     """
 
-    def __init__(self, quotas: list[int], rows: list[dict[str, Any]]) -> None:
+    def __init__(self, quotas: list[int], rows: list[Row]) -> None:
         self._quotas = quotas
-        self._rows: dict[int, dict[str, Any] | None] = {row["trial"]: row for row in rows}
+        self._rows: dict[int, Row | None] = {row["trial"]: row for row in rows}
         self.shots = len(self._rows)
         self._next = [0] * len(quotas)
         self._kept = [0] * len(quotas)
@@ -144,7 +157,7 @@ class _Tally:
         for series in range(len(quotas)):
             self._move_on(series)
 
-    def add(self, trial: int, row: dict[str, Any] | None) -> None:
+    def add(self, trial: int, row: Row | None) -> None:
         """One more trial is over."""
         self._rows[trial] = row
         self._barren = 0 if row is not None else self._barren + 1
@@ -166,10 +179,10 @@ class _Tally:
                     yield trial
             series = (series + 1) % size
 
-    def chosen(self) -> list[dict[str, Any]]:
+    def chosen(self) -> list[Row]:
         """The shots of the collection: the first of each series, in order."""
         size = len(self._quotas)
-        rows: list[dict[str, Any]] = []
+        rows: list[Row] = []
         for series, quota in enumerate(self._quotas):
             found = [self._rows[trial] for trial in sorted(self._rows) if trial % size == series]
             rows += [row for row in found if row is not None][:quota]

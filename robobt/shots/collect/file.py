@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TextIO
 
 import pyarrow as pa
 
@@ -19,7 +19,7 @@ from robobt.config.atomic import write_atomically
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.data.files import csv_text, read_shots, write_shots
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA, VERSION
+from robobt.shots.data.schema import COLUMNS, SCHEMA, VERSION, Row
 
 FORMAT = "robobt-shots"
 
@@ -63,7 +63,7 @@ class CollectionFile:
             self._file.close()
             self._file = None
 
-    def add(self, row: dict[str, Any]) -> None:
+    def add(self, row: Row) -> None:
         """Append a shot; it is on disk when this returns."""
         if self._file is None:
             # All that was asked for before was there, and more is asked for now.
@@ -71,7 +71,7 @@ class CollectionFile:
         self._file.write(csv_text([row], header=False))
         self._file.flush()
 
-    def finish(self, rows: list[dict[str, Any]]) -> None:
+    def finish(self, rows: list[Row]) -> None:
         """Write these rows, in their order, as the whole collection."""
         self.__exit__()
         write_shots(pa.Table.from_pylist(rows, schema=SCHEMA), self.out)
@@ -93,7 +93,7 @@ class CollectionFile:
             raise ShotDataError(f"{self.description}: {error}") from error
         if not isinstance(found, dict) or found.get("format") != FORMAT:
             raise ShotDataError(f"{self.description}: not the description of a collection of shots")
-        wanted: dict[str, Any] = {"robobt": __version__, "schema_version": VERSION}
+        wanted: dict[str, object] = {"robobt": __version__, "schema_version": VERSION}
         for key, value in {**wanted, **self._settings.model_dump()}.items():
             there = found.get(key, found.get("settings", {}).get(key))
             if there != value:
@@ -102,9 +102,9 @@ class CollectionFile:
                 )
         return found.get("complete") is True and self.out.exists()
 
-    def _read(self) -> list[dict[str, Any]]:
+    def _read(self) -> list[Row]:
         if self.complete:
-            rows: list[dict[str, Any]] = read_shots(self.out).to_pylist()
+            rows: list[Row] = read_shots(self.out).to_pylist()
             return rows
         if not self.growing.exists():
             return []
@@ -115,10 +115,10 @@ class CollectionFile:
                 file.truncate(kept)
         if sound[:kept].count(b"\n") <= 1:
             return []
-        grown: list[dict[str, Any]] = read_shots(self.growing).to_pylist()
+        grown: list[Row] = read_shots(self.growing).to_pylist()
         return grown
 
-    def _open(self) -> Any:
+    def _open(self) -> TextIO:
         self.complete = False
         self._describe()
         if self.rows and not self.growing.exists():

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -69,13 +69,13 @@ PARTS = (
 """First those of the 542, then those of the 201."""
 
 
-def paper_attempt(settings: CollectionSettings, part: int, trial: int) -> Attempt:
-    """The set-up of a trial of one of :data:`PARTS`."""
-    kind, tolerance, _ = PARTS[part]
+def paper_attempt(settings: CollectionSettings, trial: int) -> Attempt:
+    """Return the set-up of a trial: the parts take turns."""
+    kind, tolerance, _ = PARTS[trial % len(PARTS)]
     seed = trial_seed(settings.seed, trial)
     variant = "mid_range" if trial // len(PARTS) % 2 == 0 else "close_range"
     section: Section | None = None
-    params: dict[str, Any] = {"tolerance": tolerance, "shot_speed": SHOT_SPEED}
+    params: dict[str, float] = {"tolerance": tolerance, "shot_speed": SHOT_SPEED}
     base = _base(kind)
     blue = base.robots.blue[0]
     if kind == "motion":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -56,5 +56,5 @@ class Attempt:
 
     scenario: Scenario
     seed: int
-    labels: Mapping[str, Any]
+    labels: Mapping[str, object]
     section: Section | None = None

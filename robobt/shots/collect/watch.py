@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import atan2, cos, hypot, sin
-from typing import Any
 
 from robobt.match.ends import Outcome
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.scenario.scenario import Scenario
 from robobt.shots.collect.plan import Attempt, Section
+from robobt.shots.data.schema import Row
 from robobt.skills.store import Shot, Store
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import distance, wrap_angle
@@ -42,7 +42,7 @@ class WatchedWorld(World):
     def __init__(self, world: World, shooter: RobotId) -> None:
         self._world, self._shooter = world, shooter
         self.store: Store | None = None
-        self.shot: dict[str, Any] | None = None
+        self.shot: Row | None = None
 
     def reset(self, placement: Placement, seed: int) -> None:
         """See :class:`World`."""
@@ -78,9 +78,7 @@ class WatchedWorld(World):
             self.shot = _scene(before, after, me, aimed, self._shooter)
 
 
-def take_shot(
-    attempt: Attempt, world_factory: WorldFactory, trial: int = 0
-) -> tuple[dict[str, Any] | None, float]:
+def take_shot(attempt: Attempt, world_factory: WorldFactory, trial: int = 0) -> tuple[Row | None, float]:
     """Play one trial with one attacker, blue's first robot.
 
     Returns:
@@ -119,9 +117,9 @@ def _outside(section: Section, store: Store) -> bool:
     return not (x0 <= ball.x <= x1 and y0 <= ball.y <= y1)
 
 
-def _scene(before: Frame, after: Frame, me: RobotState, shot: Shot, shooter: RobotId) -> dict[str, Any]:
+def _scene(before: Frame, after: Frame, me: RobotState, shot: Shot, shooter: RobotId) -> Row:
     ball, mates, opponents = before.ball, before.teammates(me.id), before.opponents
-    row: dict[str, Any] = {
+    row: Row = {
         "time": before.time,
         "robot_x": me.x,
         "robot_y": me.y,

@@ -5,27 +5,25 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
-import pyarrow.csv
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from robobt.shots.data.author_data import author_columns, author_row
+from robobt.config.atomic import replacing
+from robobt.shots.data.author_data import author_table
+from robobt.shots.data.cells import Cells, read_cells
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA, UNKNOWN, VERSION, Column
+from robobt.shots.data.schema import COLUMNS, SCHEMA, UNKNOWN, VERSION, Row
 
-LIST_SEPARATOR = ";"
+_SEPARATOR = ";"
 """Between the numbers of a list in a cell of a CSV file."""
-
-_VERSION_COLUMN = "schema_version"
-_Rows = Iterator[tuple[int, list[str]]]
 
 
 def read_shots(path: str | Path) -> pa.Table:
-    """Shots of a file in the package's table (:data:`SCHEMA`, SI units).
+    """Read the shots of a file into the package's table (:data:`SCHEMA`, SI units).
 
     A ``.parquet`` file and a CSV file with a column ``schema_version`` hold that
     table. Any other CSV file is read as the author's (:mod:`.author_data`):
@@ -37,7 +35,12 @@ def read_shots(path: str | Path) -> pa.Table:
     """
     file = Path(path)
     try:
-        table = _read_parquet(file) if file.suffix == ".parquet" else _read_csv(file)
+        if file.suffix == ".parquet":
+            table = _checked(pq.read_table(file), file)
+        else:
+            cells = read_cells(file)
+            own = "schema_version" in cells.columns
+            table = _checked(_own_table(cells), file, cells.rows) if own else author_table(cells)
     except (OSError, UnicodeDecodeError, csv.Error, pa.ArrowException) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise ShotDataError(f"{file}: {' '.join(reason.split())}") from error
@@ -58,38 +61,70 @@ def write_shots(table: pa.Table, path: str | Path) -> None:
     if file.suffix not in {".parquet", ".csv"}:
         raise ValueError(f"{file}: shots are written to .parquet or .csv")
     file.parent.mkdir(parents=True, exist_ok=True)
-    draft = file.with_name(f".{file.name}.part")
-    try:
+    with replacing(file) as draft:
         if file.suffix == ".parquet":
             pq.write_table(table, draft, compression="zstd")
         else:
             draft.write_text(csv_text(table.to_pylist()), encoding="utf-8")
-        draft.replace(file)
-    finally:
-        draft.unlink(missing_ok=True)
 
 
-def csv_text(rows: list[dict[str, Any]], header: bool = True) -> str:
-    """Rows of the table as lines of a CSV file; what is unknown is an empty cell."""
+def csv_text(rows: Iterable[Row], header: bool = True) -> str:
+    """Return rows of the table as lines of a CSV file; what is unknown is an empty cell."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     if header:
-        writer.writerow(column.name for column in COLUMNS)
-    for row in rows:
-        writer.writerow(_cell(column, row[column.name]) for column in COLUMNS)
+        writer.writerow(SCHEMA.names)
+    writer.writerows([_cell(row[name]) for name in SCHEMA.names] for row in rows)
     return out.getvalue()
 
 
-def _cell(column: Column, value: Any) -> str:
-    if column.type == "reals":
-        return LIST_SEPARATOR.join(repr(float(entry)) for entry in value)
-    if column.type == "real":
+def _cell(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return _SEPARATOR.join(repr(float(entry)) for entry in value)
+    if isinstance(value, float):
         return "" if math.isnan(value) else repr(float(value))
     return str(value)
 
 
-def _read_parquet(file: Path) -> pa.Table:
-    table = pq.read_table(file)
+def _own_table(cells: Cells) -> pa.Table:
+    for name in SCHEMA.names:
+        if name not in cells.columns:
+            raise ShotDataError(f"{cells.file}: has no column {name!r}")
+    values = {column.name: cells.convert(column.name, _PARSERS[column.type]) for column in COLUMNS}
+    return pa.Table.from_pydict(values, SCHEMA)
+
+
+def _integer(cell: str) -> int:
+    try:
+        return int(cell) if cell else int(UNKNOWN["int"])
+    except ValueError:
+        raise ValueError(f"{cell!r} is not a whole number") from None
+
+
+def _real(cell: str) -> float:
+    try:
+        return float(cell) if cell else math.nan
+    except ValueError:
+        raise ValueError(f"{cell!r} is not a number") from None
+
+
+def _reals(cell: str) -> list[float]:
+    try:
+        return [float(entry) for entry in cell.split(_SEPARATOR)] if cell else []
+    except ValueError:
+        raise ValueError(f"{cell!r} is not a list of numbers") from None
+
+
+_PARSERS: dict[str, Callable[[str], object]] = {
+    "text": str,
+    "int": _integer,
+    "real": _real,
+    "reals": _reals,
+}
+
+
+def _checked(table: pa.Table, file: Path, rows: list[int] | None = None) -> pa.Table:
+    """Return a table in :data:`SCHEMA`, its columns in order, after a look at what must not be missing."""
     for column in COLUMNS:
         if column.name not in table.schema.names:
             raise ShotDataError(f"{file}: has no column {column.name!r}")
@@ -98,82 +133,14 @@ def _read_parquet(file: Path) -> pa.Table:
         except pa.ArrowException as error:
             raise ShotDataError(f"{file}: column {column.name!r} holds no {column.type}") from error
     table = table.select(SCHEMA.names).cast(SCHEMA)
-    for name in ("schema_version", "success", "distance_to_goal"):
-        column = _BY_NAME[name]
-        for row, value in enumerate(table.column(name).to_pylist(), start=2):
-            _check(column, value, f"{file}: row {row}, column {name!r}")
+    success, distance = table.column("success"), table.column("distance_to_goal")
+    for name, right, problem in (
+        ("schema_version", pc.equal(table.column("schema_version"), VERSION), f"is not version {VERSION}"),
+        ("success", pc.is_in(success, pa.array([0, 1])), "is neither 1 nor 0"),
+        ("distance_to_goal", pc.and_(pc.greater(distance, 0.0), pc.is_finite(distance)), "is not a distance"),
+    ):
+        row = pc.index(pc.fill_null(right, False), False).as_py()
+        if row >= 0:
+            number, value = rows[row] if rows else row + 2, table.column(name)[row].as_py()
+            raise ShotDataError(f"{file}: row {number}, column {name!r}: {value} {problem}")
     return table
-
-
-def _read_csv(file: Path) -> pa.Table:
-    with file.open(encoding="utf-8-sig", newline="") as lines:
-        text = lines.read()
-    header_line = text.partition("\n")[0]
-    separator = max(",;\t", key=header_line.count)
-    reader = csv.reader(io.StringIO(text), delimiter=separator, strict=True)
-    header = [name.strip() for name in next(reader, [])]
-    if not any(header):
-        raise ShotDataError(f"{file}: is empty")
-    if len(set(header)) < len(header):
-        twice = next(name for name in header if header.count(name) > 1)
-        raise ShotDataError(f"{file}: column {twice!r} is there twice")
-    cells = _rows(file, reader, header)
-    rows = _own_rows(file, header, cells) if _VERSION_COLUMN in header else _author_rows(file, header, cells)
-    return pa.Table.from_pylist(rows, schema=SCHEMA)
-
-
-def _rows(file: Path, reader: Any, header: list[str]) -> _Rows:
-    for cells in reader:
-        if not any(cell.strip() for cell in cells):
-            continue
-        if len(cells) != len(header):
-            raise ShotDataError(
-                f"{file}: row {reader.line_num} has {len(cells)} cells, the header {len(header)}"
-            )
-        yield reader.line_num, cells
-
-
-def _author_rows(file: Path, header: list[str], rows: _Rows) -> list[dict[str, Any]]:
-    columns = author_columns(file, header)
-    return [author_row(file, number, columns, cells) for number, cells in rows]
-
-
-def _own_rows(file: Path, header: list[str], rows: _Rows) -> list[dict[str, Any]]:
-    for column in COLUMNS:
-        if column.name not in header:
-            raise ShotDataError(f"{file}: has no column {column.name!r}")
-    places = [(column, header.index(column.name)) for column in COLUMNS]
-    return [
-        {
-            column.name: _value(column, cells[place].strip(), f"{file}: row {number}, column {column.name!r}")
-            for column, place in places
-        }
-        for number, cells in rows
-    ]
-
-
-def _value(column: Column, text: str, where: str) -> Any:
-    try:
-        if column.type == "text":
-            return text
-        if column.type == "reals":
-            return [float(entry) for entry in text.split(LIST_SEPARATOR)] if text else []
-        kind = int if column.type == "int" else float
-        value = kind(text) if text else UNKNOWN[column.type]
-    except ValueError:
-        raise ShotDataError(f"{where}: {text!r} is no {_WORDS[column.type]}") from None
-    _check(column, value, where)
-    return value
-
-
-def _check(column: Column, value: Any, where: str) -> None:
-    if column.name == "schema_version" and value != VERSION:
-        raise ShotDataError(f"{where}: version {value} of the table is not the version {VERSION} known here")
-    if column.name == "success" and value not in (0, 1):
-        raise ShotDataError(f"{where}: {value} is neither 1 nor 0")
-    if column.name == "distance_to_goal" and not (value is not None and 0.0 < value < math.inf):
-        raise ShotDataError(f"{where}: {value} is no distance")
-
-
-_WORDS = {"int": "whole number", "real": "number", "reals": "list of numbers"}
-_BY_NAME = {column.name: column for column in COLUMNS}

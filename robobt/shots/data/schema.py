@@ -8,12 +8,14 @@ Lengths in metres, speeds in m/s, angles in radians, counter-clockwise positive.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import ArrayLike
+
+from robobt.world.geometry import FloatArray
 
 VERSION = 1
 """Of this table; in every row, so that a file says which one it holds."""
@@ -110,12 +112,15 @@ RECORDED = frozenset(
 )
 """What a collector records; :func:`complete_row` works out the rest."""
 
-UNKNOWN: dict[str, Any] = {"text": "", "int": -1, "real": float("nan"), "reals": ()}
+Row = dict[str, Any]
+"""A shot: values by column, of the types that :data:`COLUMNS` says."""
+
+UNKNOWN: Row = {"text": "", "int": -1, "real": math.nan, "reals": ()}
 """What stands for an unknown value, by a column's type."""
 
 
-def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
-    """A row of the table from what was recorded at the kick.
+def complete_row(recorded: Row) -> Row:
+    """Return a row of the table from what was recorded at the kick.
 
     The opponent that matters is the one nearest to the segment shooter -> target.
 
@@ -127,12 +132,12 @@ def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: a column that is not recorded, or one that is needed is missing.
     """
     if strange := sorted(set(recorded) - RECORDED):
-        raise ValueError(f"{strange[0]!r} is no recorded column of a shot")
+        raise ValueError(f"{strange[0]!r} is not a column that is recorded of a shot")
     needed = ("robot_x", "robot_y", "target_x", "target_y", "success")
     if missing := [name for name in needed if name not in recorded]:
         raise ValueError(f"a shot needs {missing[0]!r}")
-    row = {column.name: recorded.get(column.name, UNKNOWN[column.type]) for column in COLUMNS}
-    row["schema_version"] = VERSION
+    row: Row = {column.name: UNKNOWN[column.type] for column in COLUMNS}
+    row.update(recorded, schema_version=VERSION)
     for column in COLUMNS:
         if column.type == "reals":
             row[column.name] = [float(value) for value in row[column.name]]
@@ -141,31 +146,29 @@ def complete_row(recorded: Mapping[str, Any]) -> dict[str, Any]:
     dx, dy = target - origin
     angle = float(np.arctan2(dy, dx))
     row["angle_to_goal"], row["distance_to_goal"] = angle, float(np.hypot(dx, dy))
-    row["robot_vx"], row["robot_vy"] = turned(row["robot_field_vx"], row["robot_field_vy"], angle)
-    row["ball_forward"], row["ball_left"] = turned(
-        row["ball_x"] - origin[0], row["ball_y"] - origin[1], row["robot_heading"]
-    )
+    row["robot_vx"], row["robot_vy"] = map(float, turned(row["robot_field_vx"], row["robot_field_vy"], angle))
+    ball_x, ball_y = row["ball_x"] - row["robot_x"], row["ball_y"] - row["robot_y"]
+    row["ball_forward"], row["ball_left"] = map(float, turned(ball_x, ball_y, row["robot_heading"]))
     if row["opponents_x"]:
         places = np.stack([row["opponents_x"], row["opponents_y"]], axis=-1)
         which = nearest_to_line(origin, target, places)
         row["opp_x_global"], row["opp_y_global"] = (float(value) for value in places[which])
-        offset = places[which] - origin
-        along, across = turned(offset[0], offset[1], angle)
+        offset_x, offset_y = (places[which] - origin).tolist()
+        along, across = map(float, turned(offset_x, offset_y, angle))
         row["opp_x"], row["opp_y"] = along, across
         row["distance_to_opp"] = float(np.hypot(along, across))
-        velocity = [
-            row[name][which] if row[name] else float("nan") for name in ("opponents_vx", "opponents_vy")
-        ]
-        row["opp_vx"], row["opp_vy"] = turned(velocity[0], velocity[1], angle)
+        vx, vy = (row[name][which] if row[name] else math.nan for name in ("opponents_vx", "opponents_vy"))
+        row["opp_vx"], row["opp_vy"] = map(float, turned(vx, vy, angle))
         row["v_towards_ball"] = -float(np.sign(across)) * row["opp_vy"]
     return row
 
 
 def nearest_to_line(origin: ArrayLike, target: ArrayLike, opponents: ArrayLike) -> int:
-    """Index of the opponent that is nearest to the segment origin -> target.
+    """Return the index of the opponent that is nearest to the segment origin -> target.
 
     Args:
-        origin, target: (2,) [m].
+        origin: (2,) [m].
+        target: (2,) [m].
         opponents: (K, 2) [m], at least one.
     """
     start = np.asarray(origin, dtype=np.float64)
@@ -177,7 +180,9 @@ def nearest_to_line(origin: ArrayLike, target: ArrayLike, opponents: ArrayLike) 
     return int(np.argmin(np.hypot(gaps[:, 0], gaps[:, 1])))
 
 
-def turned(x: float, y: float, angle: float) -> tuple[float, float]:
-    """A field-frame vector in a frame whose first axis points along ``angle``."""
-    cos, sin = float(np.cos(angle)), float(np.sin(angle))
-    return float(cos * x + sin * y), float(cos * y - sin * x)
+def turned(
+    x: float | FloatArray, y: float | FloatArray, angle: float | FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return field-frame vectors in a frame whose first axis points along ``angle``."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.asarray(cos * x + sin * y), np.asarray(cos * y - sin * x)

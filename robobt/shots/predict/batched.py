@@ -1,27 +1,79 @@
-"""Many small networks trained in one: each operation works on all of them.
+"""The paper's training recipe, followed by many small networks at once.
 
 A network of sixty weights keeps no processor busy; a hundred of them, with a
-leading axis for the network, do. Forward and backward passes are written out,
-because recording them costs more than the arithmetic. Every network sees its own
-data in its own order, stops by its own held-out loss and then leaves the stack.
-The result for each is that of :func:`~robobt.shots.predict.recipe.train_plainly`
-up to rounding.
+leading axis for the network, do. Every network sees its own data in its own order,
+stops by its own held-out loss and then leaves the group.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
+from torch.nn.functional import binary_cross_entropy_with_logits as cross_entropy
+from torch.nn.utils import vector_to_parameters
+from torch.nn.utils.rnn import pad_sequence
 
-from robobt.shots.predict.networks import ShotNetwork
-from robobt.shots.predict.recipe import ADAM, PLATEAU_GAIN, Recipe, Task, batch_bounds
-from robobt.shots.predict.stack import NetworkStack, Rows
+from robobt.shots.predict.networks import NORM_EPS, NORM_MOMENTUM, TABLE_ONE, Layer, ShotNetwork
 
 
-def train_networks(tasks: Sequence[Task], recipe: Recipe = Recipe()) -> list[ShotNetwork]:  # noqa: B008
+@dataclass(frozen=True)
+class Recipe:
+    """How the shot networks are trained.
+
+    Adam on the binary cross-entropy of shuffled batches. For ``warm_up`` epochs
+    nothing stops it; then at most ``epochs`` more, until the loss on the held-out
+    shots has not improved for ``patience`` epochs; the weights of the best of these
+    epochs are kept. Meanwhile the learning rate is multiplied by ``plateau_factor``
+    whenever that loss has not improved by :data:`PLATEAU_GAIN` for
+    ``plateau_patience`` epochs, down to ``least_rate``. The plateau is watched anew
+    after the warm-up.
+
+    Source: the paper, section on training; the rest is Keras' default.
+    """
+
+    layers: tuple[Layer, ...] = field(default=TABLE_ONE)
+    rate: float = 0.05
+    batch: int = 16
+    warm_up: int = 64
+    epochs: int = 512
+    patience: int = 50
+    plateau_factor: float = 0.5
+    plateau_patience: int = 75
+    least_rate: float = 0.001
+
+
+PLATEAU_GAIN = 1e-4
+ADAM = (0.9, 0.999, 1e-7)
+"""Keras' defaults: the gain that counts as an improvement, and Adam's beta 1, beta 2 and epsilon."""
+
+
+class Task(NamedTuple):
+    """What one network learns from: float32 inputs (n, F) and labels (n,), and the same held out."""
+
+    inputs: Tensor
+    labels: Tensor
+    held_inputs: Tensor
+    held_labels: Tensor
+    seed: int
+
+
+def batch_bounds(samples: int, batch: int) -> list[int]:
+    """Return where an epoch's batches begin and end.
+
+    A single left-over sample joins the batch before it: one sample has no variance to normalise by.
+    """
+    bounds = [*range(0, samples, batch), samples]
+    if len(bounds) > 2 and bounds[-1] - bounds[-2] == 1:
+        del bounds[-2]
+    return bounds
+
+
+def train_networks(tasks: Sequence[Task], recipe: Recipe = Recipe()) -> list[ShotNetwork]:
     """Train a network for every task, all at once; they come back in the order of the tasks.
 
     Tasks whose epochs begin their batches at the same samples are trained
@@ -32,140 +84,182 @@ def train_networks(tasks: Sequence[Task], recipe: Recipe = Recipe()) -> list[Sho
         starts = batch_bounds(len(task.inputs), recipe.batch)[:-1]
         groups.setdefault((task.inputs.shape[1], *starts), []).append(i)
     networks: dict[int, ShotNetwork] = {}
-    with torch.inference_mode():
-        for members in groups.values():
-            _train_group([tasks[i] for i in members], recipe, members, networks)
+    for members in groups.values():
+        networks.update(zip(members, _Group([tasks[i] for i in members], recipe).train(), strict=True))
     return [networks[i] for i in range(len(tasks))]
 
 
-def _train_group(
-    tasks: list[Task], recipe: Recipe, members: list[int], networks: dict[int, ShotNetwork]
-) -> None:
-    generators = [torch.Generator().manual_seed(task.seed) for task in tasks]
-    drawn = [
-        ShotNetwork(task.inputs.shape[1], recipe.layers, generator)
-        for task, generator in zip(tasks, generators, strict=True)
-    ]
-    fit = _Fit(NetworkStack(drawn), tasks, generators, recipe, members)
-    for epoch in range(recipe.warm_up + recipe.epochs):
-        fit.run_epoch()
-        if epoch == recipe.warm_up:
-            fit.forget_plateau()
-        loss = fit.held_out_loss()
-        fit.lower_rates(loss)
-        if epoch >= recipe.warm_up:
-            fit.keep_best(loss)
-            fit.release(fit.waited >= recipe.patience, networks)
-            if not fit.members:
-                return
-    fit.release(torch.ones_like(fit.waited, dtype=torch.bool), networks)
+class _Group:
+    """Networks of one shape in training.
 
+    Every tensor of ``each`` has a row for each network that is still in training: its
+    weights, what Adam and the stopping rules remember, and its data, padded to the longest.
+    """
 
-class _Fit:
-    """The networks still in training, with their data and the optimiser's state."""
-
-    def __init__(
-        self,
-        stack: NetworkStack,
-        tasks: list[Task],
-        generators: list[torch.Generator],
-        recipe: Recipe,
-        members: list[int],
-    ) -> None:
-        self.stack, self.generators, self.recipe, self.members = stack, generators, recipe, members
+    def __init__(self, tasks: list[Task], recipe: Recipe) -> None:
+        self.recipe = recipe
+        self.generators = [torch.Generator().manual_seed(task.seed) for task in tasks]
+        width = tasks[0].inputs.shape[1]
+        self.networks = [ShotNetwork(width, recipe.layers, generator) for generator in self.generators]
+        weights = torch.stack([_flat(network.parameters()) for network in self.networks])
+        moments = torch.stack([_flat(_moments(network)) for network in self.networks])
         count = len(tasks)
-        self.inputs, self.labels, self.samples = _padded([(t.inputs, t.labels) for t in tasks])
-        self.held_inputs, self.held_labels, held = _padded([(t.held_inputs, t.held_labels) for t in tasks])
-        self.held_rows = Rows.first(held, self.held_inputs.shape[1])
-        self.bounds = batch_bounds(int(self.samples.max()), recipe.batch)
-        self.first, self.second = torch.zeros_like(stack.weights), torch.zeros_like(stack.weights)
-        self.rates = torch.full((count, 1), recipe.rate)
+        self.each = {
+            "member": torch.arange(count),
+            "weights": weights,
+            "moments": moments,
+            "first": torch.zeros_like(weights),
+            "second": torch.zeros_like(weights),
+            "rate": torch.full((count, 1), recipe.rate),
+            "best": torch.full((count,), torch.inf),
+            "best_weights": weights.clone(),
+            "best_moments": moments.clone(),
+            "waited": torch.zeros(count, dtype=torch.long),
+            "plateau": torch.full((count,), torch.inf),
+            "stuck": torch.zeros(count, dtype=torch.long),
+            "size": torch.tensor([len(task.labels) for task in tasks]),
+            "inputs": pad_sequence([task.inputs for task in tasks], batch_first=True),
+            "labels": pad_sequence([task.labels for task in tasks], batch_first=True),
+            "held_size": torch.tensor([len(task.held_labels) for task in tasks]),
+            "held_inputs": pad_sequence([task.held_inputs for task in tasks], batch_first=True),
+            "held_labels": pad_sequence([task.held_labels for task in tasks], batch_first=True),
+        }
+        self.bounds = batch_bounds(int(self.each["size"].max()), recipe.batch)
         self.steps = 0
-        self.best = torch.full((count,), float("inf"))
-        self.best_weights, self.best_moments = stack.weights.clone(), stack.moments.clone()
-        self.waited = torch.zeros(count, dtype=torch.long)
-        self.forget_plateau()
-        self._find_rows()
 
-    def run_epoch(self) -> None:
-        """One pass over every network's samples in an order of its own."""
-        longest = self.inputs.shape[1]
+    def train(self) -> list[ShotNetwork]:
+        """Follow the recipe to its end."""
+        for epoch in range(self.recipe.warm_up + self.recipe.epochs):
+            self._run_epoch()
+            if epoch == self.recipe.warm_up:
+                self.each["plateau"].fill_(torch.inf)
+                self.each["stuck"].zero_()
+            loss = self._held_out_loss()
+            self._lower_rates(loss)
+            if epoch >= self.recipe.warm_up:
+                self._keep_best(loss)
+                self._release(self.each["waited"] >= self.recipe.patience)
+            if not len(self.each["member"]):
+                break
+        self._release(torch.ones_like(self.each["member"], dtype=torch.bool))
+        return self.networks
+
+    def _run_epoch(self) -> None:
+        """Pass over every network's samples once, in an order of its own."""
+        longest = self.each["inputs"].shape[1]
         orders = []
-        for generator, samples in zip(self.generators, self.samples.tolist(), strict=True):
-            order = torch.randperm(samples, generator=generator)
-            orders.append(torch.cat([order, torch.arange(samples, longest)]) if samples < longest else order)
-        chosen = torch.stack(orders).unsqueeze(-1)
-        inputs = torch.take_along_dim(self.inputs, chosen, 1)
-        labels = torch.take_along_dim(self.labels, chosen, 1)
-        for i, rows in enumerate(self.rows):
-            begin, end = self.bounds[i], self.bounds[i + 1]
-            self.stack.find_gradients(inputs[:, begin:end], labels[:, begin:end], rows)
-            self._step()
+        for member, size in zip(self.each["member"].tolist(), self.each["size"].tolist(), strict=True):
+            order = torch.randperm(size, generator=self.generators[member])
+            orders.append(torch.cat([order, torch.arange(size, longest)]))
+        order = torch.stack(orders)
+        inputs = torch.take_along_dim(self.each["inputs"], order.unsqueeze(-1), 1)
+        labels = torch.take_along_dim(self.each["labels"], order, 1)
+        for begin, end in pairwise(self.bounds):
+            shares = _shares(self.each["size"] - begin, end - begin)
+            weights = self.each["weights"].requires_grad_()
+            logits = self._logits(inputs[:, begin:end], shares)
+            loss = cross_entropy(logits, labels[:, begin:end], shares[:, 0], reduction="sum")
+            (gradient,) = torch.autograd.grad(loss, weights)
+            self._step(weights.detach_(), gradient)
 
-    def _step(self) -> None:
+    def _step(self, weights: Tensor, gradient: Tensor) -> None:
         beta1, beta2, epsilon = ADAM
         self.steps += 1
-        gradients = self.stack.gradients
-        self.first.lerp_(gradients, 1.0 - beta1)
-        self.second.mul_(beta2).addcmul_(gradients, gradients, value=1.0 - beta2)
-        spread = self.second.sqrt().mul_((1.0 - beta2**self.steps) ** -0.5).add_(epsilon)
-        move = self.first * self.rates
-        self.stack.weights.addcdiv_(move, spread, value=-1.0 / (1.0 - beta1**self.steps))
+        self.each["first"].lerp_(gradient, 1.0 - beta1)
+        self.each["second"].mul_(beta2).addcmul_(gradient, gradient, value=1.0 - beta2)
+        spread = self.each["second"].sqrt().mul_((1.0 - beta2**self.steps) ** -0.5).add_(epsilon)
+        move = self.each["first"] * self.each["rate"]
+        weights.addcdiv_(move, spread, value=-1.0 / (1.0 - beta1**self.steps))
 
-    def held_out_loss(self) -> Tensor:
-        """Every network's loss on its held-out samples, (N,)."""
-        return self.stack.loss(self.held_inputs, self.held_labels, self.held_rows)
+    def _logits(self, x: Tensor, shares: Tensor | None = None) -> Tensor:
+        """Return logits (N, B) of inputs (N, B, F).
 
-    def forget_plateau(self) -> None:
-        """Begin to watch for plateaus anew."""
-        self.plateau_best = torch.full_like(self.best, float("inf"))
-        self.plateau_waited = torch.zeros_like(self.waited)
+        Args:
+            x: the inputs.
+            shares: how much each row of the batch counts in its mean and variance, which then
+                normalise it and move the running ones; None normalises by those.
+        """
+        pattern = self.networks[0]
+        weights = _views(self.each["weights"], list(pattern.parameters()))
+        moments = _views(self.each["moments"], _moments(pattern))
+        gammas_and_betas = iter(weights[: len(moments)])
+        kernels_and_biases = iter(weights[len(moments) :])
+        running = iter(moments)
+        for layer in pattern.layers:
+            if layer.normalised:
+                mean, variance = next(running), next(running)
+                if shares is None:
+                    centred = x - mean
+                else:
+                    batch_mean = torch.bmm(shares, x)
+                    centred = x - batch_mean
+                    batch_variance = torch.bmm(shares, centred * centred)
+                    mean.lerp_(batch_mean.detach(), NORM_MOMENTUM)
+                    variance.lerp_(batch_variance.detach(), NORM_MOMENTUM)
+                    variance = batch_variance
+                scale = next(gammas_and_betas) * torch.rsqrt(variance + NORM_EPS)
+                x = torch.addcmul(next(gammas_and_betas), centred, scale)
+            kernel = next(kernels_and_biases)
+            x = layer.activate(torch.baddbmm(next(kernels_and_biases), x, kernel.transpose(1, 2)))
+        return x.squeeze(-1)
 
-    def lower_rates(self, loss: Tensor) -> None:
+    @torch.no_grad()
+    def _held_out_loss(self) -> Tensor:
+        """Return every network's loss on its held-out samples, (N,)."""
+        logits = self._logits(self.each["held_inputs"])
+        shares = _shares(self.each["held_size"], logits.shape[1])[:, 0]
+        return cross_entropy(logits, self.each["held_labels"], shares, reduction="none").sum(1)
+
+    def _lower_rates(self, loss: Tensor) -> None:
         """Lower the learning rate of networks that have not improved for long."""
-        recipe = self.recipe
-        better = loss < self.plateau_best - PLATEAU_GAIN
-        self.plateau_best = torch.where(better, loss, self.plateau_best)
-        self.plateau_waited = torch.where(better, 0, self.plateau_waited + 1)
-        stuck = self.plateau_waited >= recipe.plateau_patience
-        lowered = (self.rates * recipe.plateau_factor).clamp_min(recipe.least_rate)
-        self.rates = torch.where(stuck.unsqueeze(1), lowered, self.rates)
-        self.plateau_waited = torch.where(stuck, 0, self.plateau_waited)
+        recipe, each = self.recipe, self.each
+        better = loss < each["plateau"] - PLATEAU_GAIN
+        each["plateau"] = torch.where(better, loss, each["plateau"])
+        each["stuck"] = torch.where(better, 0, each["stuck"] + 1)
+        stuck = each["stuck"] >= recipe.plateau_patience
+        lowered = (each["rate"] * recipe.plateau_factor).clamp_min(recipe.least_rate)
+        each["rate"] = torch.where(stuck.unsqueeze(1), lowered, each["rate"])
+        each["stuck"] = torch.where(stuck, 0, each["stuck"])
 
-    def keep_best(self, loss: Tensor) -> None:
+    def _keep_best(self, loss: Tensor) -> None:
         """Remember the weights of networks that are better than ever."""
-        better = loss < self.best
-        self.best = torch.where(better, loss, self.best)
-        self.waited = torch.where(better, 0, self.waited + 1)
-        chosen = better.unsqueeze(1)
-        self.best_weights = torch.where(chosen, self.stack.weights, self.best_weights)
-        self.best_moments = torch.where(chosen, self.stack.moments, self.best_moments)
+        each = self.each
+        better = loss < each["best"]
+        each["best"] = torch.where(better, loss, each["best"])
+        each["waited"] = torch.where(better, 0, each["waited"] + 1)
+        for name in ("weights", "moments"):
+            each[f"best_{name}"] = torch.where(better.unsqueeze(1), each[name], each[f"best_{name}"])
 
-    def release(self, done: Tensor, networks: dict[int, ShotNetwork]) -> None:
-        """Take networks that are done out of the stack, with the best weights they had."""
-        if not bool(done.any()):
-            return
+    def _release(self, done: Tensor) -> None:
+        """Take networks that are done out of training, with the best weights they had."""
         for i in torch.nonzero(done).flatten().tolist():
-            networks[self.members[i]] = self.stack.network(self.best_weights[i], self.best_moments[i])
-        left = torch.nonzero(~done).flatten()
-        self.members = [self.members[i] for i in left.tolist()]
-        self.generators = [self.generators[i] for i in left.tolist()]
-        self.stack.keep(left)
-        for name in (
-            *("inputs", "labels", "samples", "held_inputs", "held_labels", "first", "second", "rates"),
-            *("best", "best_weights", "best_moments", "waited", "plateau_best", "plateau_waited"),
-        ):
-            setattr(self, name, getattr(self, name)[left])
-        self.held_rows = self.held_rows.keep(left)
-        self._find_rows()
-
-    def _find_rows(self) -> None:
-        self.rows = [Rows.first(self.samples - begin, end - begin) for begin, end in pairwise(self.bounds)]
+            network = self.networks[int(self.each["member"][i])]
+            vector_to_parameters(self.each["best_weights"][i].clone(), network.parameters())
+            vector_to_parameters(self.each["best_moments"][i].clone(), _moments(network))
+        if bool(done.any()):
+            self.each = {name: rows[~done] for name, rows in self.each.items()}
 
 
-def _padded(sets: list[tuple[Tensor, Tensor]]) -> tuple[Tensor, Tensor, Tensor]:
-    """Sample sets of different sizes in one: (N, most, F), (N, most, 1) and their sizes (N,)."""
-    samples = torch.tensor([len(labels) for _, labels in sets])
-    inputs = torch.nn.utils.rnn.pad_sequence([inputs for inputs, _ in sets], batch_first=True)
-    labels = torch.nn.utils.rnn.pad_sequence([labels for _, labels in sets], batch_first=True)
-    return inputs, labels.unsqueeze(-1), samples
+def _moments(network: ShotNetwork) -> list[Tensor]:
+    """Return the running means and variances of a network's normalisations."""
+    return [moment for moment in network.buffers() if moment.is_floating_point()]
+
+
+def _flat(values: Iterable[Tensor]) -> Tensor:
+    return torch.cat([torch.zeros(0), *(value.detach().flatten() for value in values)])
+
+
+def _views(rows: Tensor, pattern: Sequence[Tensor]) -> list[Tensor]:
+    """Split rows of flat values (N, P) into one view for each of a network's tensors.
+
+    A matrix becomes (N, outputs, inputs), a vector (N, 1, width).
+    """
+    parts = torch.split(rows, [value.numel() for value in pattern], 1)
+    shapes = [value.shape if value.ndim == 2 else (1, value.numel()) for value in pattern]
+    return [part.view(-1, *shape) for part, shape in zip(parts, shapes, strict=True)]
+
+
+def _shares(sizes: Tensor, width: int) -> Tensor:
+    """Return the share of each of ``width`` rows in the mean over the first ``sizes``, (N, 1, width)."""
+    counts = sizes.clamp_max(width)[:, None]
+    return ((torch.arange(width) < counts) / counts).unsqueeze(1)

@@ -2,57 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple
+import copy
+import json
+from pathlib import Path
+from typing import Literal, NamedTuple
 
 import torch
 from torch import Tensor, nn
+from torch.nn.functional import silu
 
-Activation = Literal["relu", "swish", "linear"]
+from robobt.shots.data.problems import ShotDataError
 
 NORM_EPS = 1e-3
 NORM_MOMENTUM = 0.01
-"""Keras' batch normalisation in PyTorch's words; the paper used Keras' defaults."""
+"""Keras' defaults of batch normalisation, which the paper used, under PyTorch's names."""
 
 
 class Layer(NamedTuple):
-    """A dense layer, with batch normalisation of its inputs or without."""
+    """A dense layer, with or without batch normalisation of its inputs."""
 
     normalised: bool
     units: int
-    activation: Activation
+    activation: Literal["relu", "silu", "linear"]
+
+    def activate(self, x: Tensor) -> Tensor:
+        """Apply the activation."""
+        if self.activation == "relu":
+            return torch.relu(x)
+        return silu(x) if self.activation == "silu" else x
 
 
-TABLE_ONE = (Layer(True, 6, "relu"), Layer(True, 3, "swish"), Layer(False, 1, "linear"))
+TABLE_ONE = (Layer(True, 6, "relu"), Layer(True, 3, "silu"), Layer(False, 1, "linear"))
 """The paper's network (Table 1); the sigmoid that ends it is part of the loss."""
 
 KIKS = (Layer(True, 8, "relu"), Layer(True, 8, "relu"), Layer(True, 1, "linear"))
 """Three dense layers with batch normalisation (Naito et al.); their sizes are not published."""
 
 
-class KerasNorm(nn.BatchNorm1d):
-    """Batch normalisation with Keras' moving variance: a batch's own, not an unbiased estimate.
-
-    Of sixteen samples that is 6 % less, and what the network learns depends on it.
-    """
-
-    def forward(self, x: Tensor) -> Tensor:
-        """Normalise (batch, features)."""
-        if not self.training:
-            return super().forward(x)
-        assert self.running_mean is not None
-        assert self.running_var is not None
-        with torch.no_grad():
-            variance, mean = torch.var_mean(x, 0, correction=0)
-            self.running_mean.lerp_(mean, NORM_MOMENTUM)
-            self.running_var.lerp_(variance, NORM_MOMENTUM)
-        return nn.functional.batch_norm(x, None, None, self.weight, self.bias, training=True, eps=self.eps)
-
-
 class ShotNetwork(nn.Module):
-    """A network of :class:`Layer`; answers the logit of a goal.
+    """A network of :class:`Layer` that answers the logit of a goal.
 
     Kernels are Glorot-uniform and biases zero, as Keras draws them.
+    :func:`~robobt.shots.predict.batched.train_networks` trains it.
 
     Args:
         inputs: length of the input.
@@ -64,14 +55,12 @@ class ShotNetwork(nn.Module):
         self, inputs: int, layers: tuple[Layer, ...] = TABLE_ONE, generator: torch.Generator | None = None
     ) -> None:
         super().__init__()
-        self.inputs = inputs
         self.layers = layers
         self.norms = nn.ModuleList()
         self.dense = nn.ModuleList()
         width = inputs
         for layer in layers:
-            norm = KerasNorm(width, NORM_EPS, NORM_MOMENTUM) if layer.normalised else nn.Identity()
-            self.norms.append(norm)
+            self.norms.append(nn.BatchNorm1d(width, NORM_EPS) if layer.normalised else nn.Identity())
             dense = nn.Linear(width, layer.units)
             nn.init.zeros_(dense.bias)
             nn.init.zeros_(dense.weight)
@@ -79,48 +68,53 @@ class ShotNetwork(nn.Module):
                 nn.init.xavier_uniform_(dense.weight, generator=generator)
             self.dense.append(dense)
             width = layer.units
+        self.eval()
 
     def forward(self, x: Tensor) -> Tensor:
-        """Logits (batch,) of inputs (batch, inputs)."""
+        """Return logits (batch, 1) of inputs (batch, inputs)."""
         for layer, norm, dense in zip(self.layers, self.norms, self.dense, strict=True):
-            x = dense(norm(x))
-            if layer.activation == "relu":
-                x = torch.relu(x)
-            elif layer.activation == "swish":
-                x = x * torch.sigmoid(x)
-        return x.squeeze(-1)
+            x = layer.activate(dense(norm(x)))
+        return x
+
+    def probabilities(self) -> nn.Module:
+        """Return a module of probabilities (batch, 1), with plain arithmetic for the normalisations."""
+        plain = copy.deepcopy(self)
+        for i, (norm, dense) in enumerate(zip(plain.norms, plain.dense, strict=True)):
+            if isinstance(norm, nn.BatchNorm1d) and isinstance(dense, nn.Linear):
+                assert norm.running_mean is not None
+                assert norm.running_var is not None
+                with torch.no_grad():
+                    scale = norm.weight / torch.sqrt(norm.running_var + norm.eps)
+                    dense.bias.add_(dense.weight @ (norm.bias - norm.running_mean * scale))
+                    dense.weight.mul_(scale)
+                plain.norms[i] = nn.Identity()
+        return nn.Sequential(plain, nn.Sigmoid())
 
 
-def network_from_keras(layers: Mapping[str, Mapping[str, Any]]) -> ShotNetwork:
-    """The network of Table 1 with weights as Keras stores them (kernels [in][out]).
+def author_network(path: str | Path) -> ShotNetwork:
+    """Load the predictor that the paper's author published (``author_predictor.json``).
 
-    Args:
-        layers: by Keras' names, ``batch_normalization``, ``dense``,
-            ``batch_normalization_1``, ``dense_1``, ``dense_2``.
+    Its weights are stored as Keras names and shapes them, kernels as [input][output].
 
     Raises:
-        ValueError: a layer is missing or has another shape.
+        ShotDataError: the file does not hold the weights of Table 1's network.
     """
-
-    def values(layer: str, name: str) -> Tensor:
-        try:
-            return torch.tensor(layers[layer][name], dtype=torch.float32)
-        except (KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"no weights {name!r} of layer {layer!r}") from error
-
-    state = {}
-    for i, name in enumerate(("dense", "dense_1", "dense_2")):
-        state[f"dense.{i}.weight"] = values(name, "kernel").T
-        state[f"dense.{i}.bias"] = values(name, "bias")
-    for i, name in enumerate(("batch_normalization", "batch_normalization_1")):
-        state[f"norms.{i}.weight"] = values(name, "gamma")
-        state[f"norms.{i}.bias"] = values(name, "beta")
-        state[f"norms.{i}.running_mean"] = values(name, "moving_mean")
-        state[f"norms.{i}.running_var"] = values(name, "moving_variance")
-        state[f"norms.{i}.num_batches_tracked"] = torch.tensor(0)
+    file = Path(path)
     network = ShotNetwork(5, TABLE_ONE)
+    state = {}
     try:
+        layers = json.loads(file.read_text(encoding="utf-8"))["layers"]
+        for i, name in enumerate(("dense", "dense_1", "dense_2")):
+            state[f"dense.{i}.weight"] = torch.tensor(layers[name]["kernel"]).T
+            state[f"dense.{i}.bias"] = torch.tensor(layers[name]["bias"])
+        for i, name in enumerate(("batch_normalization", "batch_normalization_1")):
+            state[f"norms.{i}.weight"] = torch.tensor(layers[name]["gamma"])
+            state[f"norms.{i}.bias"] = torch.tensor(layers[name]["beta"])
+            state[f"norms.{i}.running_mean"] = torch.tensor(layers[name]["moving_mean"])
+            state[f"norms.{i}.running_var"] = torch.tensor(layers[name]["moving_variance"])
+            state[f"norms.{i}.num_batches_tracked"] = torch.tensor(0)
         network.load_state_dict(state)
-    except RuntimeError as error:
-        raise ValueError(" ".join(str(error).split())) from error
-    return network.eval()
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
+        reason = " ".join(str(error).split())
+        raise ShotDataError(f"{file}: does not hold the author's network: {reason}") from error
+    return network

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 import pyarrow as pa
 import torch
 from numpy.typing import NDArray
-from torch import Tensor, nn
+from torch import nn
 
 from robobt import __version__
 from robobt.models.card import Measured, ModelCard, ObservationCard, OutputEntry
 from robobt.models.export import export_model
 from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
+from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.networks import ShotNetwork
 from robobt.shots.predict.scene_training import train_scene_network
+from robobt.shots.predict.validation import Judgement, judge
 from robobt.statistics import wilson_interval
 from robobt.world.features import ABSENT, SCENE_HEAD, SHOT, SHOT_SCENE
 from robobt.world.geometry import FloatArray
@@ -31,23 +31,6 @@ RECIPE_SHOTS = 6000
 """Shots that the network of Table 1 is trained on, ten times the paper's: more only takes longer."""
 
 _HELD_OUT = 0.1
-_BINS = 15
-
-
-class Figures(NamedTuple):
-    """How well a predictor does on shots that its training never saw.
-
-    Attributes:
-        accuracy: share judged rightly at a threshold of one half.
-        log_loss: mean of -log of the probability given to what happened.
-        calibration_error: mean distance of probability and frequency over 15 equal bins.
-        shots: how many it was measured on.
-    """
-
-    accuracy: float
-    log_loss: float
-    calibration_error: float
-    shots: int
 
 
 def train_shipped(
@@ -58,7 +41,7 @@ def train_shipped(
     seed: int = 0,
     epochs: int = 40,
     on_epoch: Callable[[int], None] | None = None,
-) -> tuple[Path, Figures]:
+) -> tuple[Path, Judgement]:
     """Train one of the shipped predictors and write it with its card.
 
     A tenth of the shots, drawn by ``seed``, is held out and measured on.
@@ -80,19 +63,18 @@ def train_shipped(
     held, used = np.split(order, [round(_HELD_OUT * len(order))])
     if name == "shot_nn":
         used = used[:RECIPE_SHOTS]
-        features = _pair_features(scenes)
-        classifier = NetworkClassifier(random_state=seed)
-        classifier.fit(features[used].astype(np.float32), labels[used])
-        module: nn.Module = _Probability(classifier.network_)
-        inputs, observation = features, SHOT
+        inputs, observation = pair_features(scenes), SHOT
+        classifier = NetworkClassifier(random_state=seed).fit(inputs[used], labels[used])
+        module: nn.Module = classifier.network_.probabilities()
         training: dict[str, object] = {"recipe": "the paper's (Table 1)", "shots": len(used)}
     else:
-        module = train_scene_network(scenes[used], labels[used], epochs=epochs, seed=seed, on_epoch=on_epoch)
         inputs, observation = scenes, SHOT_SCENE
+        module = train_scene_network(scenes[used], labels[used], epochs=epochs, seed=seed, on_epoch=on_epoch)
         training = {"epochs": epochs, "shots": len(used)}
-    figures = measure(module, inputs[held], labels[held])
-    right = round(figures.accuracy * figures.shots)
-    interval = wilson_interval(right, figures.shots)
+    with torch.inference_mode():
+        answers = module(torch.from_numpy(inputs[held].astype(np.float32))).numpy()[:, 0]
+    figures = judge(answers, labels[held])
+    interval = wilson_interval(round(figures.accuracy * figures.shots), figures.shots)
     card = ModelCard(
         kind="shot_predictor",
         name=name,
@@ -120,54 +102,6 @@ def train_shipped(
     return export_model(module, card, folder)[0], figures
 
 
-def measure(module: nn.Module, inputs: FloatArray, labels: NDArray[np.int64]) -> Figures:
-    """The figures of a module that answers probabilities (n, 1)."""
-    with torch.inference_mode():
-        answers = module(torch.from_numpy(inputs.astype(np.float32))).numpy()[:, 0].astype(np.float64)
-    sure = np.clip(answers, 1e-7, 1.0 - 1e-7)
-    loss = -np.mean(labels * np.log(sure) + (1 - labels) * np.log(1.0 - sure))
-    bins = np.minimum((answers * _BINS).astype(int), _BINS - 1)
-    error = 0.0
-    for number in np.unique(bins):
-        there = bins == number
-        error += there.mean() * abs(answers[there].mean() - labels[there].mean())
-    accuracy = float(np.mean((answers >= 0.5) == (labels == 1)))
-    return Figures(accuracy, float(loss), float(error), len(labels))
-
-
-class _Probability(nn.Module):
-    """A network's logit as a probability (n, 1), its batch normalisations as what they are once trained."""
-
-    def __init__(self, network: ShotNetwork) -> None:
-        super().__init__()
-        self.network = copy.deepcopy(network)
-        for i, norm in enumerate(self.network.norms):
-            if isinstance(norm, nn.BatchNorm1d):
-                self.network.norms[i] = _Affine(norm)
-
-    def forward(self, inputs: Tensor) -> Tensor:
-        return torch.sigmoid(self.network(inputs)).reshape(-1, 1)
-
-
-class _Affine(nn.Module):
-    """A trained batch normalisation: a factor and a shift an input."""
-
-    factor: Tensor
-    shift: Tensor
-
-    def __init__(self, norm: nn.BatchNorm1d) -> None:
-        super().__init__()
-        mean, variance = norm.running_mean, norm.running_var
-        assert mean is not None
-        assert variance is not None
-        factor = norm.weight.detach() / torch.sqrt(variance + norm.eps)
-        self.register_buffer("factor", factor)
-        self.register_buffer("shift", norm.bias.detach() - mean * factor)
-
-    def forward(self, inputs: Tensor) -> Tensor:
-        return inputs * self.factor + self.shift
-
-
 _DESCRIPTIONS = {
     "shot_nn": (
         "The paper's network (Table 1) with its training recipe: probability of a goal past one opponent, "
@@ -193,12 +127,6 @@ def _data(name: ShippedModel, table: pa.Table) -> tuple[FloatArray, NDArray[np.i
             f"there are {len(scenes)}, {int(labels.sum())} of them goals"
         )
     return scenes, labels
-
-
-def _pair_features(scenes: FloatArray) -> FloatArray:
-    """:data:`~robobt.world.features.SHOT` of the first opponent, (n, 5)."""
-    length, along, across = scenes[:, 0], scenes[:, SCENE_HEAD], np.abs(scenes[:, SCENE_HEAD + 1])
-    return np.stack([np.arctan2(across, along), length, np.hypot(along, across), along, across], axis=-1)
 
 
 def _seed_of(table: pa.Table) -> list[int]:

@@ -8,11 +8,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from robobt.shots.collect.balanced import balanced_attempt
-from robobt.shots.collect.collect import PAPER_COUNT, collect_shots
+from robobt.shots.collect.collect import PAPER_COUNT, CollectionError, collect_shots
 from robobt.shots.collect.paper import PARTS, SECTIONS, paper_attempt, splits
 from robobt.shots.collect.plan import CollectionSettings
+from robobt.shots.collect.trial import play_trial
 from robobt.shots.collect.watch import take_shot
-from robobt.shots.collect.workers import CollectionError, play_trial
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS
@@ -154,16 +154,16 @@ def test_the_papers_protocol_has_its_own_number_of_shots(tmp_path: Path):
 
 
 def test_the_papers_shots_are_attack_mains_with_its_tolerances():
-    attempt = paper_attempt(CollectionSettings(protocol="paper"), 1, 1)
+    attempt = paper_attempt(CollectionSettings(protocol="paper"), 1)
     blue, yellow = attempt.scenario.robots.blue[0], attempt.scenario.robots.yellow[0]
     assert (blue.play, yellow.params["speed"]) == ("attack_main", 0.5)
     assert blue.params["tolerance"] == attempt.labels["tolerance"] == 0.3645
-    still = paper_attempt(CollectionSettings(protocol="paper"), 5, 5)
+    still = paper_attempt(CollectionSettings(protocol="paper"), 5)
     assert still.section in SECTIONS.values()
 
 
 def test_an_attacker_that_leaves_its_section_has_taken_no_shot():
-    attempt = paper_attempt(CollectionSettings(protocol="paper"), 7, 7)
+    attempt = paper_attempt(CollectionSettings(protocol="paper"), 7)
     assert take_shot(replace(attempt, section=None), sim_world)[0] is not None
     elsewhere = replace(attempt, section=((-4.5, -4.0), (-3.0, 3.0)))
     assert take_shot(elsewhere, sim_world)[0] is None
@@ -181,7 +181,7 @@ def test_a_trial_that_raises_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path:
     def broken(*_: object) -> None:
         raise ValueError("no ball")
 
-    monkeypatch.setattr("robobt.shots.collect.workers.play_trial", broken)
+    monkeypatch.setattr("robobt.shots.collect.collect.play_trial", broken)
     with pytest.raises(CollectionError, match="trial 0: ValueError: no ball"):
         collect_shots(SETTINGS, tmp_path / "shots.csv", 5)
 

@@ -6,7 +6,6 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from robobt.shots.data.author_data import author_inputs, read_author_folder
 from robobt.shots.data.files import read_shots, write_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import SCHEMA, complete_row
@@ -131,7 +130,7 @@ def test_a_parquet_file_of_another_table_is_refused(table: pa.Table, tmp_path: P
 
 @needs_real_shots
 def test_the_real_shots_are_read():
-    train, test = read_author_folder(REAL_SHOTS)
+    train, test = read_shots(REAL_SHOTS / "train.csv"), read_shots(REAL_SHOTS / "test.csv")
     assert (train.num_rows, test.num_rows) == (542, 201)
     assert sum(train.column("success").to_pylist()) == 165
     assert sum(test.column("success").to_pylist()) == 79
@@ -146,7 +145,7 @@ def test_the_real_shots_are_read():
 
 @needs_real_shots
 def test_the_real_shots_own_coordinates_give_their_shot_frame():
-    train, _ = read_author_folder(REAL_SHOTS)
+    train = read_shots(REAL_SHOTS / "train.csv")
     row = train.to_pylist()[0]
     mine = complete_row(
         {name: row[name] for name in ("robot_x", "robot_y", "target_x", "target_y", "success")}
@@ -163,7 +162,6 @@ def test_the_real_shots_own_coordinates_give_their_shot_frame():
     ):
         assert mine[name] == pytest.approx(row[name], abs=1e-5)
     assert mine["v_towards_ball"] == pytest.approx(row["v_towards_ball"], abs=1e-5)
-    assert author_inputs(train).shape == (542, 5)
 
 
 def test_of_the_goalkeepers_speed_and_its_component_either_gives_the_other(tmp_path: Path):

@@ -2,11 +2,9 @@ import numpy as np
 import pytest
 import torch
 
-from robobt.shots.data.author_data import author_inputs, author_weights, read_author_folder
-from robobt.shots.predict.batched import train_networks
-from robobt.shots.predict.networks import KIKS, TABLE_ONE, Layer, ShotNetwork, network_from_keras
-from robobt.shots.predict.recipe import Recipe, Task, batch_bounds, train_plainly
-from tests.shots.real_data import REAL_SHOTS, needs_real_shots
+from robobt.shots.predict.batched import Recipe, Task, batch_bounds, train_networks
+from robobt.shots.predict.networks import KIKS, TABLE_ONE, Layer, ShotNetwork
+from tests.shots.predict.plain_training import train_plainly
 
 
 def _task(samples: int, seed: int, held: int = 20) -> Task:
@@ -21,7 +19,7 @@ def _apart(one: ShotNetwork, other: ShotNetwork, task: Task) -> float:
         return float((one(task.held_inputs) - other(task.held_inputs)).abs().max())
 
 
-@pytest.mark.parametrize("layers", [TABLE_ONE, KIKS, (Layer(False, 3, "swish"), Layer(False, 1, "linear"))])
+@pytest.mark.parametrize("layers", [TABLE_ONE, KIKS, (Layer(False, 3, "silu"), Layer(False, 1, "linear"))])
 def test_each_network_of_a_stack_is_what_the_plain_loop_makes_of_it(layers: tuple[Layer, ...]):
     # 39 and 40 share a stack and end in batches of 7 and 8; 33 leaves one sample
     # over; 20 has fewer batches than the rest.
@@ -50,17 +48,11 @@ def test_a_network_does_not_depend_on_the_others_in_its_stack():
     assert _apart(alone, train_networks(tasks, recipe)[1], tasks[1]) < 1e-4
 
 
-def test_what_comes_out_of_a_stack_can_be_trained_further():
-    network = train_networks([_task(20, 0)], Recipe(warm_up=0, epochs=1))[0]
-    network.train()(torch.ones(3, 4)).sum().backward()
-    assert network.dense[0].weight.grad is not None
-
-
 def test_training_learns():
     task = _task(400, 1, held=200)
     network = train_networks([task], Recipe(warm_up=10, epochs=20))[0]
     with torch.no_grad():
-        right = (network(task.held_inputs) > 0) == (task.held_labels > 0.5)
+        right = (network(task.held_inputs)[:, 0] > 0) == (task.held_labels > 0.5)
     assert float(right.float().mean()) > 0.9
 
 
@@ -69,26 +61,3 @@ def test_training_learns():
 )
 def test_no_sample_is_dropped_and_none_is_left_alone(samples: int, bounds: list[int]):
     assert batch_bounds(samples, 16) == bounds
-
-
-def test_weights_of_another_shape_are_refused():
-    with pytest.raises(ValueError, match="dense"):
-        network_from_keras({})
-    layers = {f"dense{end}": {"kernel": [[1.0]], "bias": [1.0]} for end in ("", "_1", "_2")}
-    norm = {name: [1.0] for name in ("gamma", "beta", "moving_mean", "moving_variance")}
-    with pytest.raises(ValueError, match="size mismatch"):
-        network_from_keras(layers | {"batch_normalization": norm, "batch_normalization_1": norm})
-
-
-@needs_real_shots
-def test_the_authors_weights_give_his_confusion_matrix_and_outputs():
-    author = author_weights(REAL_SHOTS / "author_predictor.json")
-    _, test = read_author_folder(REAL_SHOTS)
-    network = network_from_keras(author["layers"])
-    with torch.no_grad():
-        logits = network(torch.tensor(author_inputs(test), dtype=torch.float32))
-    p = torch.sigmoid(logits).numpy()
-    np.testing.assert_allclose(p, author["golden"]["test_probabilities"], atol=1e-6)
-    goal = test.column("success").to_numpy() == 1
-    counts = [int(((p >= 0.5) == said)[goal == was].sum()) for was in (False, True) for said in (False, True)]
-    assert counts == [102, 20, 10, 69]

@@ -1,0 +1,33 @@
+"""One trial of a collection, played to its end."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from robobt.shots.collect.balanced import balanced_attempt
+from robobt.shots.collect.paper import paper_attempt
+from robobt.shots.collect.plan import CollectionSettings
+from robobt.shots.collect.watch import take_shot
+from robobt.shots.data.schema import Row, complete_row
+from robobt.worlds import sim_world
+
+
+class Taken(NamedTuple):
+    """What came of one trial.
+
+    Attributes:
+        trial: its number.
+        row: its shot, a row of the table; None without one.
+        time: how long it lasted in the world [s].
+    """
+
+    trial: int
+    row: Row | None
+    time: float
+
+
+def play_trial(settings: CollectionSettings, trial: int) -> Taken:
+    """Play one trial; the same settings and number give the same shot wherever it is played."""
+    attempt = (paper_attempt if settings.protocol == "paper" else balanced_attempt)(settings, trial)
+    shot, time = take_shot(attempt, sim_world, trial)
+    return Taken(trial, None if shot is None else complete_row(shot), time)
