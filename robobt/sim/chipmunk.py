@@ -9,12 +9,14 @@ interface experimental: whatever of it changes is mended here.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, cast
 
 import numpy as np
 import pymunk
 from llvmlite import ir
 from numba import types
+from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
@@ -23,12 +25,18 @@ ROW = 6
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
 
 
+Generated = tuple[Signature, Callable[..., ir.Value]]
+"""What numba wants of an intrinsic: its signature, and the function that writes its code."""
+
+
 @intrinsic
-def _call_step(_context: Any, _function: Any, _space: Any, _dt: Any) -> Any:
-    """``cpSpaceStep(space, dt)`` by address, from compiled code."""
+def _call_step(_context: object, _function: object, _space: object, _dt: object) -> Generated:
+    """Call ``cpSpaceStep(space, dt)`` by address, from compiled code."""
     signature = types.void(types.uint64, types.uint64, types.float64)
 
-    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+    def generate(
+        context: Any, builder: ir.IRBuilder, _signature: object, arguments: Sequence[ir.Value]
+    ) -> ir.Value:
         prototype = ir.FunctionType(ir.VoidType(), [ir.IntType(64), ir.DoubleType()])
         call = builder.inttoptr(arguments[0], prototype.as_pointer())
         builder.call(call, [arguments[1], arguments[2]])
@@ -38,11 +46,15 @@ def _call_step(_context: Any, _function: Any, _space: Any, _dt: Any) -> Any:
 
 
 @intrinsic
-def _call_each_body(_context: Any, _function: Any, _space: Any, _callback: Any, _data: Any) -> Any:
-    """``cpSpaceEachBody(space, callback, data)`` by address, from compiled code."""
+def _call_each_body(
+    _context: object, _function: object, _space: object, _callback: object, _data: object
+) -> Generated:
+    """Call ``cpSpaceEachBody(space, callback, data)`` by address, from compiled code."""
     signature = types.void(types.uint64, types.uint64, types.uint64, types.uint64)
 
-    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+    def generate(
+        context: Any, builder: ir.IRBuilder, _signature: object, arguments: Sequence[ir.Value]
+    ) -> ir.Value:
         word = ir.IntType(64)
         prototype = ir.FunctionType(ir.VoidType(), [word, word, word])
         call = builder.inttoptr(arguments[0], prototype.as_pointer())
@@ -52,9 +64,9 @@ def _call_each_body(_context: Any, _function: Any, _space: Any, _callback: Any, 
     return signature, generate
 
 
-# numba passes the first argument itself, which no type checker can know.
-call_step: Any = _call_step
-call_each_body: Any = _call_each_body
+# numba passes the first argument itself.
+call_step = cast(Callable[..., None], _call_step)
+call_each_body = cast(Callable[..., None], _call_each_body)
 
 
 class BodyBuffer:
@@ -126,5 +138,5 @@ class BodyBuffer:
             )
 
 
-def _address(pointer: Any) -> int:
+def _address(pointer: object) -> int:
     return int(ffi.cast("uintptr_t", pointer))

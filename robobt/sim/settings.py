@@ -9,12 +9,12 @@ the ball and how much acceleration it bears was measured in this one.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import ROBOT_RADIUS
 
 
 class _Settings(BaseModel):
@@ -232,8 +232,8 @@ PRESETS: dict[str, SimSettings] = {
 """Named presets. ``robobulls`` is grSim with the kicks that RoboBulls' software sends."""
 
 
-def preset(name: str, **changes: Any) -> SimSettings:
-    """The preset with top-level settings replaced.
+def preset(name: str, **changes: object) -> SimSettings:
+    """Return the preset with top-level settings replaced.
 
     Raises:
         KeyError: no such preset; the message lists those there are.
@@ -243,8 +243,8 @@ def preset(name: str, **changes: Any) -> SimSettings:
     return PRESETS[name].model_copy(update=changes)
 
 
-def settings_from(simulator: str | Mapping[str, Any]) -> SimSettings:
-    """Settings from what a scenario file holds.
+def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:
+    """Build settings from what a scenario file holds.
 
     A name is a preset. A mapping may name a ``preset`` to start from
     ("default" without one), a ``realism`` level by name, and any setting to
@@ -266,26 +266,11 @@ def settings_from(simulator: str | Mapping[str, Any]) -> SimSettings:
     return SimSettings.model_validate(_merged(base, changes))
 
 
-def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+def _merged(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
     result = dict(base)
     for key, value in changes.items():
         old = result.get(key)
-        both = isinstance(old, Mapping) and isinstance(value, Mapping)
-        result[key] = _merged(old, value) if both else value  # type: ignore[arg-type]
+        if isinstance(old, Mapping) and isinstance(value, Mapping):
+            value = _merged(old, value)
+        result[key] = value
     return result
-
-
-__all__ = [
-    "BALL_RADIUS",
-    "PRESETS",
-    "REALISM",
-    "BallSettings",
-    "BodySettings",
-    "ContactSettings",
-    "DribblerSettings",
-    "KickerSettings",
-    "RealismSettings",
-    "SimSettings",
-    "preset",
-    "settings_from",
-]

@@ -99,7 +99,7 @@ class SimWorld(World):
         return not (self._delayed or self._noisy or self._lossy)
 
     def observe(self) -> Frame:
-        """Return what the cameras report: late, noisy and with gaps where the settings say so.
+        """Return what the cameras report: late, noisy and with gaps, as the settings define.
 
         Velocities carry no noise of their own; a missing detection repeats the last one.
         """

@@ -17,7 +17,7 @@ from robobt.learning.envs.starts import START_COLUMNS, StartPool
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
-from robobt.sim.kernels import COMMAND
+from robobt.sim.columns import COMMAND
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 

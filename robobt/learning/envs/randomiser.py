@@ -6,7 +6,7 @@ import numpy as np
 
 from robobt.learning.envs.settings import RandomisationSettings, Span, TaskSettings
 from robobt.learning.envs.task import FloatArray, IntArray
-from robobt.sim import kernels as sim
+from robobt.sim import columns as sim
 from robobt.sim.arenas import Arenas
 
 _ACCELERATIONS = (sim.FORWARD_UP, sim.FORWARD_DOWN, sim.SIDE_UP, sim.SIDE_DOWN, sim.TURN_RATE)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import GoToBallSettings, GoToBallTask, ShootSettings, ShootTask
-from robobt.sim import kernels as sim
+from robobt.sim import columns as sim
 
 N = 400
 SAME = np.tile([0.0, 0, 0, 0, 0, 0, 2.0, 0, 0, 0], (N, 1))

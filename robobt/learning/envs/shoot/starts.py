@@ -11,7 +11,7 @@ from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.sim.arenas import Arenas
-from robobt.sim.kernels import DRIBBLE
+from robobt.sim.columns import DRIBBLE
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 1e-4

@@ -1,0 +1,127 @@
+"""The bodies and walls of the fields in one pymunk space."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import acos, cos, pi, sin
+
+import pymunk
+
+from robobt.sim.settings import SimSettings
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_WALL = 0.02
+"""Thickness of a goal's walls in the rules [m]."""
+
+BEYOND = 0.5
+"""Thickness of the walls around the field [m]."""
+
+_HULL_CORNERS = 24
+_PLATE = 0.006
+"""Thickness of the plate that forms a robot's flat front [m]."""
+
+# Collision categories: robots meet robots as discs and the ball with their hull.
+_DISC, _HULL, _BALL, _STATIC = 1, 2, 4, 8
+
+Box = tuple[float, float, float, float]
+
+
+def walls_of(field: FieldGeometry) -> list[tuple[Box, str]]:
+    """Return the static boxes of a field: surrounding walls, and per goal two sides and a back."""
+    outer_x, outer_y = field.half_length + field.margin, field.half_width + field.margin
+    far_x, far_y = outer_x + BEYOND, outer_y + BEYOND
+    boxes: list[tuple[Box, str]] = [
+        ((-far_x, outer_y, far_x, far_y), "wall"),
+        ((-far_x, -far_y, far_x, -outer_y), "wall"),
+        ((outer_x, -far_y, far_x, far_y), "wall"),
+        ((-far_x, -far_y, -outer_x, far_y), "wall"),
+    ]
+    post, line = field.goal_width / 2, field.half_length
+    back = line + field.goal_depth
+    for sign in (1.0, -1.0):
+        # The rules prolong the sides to the wall, so nothing gets behind a goal.
+        ends = sorted((sign * line, sign * (outer_x + BEYOND)))
+        boxes.append(((ends[0], post, ends[1], post + _WALL), "goal"))
+        boxes.append(((ends[0], -post - _WALL, ends[1], -post), "goal"))
+        ends = sorted((sign * back, sign * max(back + _WALL, outer_x + BEYOND)))
+        boxes.append(((ends[0], -post - _WALL, ends[1], post + _WALL), "goal_back"))
+    return boxes
+
+
+def fill(
+    space: pymunk.Space,
+    settings: SimSettings,
+    origins: FloatArray,
+    robots: int,
+    walls: Sequence[tuple[Box, str]],
+) -> list[pymunk.Body]:
+    """Add every arena's walls, robots and ball; return the bodies, each arena's ball last."""
+    contact, body = settings.contact, settings.body
+    material = {
+        "wall": (contact.wall_restitution, contact.wall_friction),
+        "goal": (contact.goal_restitution, contact.goal_friction),
+        "goal_back": (contact.goal_back_restitution, contact.goal_friction),
+    }
+    hull = _hull(body.face - _PLATE)
+    plate = _plate(body.face)
+    bodies = []
+    for origin_x, origin_y in origins:
+        for (x0, y0, x1, y1), kind in walls:
+            corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+            box = pymunk.Poly(space.static_body, [(origin_x + x, origin_y + y) for x, y in corners])
+            _finish(box, *material[kind], _STATIC, _DISC | _BALL)
+            space.add(box)
+        for i in range(robots):
+            robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
+            # Somewhere of their own until placed, so that no two start inside each other.
+            robot.position = (origin_x, origin_y + 3 * ROBOT_RADIUS * (i + 1))
+            disc = pymunk.Circle(robot, ROBOT_RADIUS)
+            shell = pymunk.Poly(robot, hull)
+            front = pymunk.Poly(robot, plate)
+            # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
+            share = contact.robot_restitution**0.5, contact.robot_friction**0.5
+            _finish(disc, *share, _DISC, _DISC | _STATIC)
+            _finish(shell, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
+            _finish(front, contact.front_restitution, contact.front_friction, _HULL, _BALL)
+            space.add(robot, disc, shell, front)
+            bodies.append(robot)
+        # Spin about the vertical axis matters to nobody: the ball cannot turn.
+        ball = pymunk.Body(settings.ball.mass, float("inf"))
+        ball.position = (origin_x, origin_y)
+        round_ = pymunk.Circle(ball, BALL_RADIUS)
+        _finish(round_, 1.0, 1.0, _BALL, _HULL | _STATIC)
+        space.add(ball, round_)
+        bodies.append(ball)
+    return bodies
+
+
+def moment_of_inertia(mass: float) -> float:
+    """Return the moment of inertia of a robot, as of a disc [kg m^2]."""
+    return 0.5 * mass * ROBOT_RADIUS**2
+
+
+def _finish(shape: pymunk.Shape, restitution: float, friction: float, category: int, mask: int) -> None:
+    shape.elasticity = restitution
+    shape.friction = friction
+    shape.filter = pymunk.ShapeFilter(categories=category, mask=mask)
+
+
+def _hull(chord: float) -> list[tuple[float, float]]:
+    """Return the round part of a robot: a polygon around the disc, cut flat ``chord`` ahead of the centre.
+
+    Its edges touch the disc, so that a ball that has come to the disc meets it.
+    """
+    opening = acos(chord / ROBOT_RADIUS)
+    step = (2 * pi - 2 * opening) / _HULL_CORNERS
+    radius = ROBOT_RADIUS / cos(step / 2)
+    angles = [opening + step * (i + 0.5) for i in range(_HULL_CORNERS)]
+    ends = [(chord, radius * sin(opening)), (chord, -radius * sin(opening))]
+    return [ends[0], *[(radius * cos(angle), radius * sin(angle)) for angle in angles], ends[1]]
+
+
+def _plate(face: float) -> list[tuple[float, float]]:
+    """Return the flat front as a thin box, so that it can be of another material than the hull."""
+    half = (ROBOT_RADIUS**2 - face**2) ** 0.5
+    return [(face - 2 * _PLATE, -half), (face, -half), (face, half), (face - 2 * _PLATE, half)]

@@ -1,0 +1,90 @@
+"""What a robot does with the ball in its mouth: dribbler and kicker."""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin
+
+from robobt.sim.columns import BALL_R, CENTRING, FACE, HALF_MOUTH, KICK_DAMPING, KICK_MAX, PULL, SIDE
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+
+_GLUE_GAP = 2e-4
+"""Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
+
+
+@compiled
+def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -> bool:
+    """Return whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
+    px, py = ball[0] - robot[0], ball[1] - robot[1]
+    reach = p[FACE] + p[BALL_R] + depth
+    if px * px + py * py > reach * reach + p[HALF_MOUTH] * p[HALF_MOUTH]:
+        return False
+    c, s = cos(robot[2]), sin(robot[2])
+    ahead = c * px + s * py
+    aside = c * py - s * px
+    return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
+
+
+@compiled
+def hold(
+    ball: FloatArray,
+    velocity: FloatArray,
+    robot: FloatArray,
+    p: FloatArray,
+    most: float,
+    dt: float,
+    pull: FloatArray,
+) -> None:
+    """Add the limited acceleration with which a dribbler draws the ball to its place."""
+    c, s = cos(robot[2]), sin(robot[2])
+    px, py = ball[0] - robot[0], ball[1] - robot[1]
+    ahead = c * px + s * py
+    aside = c * py - s * px
+    place = p[FACE] + p[BALL_R]
+    # Velocity of the robot's point under the ball, in the robot's frame.
+    along = c * robot[3] + s * robot[4] - robot[5] * aside
+    across = c * robot[4] - s * robot[3] + robot[5] * ahead
+    ball_along = c * velocity[0] + s * velocity[1]
+    ball_across = c * velocity[1] - s * velocity[0]
+    # A ball carried on a circle needs the centripetal part on top.
+    want_along = (along + (place - ahead) / p[CENTRING] - ball_along) / dt
+    want_along -= robot[5] * robot[5] * ahead
+    want_across = (across - aside / p[CENTRING] - ball_across) / dt
+    limit_pull, limit_side = p[PULL], p[SIDE]
+    if most >= 0.0:
+        limit_pull = limit_side = most
+    want_along = min(max(want_along, -limit_pull), 0.0)
+    want_across = min(max(want_across, -limit_side), limit_side)
+    pull[0] += c * want_along - s * want_across
+    pull[1] += s * want_along + c * want_across
+
+
+@compiled
+def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
+    """Compute the velocity that keeps the ball where it sits in the mouth while the robot moves."""
+    c, s = cos(robot[2]), sin(robot[2])
+    px, py = ball[0] - robot[0], ball[1] - robot[1]
+    ahead = p[FACE] + p[BALL_R] + _GLUE_GAP
+    aside = c * py - s * px
+    turned = robot[2] + robot[5] * dt
+    c, s = cos(turned), sin(turned)
+    x = robot[0] + robot[3] * dt + c * ahead - s * aside
+    y = robot[1] + robot[4] * dt + s * ahead + c * aside
+    move[0] = (x - ball[0]) / dt
+    move[1] = (y - ball[1]) / dt
+
+
+@compiled
+def kick(velocity: FloatArray, spin: FloatArray, robot: FloatArray, speed: float, p: FloatArray) -> None:
+    """Send the ball along the heading; its sideways velocity stays, its spin is lost."""
+    c, s = cos(robot[2]), sin(robot[2])
+    forward = c * velocity[0] + s * velocity[1]
+    sideways = c * velocity[1] - s * velocity[0]
+    forward = speed - p[KICK_DAMPING] * forward
+    fast = hypot(forward, sideways)
+    if fast > p[KICK_MAX]:
+        forward *= p[KICK_MAX] / fast
+        sideways *= p[KICK_MAX] / fast
+    velocity[0] = c * forward - s * sideways
+    velocity[1] = s * forward + c * sideways
+    spin[0] = spin[1] = 0.0
