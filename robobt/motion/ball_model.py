@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class BallModel(BaseModel):
-    """A ball that slides, then rolls: what skills believe about the ball.
+    """A ball that slides, then rolls: what skills assume about the ball.
 
     A kicked ball slides with one deceleration down to ``switch_share`` of the
     speed it was kicked with, and rolls with a smaller one from there to rest.
@@ -23,27 +23,15 @@ class BallModel(BaseModel):
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
 
     def time_to(self, distance: float, speed: float) -> float:
-        """Seconds until a ball kicked at ``speed`` [m/s] has gone ``distance`` [m]; inf if it never does."""
-        if distance <= 0.0:
-            return 0.0
-        if speed <= 0.0:
-            return inf
-        slide = self.slide_deceleration
-        at_end = speed * speed - 2.0 * slide * distance
-        rolling = self.switch_share * speed
-        if at_end >= rolling * rolling:
-            return (speed - sqrt(at_end)) / slide
-        roll = self.roll_deceleration
-        left = distance - (speed * speed - rolling * rolling) / (2.0 * slide)
-        at_end = rolling * rolling - 2.0 * roll * left
-        if at_end < 0.0:
-            return inf
-        return (speed - rolling) / slide + (rolling - sqrt(at_end)) / roll
+        """Return the seconds in which a ball kicked at ``speed`` [m/s] goes ``distance`` [m], else inf."""
+        return self.time_for(distance, speed, self.switch_share * speed)
 
     def way_in(self, time: float, speed: float, rolling: float | None = None) -> float:
-        """Way [m] within ``time`` [s] of a ball seen at ``speed`` [m/s].
+        """Return how far a ball seen at ``speed`` goes within ``time`` [m].
 
         Args:
+            time: [s].
+            speed: [m/s].
             rolling: speed from which on it rolls [m/s]; None when it rolls already.
         """
         way = 0.0
@@ -56,7 +44,7 @@ class BallModel(BaseModel):
         return way + (speed - 0.5 * self.roll_deceleration * rolled) * rolled
 
     def time_for(self, way: float, speed: float, rolling: float | None = None) -> float:
-        """Seconds for ``way`` [m], the inverse of :meth:`way_in`; inf if the ball rests before."""
+        """Return the seconds for ``way`` [m], the inverse of :meth:`way_in`; inf if the ball rests before."""
         if way <= 0.0:
             return 0.0
         time = 0.0
@@ -69,19 +57,8 @@ class BallModel(BaseModel):
         at_end = speed * speed - 2.0 * self.roll_deceleration * way
         return time + (speed - sqrt(at_end)) / self.roll_deceleration if at_end >= 0.0 else inf
 
-    def speed_at(self, distance: float, speed: float) -> float:
-        """Speed [m/s] after ``distance`` [m] of a ball kicked at ``speed`` [m/s]; 0 where it has stopped."""
-        if distance <= 0.0:
-            return speed
-        rolling = self.switch_share * speed
-        at_end = speed * speed - 2.0 * self.slide_deceleration * distance
-        if at_end >= rolling * rolling:
-            return sqrt(at_end)
-        slid = (speed * speed - rolling * rolling) / (2.0 * self.slide_deceleration)
-        return sqrt(max(0.0, rolling * rolling - 2.0 * self.roll_deceleration * (distance - slid)))
-
     def kick_speed(self, distance: float, arrival_speed: float) -> float:
-        """Kick speed [m/s] with which the ball still has ``arrival_speed`` [m/s] after ``distance`` [m]."""
+        """Return the kick speed with which the ball has ``arrival_speed`` after ``distance`` [m/s, m]."""
         slide, roll, share = self.slide_deceleration, self.roll_deceleration, self.switch_share
         distance = max(0.0, distance)
         sliding = sqrt(arrival_speed * arrival_speed + 2.0 * slide * distance)

@@ -1,4 +1,4 @@
-"""Tells from the ball's changing speed whether it still slides."""
+"""Whether the ball still slides, from the change of its speed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.state import Frame
 
 _OLDEST = 0.2
-"""Frames farther apart say nothing about the deceleration [s]."""
+"""Frames farther apart allow no conclusion about the deceleration [s]."""
 _KICKED = 2.0
 """A ball that speeds up faster than this has been hit [m/s^2]."""
 _GUESS = 0.8
@@ -16,7 +16,7 @@ _GUESS = 0.8
 
 
 class BallWatch:
-    """Remembers the ball's speed from frame to frame.
+    """The ball's speed from frame to frame.
 
     A frame holds no spin, so a sliding ball and a rolling one look the same in
     it; over two frames the sliding one loses its speed several times as fast.
@@ -29,7 +29,7 @@ class BallWatch:
         self._rolling = 0.0
 
     def rolling_speed(self, frame: Frame) -> float:
-        """The speed [m/s] from which on the ball rolls: its own when it rolls already."""
+        """Return the speed [m/s] below which the ball rolls: its own when it already rolls."""
         model, speed = self._model, frame.ball.speed
         elapsed = frame.time - self._time
         if elapsed == 0.0:

@@ -40,6 +40,11 @@ def dribbling_limits(
 def settle(me: RobotState, period: float) -> RobotCommand:
     """Come to rest with the ball."""
     limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.hold_acceleration))
-    still = command(me, 0.0, 0.0, turn_rate(me, me.heading, limits, period), limits, period)
-    still.dribbler = True
-    return still
+    return turn_with_ball(me, me.heading, limits, period)
+
+
+def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: float) -> RobotCommand:
+    """Turn on the spot to ``heading`` [rad] with the ball in the dribbler."""
+    turn = command(me, 0.0, 0.0, turn_rate(me, heading, limits, period), limits, period)
+    turn.dribbler = True
+    return turn

@@ -9,10 +9,10 @@ MOST = 10.0
 
 
 def check_factor(speed: float) -> float:
-    """The factor itself.
+    """Return the factor itself.
 
     Raises:
-        ValueError: it is not above 0 and at most :data:`MOST`.
+        ValueError: the factor is not above 0 and at most :data:`MOST`.
     """
     if not 0.0 < speed <= MOST:
         raise ValueError(f"speed must be above 0 and at most {MOST:g}, not {speed}")
@@ -20,14 +20,14 @@ def check_factor(speed: float) -> float:
 
 
 class Pace:
-    """Limits to drive with, worked out once for each robot's limits.
+    """Limits to drive with, computed once for each robot's limits.
 
     Args:
         limits: how to drive; None takes the robot's own.
         speed: factor on the top speed and turning rate, above 0 and at most :data:`MOST`.
 
     Raises:
-        ValueError: such a factor it is not.
+        ValueError: the factor is out of that range.
     """
 
     def __init__(self, limits: RobotLimits | None, speed: float) -> None:
@@ -37,7 +37,7 @@ class Pace:
         self._scaled: RobotLimits | None = None
 
     def of(self, own: RobotLimits) -> RobotLimits:
-        """The limits to drive with for a robot whose own are ``own``."""
+        """Return the limits to drive with for a robot whose own are ``own``."""
         base = own if self._limits is None else self._limits
         if self._speed == 1.0:
             return base

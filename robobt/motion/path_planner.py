@@ -1,7 +1,7 @@
-"""Finds the next way-point around robots, ball and defence areas, and drives there.
+"""Find the next waypoint around robots, ball and defence areas, and drive there.
 
 The plan is made anew every tick and only its first leg is driven. Obstacles are
-circles; a blocked way leaves along the tangent of the first circle on it, on
+circles; a blocked path leaves along the tangent of the first circle on it, on
 the side with the shorter way round. Defence areas are passed by their corners.
 
 Source of the idea and the clearances: RoboBulls' published code (FPPA planner);
@@ -11,8 +11,9 @@ tangents, side choice and moving obstacles are robobt's.
 from __future__ import annotations
 
 from functools import lru_cache
-from math import acos, atan2, cos, hypot, inf, pi, sin, sqrt, tan
+from math import cos, hypot, inf, sqrt
 
+from robobt.motion.detour import Circle, detour, first_hit
 from robobt.motion.pilot import drive
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
@@ -32,17 +33,12 @@ ROBOT_GAP = 0.03
 BALL_GAP = 0.01
 """Gap to an avoided ball below which a way is blocked [m]. Source: RoboBulls' published code."""
 
-_DETOUR = 0.04
-"""How much wider than the blocking circle a detour is, so that the next plan finds it free [m]."""
 _AREA_GAP = 0.02
 _WALL_GAP = 0.02
 _LOOK_AHEAD = 0.4
 """Longest time an obstacle is moved ahead along its velocity [s]."""
 _CORNER_SLACK = 0.05
-"""How far a way-point may be cut or overshot [m]; decides the speed there."""
-_WIDEST_TURN = 0.9
-
-Circle = tuple[float, float, float]
+"""How far a waypoint may be cut or overshot [m]; decides the speed there."""
 
 
 def travel(
@@ -57,17 +53,20 @@ def travel(
     goalkeeper: bool = False,
     final_speed: float = 0.0,
 ) -> RobotCommand:
-    """:func:`~robobt.motion.pilot.drive` along a way that is free, within the rules.
+    """:func:`~robobt.motion.pilot.drive` along a free path, within the rules.
 
-    The target is first made one that may be driven to (:func:`allowed_target`).
+    A target that may not be driven to is replaced by :func:`allowed_target`.
     While the referee has stopped the game the robot keeps to the speed and, as
     in the opponents' restarts, to the distance from the ball that the rules ask.
 
     Args:
+        frame: what is on the field.
+        me: the robot to drive.
         target: where to [m].
-        heading: where the mouth shall point [rad].
+        heading: where the mouth is to point [rad].
         limits: how to drive; usually ``me.limits``.
-        avoid_robots, avoid_ball: what must not be touched on the way.
+        avoid_robots: whether to go round other robots.
+        avoid_ball: whether to go round the ball.
         goalkeeper: may enter the own defence area.
         final_speed: speed allowed at the target [m/s].
     """
@@ -77,7 +76,7 @@ def travel(
     goal = allowed_target(frame, me, target, goalkeeper=goalkeeper)
     if goal != target:
         final_speed = 0.0
-    point, speed = way_point(
+    point, speed = next_waypoint(
         frame, me, goal, avoid_robots=avoid_robots, avoid_ball=avoid_ball, goalkeeper=goalkeeper
     )
     return drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
@@ -85,18 +84,18 @@ def travel(
 
 @lru_cache(maxsize=256)
 def slowed(limits: RobotLimits, max_speed: float) -> RobotLimits:
-    """The same limits with a top speed of at most ``max_speed`` [m/s]."""
+    """Return the same limits with a top speed of at most ``max_speed`` [m/s]."""
     if limits.max_speed <= max_speed:
         return limits
     return limits.model_copy(update={"max_speed": max_speed})
 
 
 def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: bool = False) -> Point:
-    """The point nearest to ``target`` where the robot may stand.
+    """Return the point nearest to ``target`` where the robot may stand.
 
     That is inside the walls, outside the opponents' defence area, outside the
     own one unless it is the goalkeeper, and far enough from the ball while the
-    referee wants it so.
+    referee demands it.
     """
     field = frame.field
     x, y = target
@@ -115,7 +114,7 @@ def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: b
     return (x, y)
 
 
-def way_point(
+def next_waypoint(
     frame: Frame,
     me: RobotState,
     target: Point,
@@ -124,7 +123,7 @@ def way_point(
     avoid_ball: bool = False,
     goalkeeper: bool = False,
 ) -> tuple[Point, float]:
-    """The next point of a free way to ``target``, and the speed at which to pass it [m/s].
+    """Return the next point of a free path to ``target``, and the speed at which to pass it [m/s].
 
     The speed is 0 for ``target`` itself. An obstacle that the robot already
     overlaps, or that ``target`` lies in, blocks only ways that lead deeper into it.
@@ -139,7 +138,7 @@ def way_point(
             goal = (-corner[0], corner[1])
     corner_first = goal != target
     circles = _circles(frame, me, goal, avoid_robots, avoid_ball)
-    first = _first_hit(x, y, goal[0], goal[1], circles, not corner_first) if circles else None
+    first = first_hit(me.position, goal, circles, not corner_first) if circles else None
     if first is None:
         return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
     acceleration = min(me.limits.acceleration, me.limits.lateral_acceleration)
@@ -147,7 +146,7 @@ def way_point(
     least = inf
     speed = max(1.0, hypot(me.vx, me.vy))
     for side in (1.0, -1.0):
-        point, cost, arc = _detour(x, y, goal, first, side, circles, 4)
+        point, cost, arc = detour(me.position, goal, first, side, circles, 4)
         px, py = point
         gap = hypot(px - x, py - y)
         if gap > 0.0:
@@ -189,7 +188,7 @@ def _away_from_ball(frame: Frame, me: RobotState, x: float, y: float) -> Point:
 
 
 def _expelled(field: FieldGeometry, x: float, y: float, gap: float) -> Point:
-    """(x, y) moved out of the defence area at +x, grown by ``gap``, over its nearest edge."""
+    """Move (x, y) out of the defence area at +x, grown by ``gap``, over its nearest edge."""
     front = field.half_length - field.defense_depth - gap
     side = field.defense_width / 2 + gap
     if x <= front or abs(y) >= side:
@@ -200,7 +199,7 @@ def _expelled(field: FieldGeometry, x: float, y: float, gap: float) -> Point:
 
 
 def _around_area(field: FieldGeometry, x: float, y: float, target: Point, gap: float) -> Point:
-    """``target``, or the corner to go to first when the defence area at +x is in the way."""
+    """Return ``target``, or the corner to go to first when the defence area at +x is in the way."""
     gx, gy = target
     front = field.half_length - field.defense_depth - gap
     if x <= front and gx <= front:
@@ -229,22 +228,14 @@ def _open(field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper
 
 
 def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoid_ball: bool) -> list[Circle]:
-    """The obstacles near enough to matter, each where it will be when the robot gets there."""
+    """Return the obstacles near enough to matter, each where it will be when the robot gets there."""
     x, y = me.x, me.y
     reach = hypot(goal[0] - x, goal[1] - y) + 1.0
     pace = 1.0 / max(1.0, hypot(me.vx, me.vy))
     circles: list[Circle] = []
     if avoid_robots:
         radius = 2.0 * ROBOT_RADIUS + ROBOT_GAP
-        number = me.id
-        for robot in frame.own:
-            if robot.id != number:
-                ox, oy = robot.x, robot.y
-                gap = hypot(ox - x, oy - y)
-                if gap < reach:
-                    ahead = min(_LOOK_AHEAD, gap * pace)
-                    circles.append((ox + robot.vx * ahead, oy + robot.vy * ahead, radius))
-        for robot in frame.opponents:
+        for robot in frame.others(me.id):
             ox, oy = robot.x, robot.y
             gap = hypot(ox - x, oy - y)
             if gap < reach:
@@ -257,73 +248,3 @@ def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoi
         radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else BALL_GAP)
         circles.append((ball.x + ball.vx * ahead, ball.y + ball.vy * ahead, radius))
     return circles
-
-
-def _first_hit(
-    x: float, y: float, gx: float, gy: float, circles: list[Circle], goal_counts: bool
-) -> Circle | None:
-    """The circle that the segment enters first, shrunk to leave out the segment's ends."""
-    dx, dy = gx - x, gy - y
-    length = hypot(dx, dy)
-    if length < 1e-6:
-        return None
-    ux, uy = dx / length, dy / length
-    nearest = inf
-    hit: Circle | None = None
-    for cx, cy, radius in circles:
-        ox, oy = cx - x, cy - y
-        ahead = ox * ux + oy * uy
-        if ahead <= 0.0 or ahead >= length + radius:
-            continue
-        across = ox * uy - oy * ux
-        if across >= radius or across <= -radius:
-            continue
-        start = hypot(ox, oy)
-        if start < radius:
-            radius = start * 0.999
-        if goal_counts:
-            end = hypot(cx - gx, cy - gy)
-            if end < radius:
-                radius = end * 0.999
-        half_chord = radius * radius - across * across
-        if half_chord <= 0.0:
-            continue
-        entry = ahead - sqrt(half_chord)
-        if entry < length and entry < nearest:
-            nearest = entry
-            hit = (cx, cy, radius)
-    return hit
-
-
-def _detour(
-    x: float, y: float, goal: Point, circle: Circle, side: float, circles: list[Circle], depth: int
-) -> tuple[Point, float, float]:
-    """The first way-point round ``circle`` on one side (1 leaves it to the right, -1 to the left).
-
-    Returns:
-        the point where the tangents from start and goal meet, the length of the
-        way with a fine for what else is in it, and the angle turned there.
-    """
-    cx, cy, radius = circle
-    wide = radius + _DETOUR
-    sx, sy = x - cx, y - cy
-    gx, gy = goal[0] - cx, goal[1] - cy
-    start, end = hypot(sx, sy), hypot(gx, gy)
-    near, far = min(wide, start), min(wide, end)
-    turned = (atan2(sy, sx) - atan2(gy, gx)) * side % (2.0 * pi)
-    to_tangent = acos(near / start) if start > 0.0 else 0.0
-    arc = max(0.0, turned - to_tangent - (acos(far / end) if end > 0.0 else 0.0))
-    leg = sqrt(max(0.0, start * start - near * near))
-    cost = leg + wide * arc + sqrt(max(0.0, end * end - far * far))
-    tangent = atan2(-sy, -sx) + side * (pi / 2.0 - to_tangent)
-    reach = leg + near * tan(min(arc / 2.0, _WIDEST_TURN)) + 0.01
-    px, py = x + reach * cos(tangent), y + reach * sin(tangent)
-    if depth > 0:
-        others = [other for other in circles if other[0] != cx or other[1] != cy]
-        blocking = _first_hit(x, y, px, py, others, False)
-        if blocking is not None:
-            point, extra, bend = _detour(x, y, (px, py), blocking, side, others, depth - 1)
-            return (point, cost + extra - reach + 0.1, arc + bend)
-        if _first_hit(px, py, goal[0], goal[1], others, True) is not None:
-            cost += 0.2
-    return ((px, py), cost, arc)

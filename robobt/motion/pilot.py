@@ -1,4 +1,4 @@
-"""Drives a robot to a pose: a trapezoid in distance and one in angle, made for a control period.
+"""Drive a robot to a pose: a trapezoid in distance and one in angle, made for a control period.
 
 The shape is that of RoboBulls' published code (PilotOmni): speed by the square
 root of the distance left, the heading's own profile beside it, and the
@@ -41,18 +41,19 @@ def drive(
     period: float,
     final_speed: float = 0.0,
 ) -> RobotCommand:
-    """The command that brings ``me`` one control period nearer to a pose.
+    """Compute the command that brings ``me`` one control period nearer to a pose.
 
     An acceleration in ``limits`` at or above the robot's own is left to the
     robot, which knows its velocity without delay; a lower one is kept here, by
     asking for no velocity that lies too far from the present one.
 
     Args:
+        me: the robot.
         target: where to [m].
-        heading: where the mouth shall point [rad]; turned to on the way.
+        heading: where the mouth is to point [rad]; turned to on the way.
         limits: how to drive; usually ``me.limits``.
         period: time until the next command [s].
-        final_speed: speed allowed at the target [m/s], for way-points.
+        final_speed: speed allowed at the target [m/s], for waypoints.
     """
     dx, dy = target[0] - me.x, target[1] - me.y
     distance = hypot(dx, dy)
@@ -79,14 +80,18 @@ def drive(
 def command(
     me: RobotState, vx: float, vy: float, omega: float, limits: RobotLimits, period: float
 ) -> RobotCommand:
-    """A velocity in field coordinates as a command in the robot's frame.
+    """Turn a velocity in field coordinates into a command in the robot's frame.
 
     It is shortened to ``limits`` and turned back by half of what the robot will
     turn within the period, so that on average it points where it should.
 
     Args:
-        vx, vy: wanted at the end of the period, in field coordinates [m/s].
+        me: the robot.
+        vx: target velocity along x at the end of the period [m/s].
+        vy: target velocity along y at the end of the period [m/s].
         omega: turning rate [rad/s].
+        limits: how to drive.
+        period: time until the next command [s].
     """
     squared = vx * vx + vy * vy
     if squared > limits.max_speed * limits.max_speed:
@@ -100,7 +105,7 @@ def command(
 
 
 def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float) -> float:
-    """The turning rate to ask for now so as to end at ``heading`` [rad/s]."""
+    """Compute the turning rate to command now so as to end at ``heading`` [rad/s]."""
     error = wrap_angle(heading - me.heading)
     side = 1.0 if error >= 0.0 else -1.0
     rate = side * approach_speed(
@@ -120,7 +125,7 @@ def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float
 def approach_speed(
     distance: float, speed: float, cruise: float, acceleration: float, braking: float, period: float
 ) -> float:
-    """The highest speed at the end of a period from which one can still stop in time.
+    """Compute the highest speed at the end of a period from which the robot can still stop in time.
 
     The robot is taken to change to that speed at its limit and to hold it for
     the rest of the period. Unit of length is free: metres or radians.
@@ -129,7 +134,8 @@ def approach_speed(
         distance: what is left, not negative.
         speed: towards the target, now.
         cruise: most to return.
-        acceleration, braking: per s^2.
+        acceleration: per s^2.
+        braking: per s^2.
         period: [s].
     """
     v = speed if speed > 0.0 else 0.0
@@ -148,11 +154,12 @@ def approach_speed(
 
 
 def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
-    """Time to cover ``distance`` and stop there: the trapezoid optimum [s].
+    """Compute the time to cover ``distance`` and stop there: the trapezoid optimum [s].
 
     Args:
         distance: along a straight line [m].
         speed: towards the target at the start [m/s]; negative is away from it.
+        limits: how to drive.
     """
     a, b, cruise = limits.acceleration, limits.braking, limits.max_speed
     if speed < 0.0:
@@ -170,7 +177,7 @@ def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
 
 
 def along(forward: float, lateral: float, bearing: float) -> float:
-    """A limit in the direction ``bearing`` from the heading, between its forward and sideways values."""
+    """Return the limit along ``bearing`` from the heading, between its forward and sideways values."""
     if forward == lateral:
         return forward
     return 1.0 / hypot(cos(bearing) / forward, sin(bearing) / lateral)
@@ -186,10 +193,10 @@ def _turning_in(
     sideways: float,
     period: float,
 ) -> Point:
-    """The velocity ahead and across to ask for when the robot does not drive straight at its target.
+    """Compute the velocity ahead and across for a robot that does not drive straight at its target.
 
     Both parts share what the wheels can do in proportion to the time each needs.
-    Asking for the wanted speed ahead regardless would leave nothing to stop the
+    Commanding the target speed ahead regardless would leave nothing to stop the
     motion across, and the robot would circle its target for ever.
     """
     time_ahead = max(1e-6, travel_time(distance, ahead, limits))
@@ -198,10 +205,10 @@ def _turning_in(
     ratio = _ACROSS_FIRST * time_across / time_ahead
     share_ahead = 1.0 / sqrt(1.0 + ratio * ratio)
     share_across = ratio * share_ahead
-    wanted = approach_speed(
+    target = approach_speed(
         distance, ahead, limits.max_speed, acceleration * share_ahead, braking * share_ahead, period
     )
-    change = wanted - ahead
+    change = target - ahead
     rate = acceleration if change > 0.0 and ahead >= 0.0 else braking
     step = min(abs(change), rate * share_ahead * period)
     step_across = min(drift, sideways * share_across * period)

@@ -1,4 +1,4 @@
-"""Drives into the ball along a line, so that a kick on contact goes along it."""
+"""Drive into the ball along a line, so that a kick on contact goes along it."""
 
 from __future__ import annotations
 
@@ -24,13 +24,15 @@ _SHARES = (0.3, 0.9)
 def run_up(
     me: RobotState, ball: BallState, facing: float, limits: RobotLimits, period: float
 ) -> RobotCommand:
-    """One tick of driving through the ball along ``facing``, no sooner than the robot is on that line.
+    """Drive through the ball along ``facing`` for one tick, no sooner than the robot is on that line.
 
     The motion is split along and across the line, each with its own braking
     profile, and is relative to the ball, which may roll. The robot has to be
     behind the ball already.
 
     Args:
+        me: the robot.
+        ball: the ball.
         facing: direction of the line through the ball [rad].
         limits: how to drive.
         period: time until the next command [s].

@@ -26,7 +26,7 @@ VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch,), {ShotRater: RATERS}, St
 
 
 def load_play(path: str | Path) -> FilePlay:
-    """A play from a file (.yaml, .xml), to be called like those of :data:`~robobt.plays.base.PLAYS`.
+    """Load a play from a file (.yaml, .xml), to be called like those of :data:`~robobt.plays.base.PLAYS`.
 
     Raises:
         TreeFileError: one line that names the file, the line and what is wrong.
@@ -35,16 +35,17 @@ def load_play(path: str | Path) -> FilePlay:
 
 
 def is_play_file(name: str) -> bool:
-    """Whether a play's name is a file's (.yaml, .yml, .xml)."""
+    """Return whether a play's name is a file's (.yaml, .yml, .xml)."""
     return name.endswith(FILE_ENDINGS)
 
 
 def find_play(name: str, folder: str | Path = ".") -> Play:
-    """A play by its name; where that ends like a file's (.yaml, .yml, .xml), the file's.
+    """Return a play by its name, or a file's play where the name ends in .yaml, .yml or .xml.
 
     A file is read again only when it has changed.
 
     Args:
+        name: of a play, or of a file.
         folder: what the paths of files are relative to.
 
     Raises:
@@ -67,7 +68,7 @@ def _load_once(path: Path, _changed: int, _size: int) -> Play:
 
 
 def tree_yaml(root: Behaviour, name: str) -> str:
-    """A tree as the YAML of a play.
+    """Write a tree as the YAML of a play.
 
     Raises:
         ValueError: a node is not registered, or has a parameter that is no plain data.
@@ -76,7 +77,7 @@ def tree_yaml(root: Behaviour, name: str) -> str:
 
 
 def tree_xml(root: Behaviour, name: str) -> str:
-    """A tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
+    """Write a tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
 
     Raises:
         ValueError: as :func:`tree_yaml`, or XML cannot say it.

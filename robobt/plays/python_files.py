@@ -51,7 +51,7 @@ def import_file(path: str | Path) -> ModuleType:
 
 
 def imported_files() -> tuple[Path, ...]:
-    """The files that :func:`import_file` has run in this process, in that order."""
+    """Return the files that :func:`import_file` has run in this process, in that order."""
     return tuple(_imported)
 
 
@@ -75,7 +75,7 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
 
 
 def _free_name(path: Path) -> str:
-    """A name that no installed module has; the same in a process that runs the same files."""
+    """Return a name that no installed module has; the same in a process that runs the same files."""
     stem = path.stem.replace(".", "_")
     name = f"file_{stem}"
     number = 1

@@ -21,12 +21,13 @@ def take_shot(
 ) -> Behaviour:
     """Carry the ball to a place and shoot from there at a point of the goal line, whatever the chance.
 
-    Shot data must not be picked by the one who shall learn from it: this shooter
+    Shot data must not be selected by what will be learned from it: this shooter
     judges nothing.
 
     Args:
         target_y: of the point on the opponent's goal line [m].
-        place_x, place_y: from where [m]; a ball that is there is not carried.
+        place_x: where to shoot from, its x [m]; a ball that is there is not carried.
+        place_y: its y [m].
         dribble_speed: top speed with the ball [m/s].
         tolerance: angle by which the kick may be off [rad]; the default is RoboBulls' degree.
         shot_speed: kick speed of the shot [m/s]; None is the kick's own.

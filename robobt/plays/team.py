@@ -134,7 +134,7 @@ def defender(
 
 @PLAYS.register("keeper")
 def keeper(*, speed: float = 1.0) -> Behaviour:
-    """The goalkeeper, who obeys the referee too.
+    """Keep goal as ``goalkeeper`` does, within the referee's commands.
 
     Args:
         speed: factor on its top speed.
@@ -157,7 +157,7 @@ def when(name: str, *steps: Behaviour) -> Behaviour:
 
 
 def ball_dead() -> Behaviour:
-    """The ball is not in play."""
+    """Succeed while the ball is not in play."""
     return Inverter("ball is dead", BallInPlay())
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import hypot, radians
-from typing import ClassVar
 
 from robobt.motion.pace import Pace
 from robobt.motion.path_planner import allowed_target, travel
@@ -27,7 +26,7 @@ class GoToPose(Skill):
 
     Args:
         target: where to [m]; None takes ``store.target``.
-        heading: where the mouth shall point [rad]; None keeps the present heading.
+        heading: where the mouth is to point [rad]; None keeps the present heading.
         face_ball: turn to the ball instead of to ``heading``.
         tolerance: distance that counts as there [m].
         heading_tolerance: angle that counts as there [rad].
@@ -37,7 +36,7 @@ class GoToPose(Skill):
         goalkeeper: may enter the own defence area.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("target",)
+    reads = ("target",)
 
     def __init__(
         self,

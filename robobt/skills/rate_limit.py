@@ -1,10 +1,10 @@
-"""Looking again only every so often, in the world's own time."""
+"""Doing something no more often than every so often, in the world's own time."""
 
 from __future__ import annotations
 
 
-class Cadence:
-    """Says when something is due that need not be done every tick.
+class RateLimit:
+    """A limit on how often something is done that need not be done every tick.
 
     Args:
         every: least time from one to the next [s]; 0 is every tick.
@@ -19,7 +19,7 @@ class Cadence:
         self._last: float | None = None
 
     def due(self, time: float) -> bool:
-        """Whether it is due at ``time`` [s]; if so, the next is due ``every`` later.
+        """Return whether it is due at ``time`` [s]; if so, the next is due ``every`` later.
 
         A clock that runs backwards is a new match: due at once.
         """

@@ -43,7 +43,7 @@ class GoalLine:
 
 @dataclass(slots=True, frozen=True)
 class Pass:
-    """A chosen pass: the receiver's number, where it shall go [m], ball speed [m/s], score 0 to 1."""
+    """A chosen pass: the receiver's number, its target [m], ball speed [m/s], score 0 to 1."""
 
     receiver: int
     target: Point
@@ -92,12 +92,12 @@ class Store:
     Attributes:
         frame: what is on the field, from the own team's side.
         me: the robot this tree moves.
-        command: what it will be told after the tick.
+        command: what is sent to it after the tick.
         rng: the tree's generator; the only randomness a leaf may use.
         team: what the team shares.
         target: where a skill wants the robot or the ball to go [m].
         shot: the shot selected last, None when there is none.
-        goal_line: what a rater that judges every point of it thought of it then, None without one.
+        goal_line: how a rater that judges every point of it did so then, None without one.
         pass_: the pass selected last, None when there is none.
     """
 

@@ -27,28 +27,26 @@ def rolled(model: BallModel, speed: float, time: float) -> tuple[float, float]:
 @pytest.mark.parametrize("speed", [1.0, 3.0, 6.5])
 @pytest.mark.parametrize("time", [0.1, 0.6, 1.5])
 def test_travel_time_inverts_the_integrated_motion(speed: float, time: float) -> None:
-    distance, end_speed = rolled(BALL, speed, time)
+    distance, _ = rolled(BALL, speed, time)
     assert BALL.time_to(distance, speed) == pytest.approx(time, rel=2e-3)
-    assert BALL.speed_at(distance, speed) == pytest.approx(end_speed, rel=2e-3)
 
 
 @given(distance=st.floats(0.0, 12.0), arrival=st.floats(0.2, 5.0))
 def test_a_ball_kicked_for_an_arrival_speed_arrives_with_it(distance: float, arrival: float) -> None:
     speed = BALL.kick_speed(distance, arrival)
-    assert BALL.speed_at(distance, speed) == pytest.approx(arrival, rel=1e-6)
+    _, end_speed = rolled(BALL, speed, BALL.time_to(distance, speed))
+    assert end_speed == pytest.approx(arrival, rel=5e-3, abs=2e-3)
 
 
 def test_a_ball_never_passes_the_point_where_it_rests() -> None:
     reach = BALL.kick_speed(3.0, 0.0)
     assert BALL.time_to(2.999, reach) < inf
     assert BALL.time_to(3.001, reach) == inf
-    assert BALL.speed_at(3.001, reach) == 0.0
     assert BALL.time_to(1.0, 0.0) == inf
 
 
 def test_no_distance_takes_no_time() -> None:
     assert BALL.time_to(0.0, 0.0) == 0.0
-    assert BALL.speed_at(0.0, 2.0) == 2.0
 
 
 def test_skills_believe_in_the_ball_of_the_default_simulator() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion.path_planner import allowed_target, slowed, travel, way_point
+from robobt.motion.path_planner import allowed_target, next_waypoint, slowed, travel
 from robobt.world import (
     DIVISION_A,
     DIVISION_B,
@@ -35,7 +35,7 @@ FAR_BALL = (0.0, 2.9)
 
 
 def leg(me: RobotState, target: Point, *others: RobotState, **options: bool) -> tuple[Point, float]:
-    return way_point(frame(me, FAR_BALL, opponents=others), me, target, **options)
+    return next_waypoint(frame(me, FAR_BALL, opponents=others), me, target, **options)
 
 
 def driven(
@@ -112,15 +112,15 @@ def test_a_target_next_to_a_robot_can_be_reached() -> None:
 def test_own_robots_are_obstacles_too_and_robots_can_be_ignored() -> None:
     me, mate = robot(-1.0, 0.0), robot(0.0, 0.0, number=1)
     world = frame(me, FAR_BALL, mates=(mate,))
-    assert way_point(world, me, (1.0, 0.0))[0] != (1.0, 0.0)
-    assert way_point(world, me, (1.0, 0.0), avoid_robots=False) == ((1.0, 0.0), 0.0)
+    assert next_waypoint(world, me, (1.0, 0.0))[0] != (1.0, 0.0)
+    assert next_waypoint(world, me, (1.0, 0.0), avoid_robots=False) == ((1.0, 0.0), 0.0)
 
 
 def test_the_ball_is_an_obstacle_when_asked() -> None:
     me = robot(-1.0, 0.0)
     world = frame(me, ball=(0.0, 0.0))
-    assert way_point(world, me, (1.0, 0.0)) == ((1.0, 0.0), 0.0)
-    point, _ = way_point(world, me, (1.0, 0.0), avoid_ball=True)
+    assert next_waypoint(world, me, (1.0, 0.0)) == ((1.0, 0.0), 0.0)
+    point, _ = next_waypoint(world, me, (1.0, 0.0), avoid_ball=True)
     assert segment_distance((0.0, 0.0), me.position, point) > ROBOT_RADIUS + 0.0215
 
 
@@ -137,7 +137,7 @@ def test_defence_areas_are_passed_round_their_corners(x: float) -> None:
 def test_the_goalkeeper_drives_through_its_area() -> None:
     me = robot(-4.0, 2.0)
     world = frame(me, FAR_BALL)
-    assert way_point(world, me, (-4.0, -2.0), goalkeeper=True) == ((-4.0, -2.0), 0.0)
+    assert next_waypoint(world, me, (-4.0, -2.0), goalkeeper=True) == ((-4.0, -2.0), 0.0)
     assert allowed_target(world, me, (-4.4, 0.0), goalkeeper=True) == (-4.4, 0.0)
 
 
@@ -170,7 +170,7 @@ def test_during_a_stop_it_is_slow_and_goes_round_the_ball() -> None:
     world = frame(me, ball=(0.0, 0.0), game=STOPPED)
     order = travel(world, me, (2.0, 0.0), 0.0, me.limits)
     assert hypot(order.vx, order.vy) <= 1.5 + 1e-9
-    point, _ = way_point(world, me, (2.0, 0.0))
+    point, _ = next_waypoint(world, me, (2.0, 0.0))
     assert segment_distance((0.0, 0.0), me.position, point) > 0.5 + ROBOT_RADIUS
 
 

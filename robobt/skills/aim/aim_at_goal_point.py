@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
@@ -20,7 +18,7 @@ class AimAtGoalPoint(Skill):
         tolerance: half angle around it that still counts as this shot [rad].
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("shot",)
+    writes = ("shot",)
 
     def __init__(self, *, y: float = 0.0, tolerance: float = 0.02, name: str = "") -> None:
         super().__init__(name)

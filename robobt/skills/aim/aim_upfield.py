@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import atan2, cos, hypot, inf, radians, sin
-from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
@@ -29,7 +28,7 @@ class AimUpfield(Skill):
         reach: length of the lane [m].
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("shot",)
+    writes = ("shot",)
 
     def __init__(self, *, reach: float = 2.5, name: str = "") -> None:
         super().__init__(name)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from robobt.motion.dribbling import dribbling_limits
-from robobt.motion.pilot import command, turn_rate
+from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import direction, wrap_angle
@@ -50,7 +49,7 @@ class DrawGoalkeeper(Skill):
         self._began = self._last = -inf
 
     def on_start(self) -> None:
-        """It has yet to point at the post."""
+        """Begin the wait at a post anew."""
         self._there_since = inf
 
     def on_running(self) -> Status:
@@ -71,9 +70,7 @@ class DrawGoalkeeper(Skill):
         elif frame.time - self._there_since >= self.hold - 1e-9:
             self._side = -self._side
             self._there_since = inf
-        omega = turn_rate(me, self._aim(self._side), self._limits, frame.period)
-        self.store.command = command(me, 0.0, 0.0, omega, self._limits, frame.period)
-        self.store.command.dribbler = True
+        self.store.command = turn_with_ball(me, self._aim(self._side), self._limits, frame.period)
         return self.run("to the left post" if self._side > 0.0 else "to the right post")
 
     def _aim(self, side: float) -> float:

@@ -14,7 +14,7 @@ class PassIsOpen(Skill):
     Rates as :class:`SelectPass` does and writes nothing.
 
     Args:
-        rater: judges the passes; its settings say what counts and how much.
+        rater: judges the passes; its settings define what counts and how much.
         min_score: worst score still accepted, 0 to 1.
     """
 

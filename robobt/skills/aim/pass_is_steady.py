@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
-from robobt.skills.steadiness import Steadiness
+from robobt.skills.debounce import Debounce
 from robobt.skills.store import Pass
 from robobt.tree import Status
 
@@ -24,12 +22,12 @@ class PassIsSteady(Skill):
         fall: longest gap in a pass that has stood as long [s].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("pass_",)
-    writes: ClassVar[tuple[str, ...]] = ("pass_",)
+    reads = ("pass_",)
+    writes = ("pass_",)
 
     def __init__(self, *, rise: float = 0.1, fall: float = 0.2, name: str = "") -> None:
         super().__init__(name)
-        self._steady = Steadiness(rise, fall)
+        self._steady = Debounce(rise, fall)
         self._last: Pass | None = None
 
     def on_running(self) -> Status:

@@ -58,7 +58,7 @@ class PassRater(BaseModel):
         return make_rater(value) if isinstance(value, str) and value in RATERS else value
 
     def rate_all(self, frame: Frame, me: RobotState) -> list[Pass]:
-        """Every possible pass of ``me`` from where the ball lies, the best first."""
+        """Return every possible pass of ``me`` from where the ball lies, the best first."""
         origin = frame.ball.position
         receivers = self._receivers(frame, me)
         if not receivers:
@@ -79,13 +79,14 @@ class PassRater(BaseModel):
         return sorted(passes, key=_rank)
 
     def head_starts(self, frame: Frame, targets: Sequence[Point], speeds: Sequence[float]) -> list[float]:
-        """Least time by which the ball of each pass comes before any opponent [s].
+        """Compute the least time by which the ball of each pass comes before any opponent [s].
 
         Looked at in five points of the lane; negative where an opponent could be
         there first. An opponent goes on as it moves for its reaction time and then
         accelerates straight to the point, which it passes at any speed.
 
         Args:
+            frame: what is on the field.
             targets: ends of the passes [m].
             speeds: their kick speeds [m/s].
         """
@@ -142,7 +143,7 @@ class PassRater(BaseModel):
 
 
 def resting_point(robot: RobotState) -> Point:
-    """Where the robot comes to rest if it brakes from now on [m]."""
+    """Return where the robot comes to rest if it brakes from now on [m]."""
     stretch = robot.speed / (2.0 * robot.limits.braking)
     return (robot.x + stretch * robot.vx, robot.y + stretch * robot.vy)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Pass
@@ -30,7 +28,7 @@ class SelectClearance(Skill):
         lane: half width of a lane that is free [m].
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("pass_", "shot")
+    writes = ("pass_", "shot")
 
     def __init__(self, *, lane: float = ROBOT_RADIUS + BALL_RADIUS + 0.03, name: str = "") -> None:
         super().__init__(name)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.aim.pass_rater import PassRater
 from robobt.skills.base import Skill, skill
-from robobt.skills.rate_limit import Cadence
+from robobt.skills.rate_limit import RateLimit
 from robobt.skills.store import Pass
 from robobt.tree import Status
 
@@ -19,16 +17,16 @@ class SelectPass(Skill):
     ``pass_`` is None.
 
     Args:
-        rater: judges the passes; its settings say what counts and how much.
+        rater: judges the passes; its settings define what counts and how much.
         min_score: worst score still accepted, 0 to 1.
         keep: stay with the last receiver while it scores at most this much worse
             than the best.
         every: time from one look to the next [s]; in between the choice stands.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("pass_",)
-    writes: ClassVar[tuple[str, ...]] = ("pass_",)
-    optional: ClassVar[tuple[str, ...]] = ("pass_",)
+    reads = ("pass_",)
+    writes = ("pass_",)
+    optional = ("pass_",)
 
     def __init__(
         self,
@@ -43,7 +41,7 @@ class SelectPass(Skill):
         self.rater = rater or PassRater()
         self.min_score = min_score
         self.keep = keep
-        self._look = Cadence(every)
+        self._look = RateLimit(every)
         self._choice: Pass | None = None
         self._remark = ""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.aim.raters import ShotRater, make_rater
 from robobt.skills.aim.raters.goal_line import judged_goal_line
 from robobt.skills.base import Skill, skill
@@ -17,8 +15,8 @@ class SelectShot(Skill):
     """Rate the shots from where the ball lies and write the best one to ``shot``.
 
     SUCCESS when there is one good enough. FAILURE otherwise, with the reason, and
-    ``shot`` is None. What a rater with an opinion on every point of the goal line thinks of
-    it goes to ``goal_line``, to be recorded and shown.
+    ``shot`` is None. Where the rater judges every point of the goal line, its judgement
+    goes to ``goal_line``, to be recorded and shown.
 
     Args:
         rater: name of a shot rater, or a rater with settings of its own.
@@ -30,9 +28,9 @@ class SelectShot(Skill):
             like ones.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot",)
-    writes: ClassVar[tuple[str, ...]] = ("shot", "goal_line")
-    optional: ClassVar[tuple[str, ...]] = ("shot",)
+    reads = ("shot",)
+    writes = ("shot", "goal_line")
+    optional = ("shot",)
 
     def __init__(
         self,
@@ -72,7 +70,7 @@ class SelectShot(Skill):
 
 
 def _stay(shots: list[Shot], last: Shot, origin: Point, worst: float) -> Shot:
-    """The best shot, unless ``last`` aims into another opening that scores at least ``worst``."""
+    """Return the best shot, unless ``last`` aims into another opening that scores at least ``worst``."""
     aim = direction(origin, last.target)
     for shot in shots:
         if shot.score < worst:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
-from robobt.skills.steadiness import Steadiness
+from robobt.skills.debounce import Debounce
 from robobt.skills.store import Shot
 from robobt.tree import Status
 
@@ -24,12 +22,12 @@ class ShotIsSteady(Skill):
         fall: longest gap in a shot that has stood as long [s].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot",)
-    writes: ClassVar[tuple[str, ...]] = ("shot",)
+    reads = ("shot",)
+    writes = ("shot",)
 
     def __init__(self, *, rise: float = 0.1, fall: float = 0.2, name: str = "") -> None:
         super().__init__(name)
-        self._steady = Steadiness(rise, fall)
+        self._steady = Debounce(rise, fall)
         self._last: Shot | None = None
 
     def on_running(self) -> Status:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from math import cos, hypot
-from typing import ClassVar
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
-from robobt.motion.path_planner import way_point
+from robobt.motion.path_planner import next_waypoint
 from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
@@ -36,7 +35,7 @@ class DribbleTo(Skill):
             the rules allow 1 m. None is any distance.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("target",)
+    reads = ("target",)
 
     def __init__(
         self,
@@ -58,7 +57,7 @@ class DribbleTo(Skill):
         self._last_held = 0.0
 
     def on_start(self) -> None:
-        """The ball counts as taken where it is now."""
+        """Take the ball's present place as the start of the carry."""
         self._taken_at = None
         self._last_held = self.frame.time
 
@@ -87,7 +86,7 @@ class DribbleTo(Skill):
 
     def _carry(self, target: Point) -> None:
         frame, me, limits = self.frame, self.me, self.limits
-        point, speed_there = way_point(frame, me, target)
+        point, speed_there = next_waypoint(frame, me, target)
         heading = direction(me.position, point)
         dx, dy = point[0] - me.x, point[1] - me.y
         gap = hypot(dx, dy)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
-from typing import ClassVar, Literal
+from typing import Literal
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.pace import Pace
@@ -36,13 +35,13 @@ _REACHABLE = 0.03
 _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
 _SURE = 0.8
-"""Share of its braking that is reckoned with."""
+"""Share of its braking that is relied on."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 
 
 @dataclass(slots=True, frozen=True)
 class Approach:
-    """What an approach is asked for.
+    """The task of an approach.
 
     Attributes:
         meeting: where the ball can be met [m].
@@ -76,8 +75,8 @@ class GoToBall(Skill):
     heading, so that approach and pick-up do not take turns.
 
     A trained policy hands over where it was trained to end: by the contact rule
-    in its model card, and from any side, so that ``approach`` says nothing to it. Should
-    it answer something that is no action, the skill fails and the robot stops.
+    in its model card, and from any side, so that it ignores ``approach``. When
+    its answer is no valid action, the skill fails and the robot stops.
 
     Args:
         policy: what decides the motion, by name: "geometric", or another of
@@ -90,11 +89,11 @@ class GoToBall(Skill):
         goalkeeper: may enter the own defence area.
 
     Raises:
-        ValueError: no policy has that name, its model cannot be used, or no such approach.
+        ValueError: no policy has that name, its model cannot be used, or there is no such approach.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot", "target")
-    optional: ClassVar[tuple[str, ...]] = ("shot", "target")
+    reads = ("shot", "target")
+    optional = ("shot", "target")
 
     def __init__(
         self,
@@ -146,7 +145,7 @@ class GoToBall(Skill):
         )
 
     def _facing(self, meeting: Point) -> float | None:
-        """The direction in which to come to the ball; None for any, as to a ball that lies at a wall."""
+        """Return the direction in which to come to the ball; None for any, as to a ball at a wall."""
         if self.approach == "nearest":
             return None
         store = self.store
@@ -161,10 +160,10 @@ class GoToBall(Skill):
 
 
 @POLICIES.register("geometric")
-def geometric(store: Store, wanted: Approach) -> RobotCommand:
+def geometric(store: Store, approach: Approach) -> RobotCommand:
     """Drive to the place beside the ball by the planned way, facing it."""
     frame, me = store.frame, store.me
-    meeting, facing = wanted.meeting, wanted.facing
+    meeting, facing = approach.meeting, approach.facing
     bearing = direction(me.position, meeting)
     heading = direction(me.position, frame.ball.position)
     round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
@@ -175,15 +174,15 @@ def geometric(store: Store, wanted: Approach) -> RobotCommand:
         me,
         beside(meeting, bearing if facing is None else facing),
         heading,
-        wanted.limits,
+        approach.limits,
         avoid_ball=round_it,
-        goalkeeper=wanted.goalkeeper,
+        goalkeeper=approach.goalkeeper,
         final_speed=0.0 if round_it else _ARRIVAL_SPEED,
     )
 
 
 class LearnedApproach:
-    """An approach that a trained policy decides, within the limits that it is asked to keep.
+    """An approach that a trained policy decides, within given limits.
 
     It does not come closer to the ball faster than it can still brake to the speed at
     which the robot's dribbler takes it: policies are trained to arrive, not to stop.
@@ -203,13 +202,13 @@ class LearnedApproach:
         self._control = LearnedControl(model, skill="GoToBall")
         self.reached = _reached(self._control.card.environment.get("contact"))
 
-    def __call__(self, store: Store, wanted: Approach) -> RobotCommand:
-        """The command of one tick.
+    def __call__(self, store: Store, approach: Approach) -> RobotCommand:
+        """Compute the command of one tick.
 
         Raises:
-            PolicyError: the policy answers what is no action.
+            PolicyError: the policy's answer is no valid action.
         """
-        command, limits = self._control.decide(store.frame, store.me), wanted.limits
+        command, limits = self._control.decide(store.frame, store.me), approach.limits
         speed = hypot(command.vx, command.vy)
         fastest = min(limits.max_speed, _closing_speed(store))
         if speed > fastest:
@@ -220,7 +219,7 @@ class LearnedApproach:
 
 
 def _closing_speed(store: Store) -> float:
-    """Speed from which the robot can brake to what its dribbler takes before it meets the ball [m/s]."""
+    """Return the speed from which the robot can brake to what its dribbler takes before contact [m/s]."""
     frame, me = store.frame, store.me
     limits, ball = me.limits, frame.ball
     way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
@@ -240,23 +239,18 @@ def _reached(contact: object) -> tuple[float, float]:
 
 
 @POLICIES.register("ddpg")
-def ddpg(store: Store, wanted: Approach) -> RobotCommand:
-    """Drive as the shipped model says that was trained with DDPG: straight at the ball, from any side."""
-    return _shipped()(store, wanted)
-
-
-@lru_cache(maxsize=1)
-def _shipped() -> LearnedApproach:
-    return LearnedApproach(SHIPPED["ddpg"])
+def ddpg(store: Store, approach: Approach) -> RobotCommand:
+    """Drive by the shipped model that was trained with DDPG: straight at the ball, from any side."""
+    return LearnedApproach(SHIPPED["ddpg"])(store, approach)
 
 
 def beside(ball: Point, facing: float) -> Point:
-    """Where a robot stands that looks at ``ball`` along ``facing`` [rad], before it takes it [m]."""
+    """Return where a robot stands that faces ``ball`` along ``facing`` [rad], before it takes it [m]."""
     return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))
 
 
 def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
-    """Where the ball will be when the robot gets there, as if it rolled [m]."""
+    """Predict where a rolling ball will be when the robot gets there [m]."""
     ball = frame.ball
     speed = ball.speed
     if speed < 0.05:

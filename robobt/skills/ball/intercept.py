@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, inf, sin
 
-from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
 from robobt.motion.pace import Pace
 from robobt.motion.path_planner import travel
@@ -30,19 +30,18 @@ _HORIZON = 4.0
 
 
 def earliest_meeting(
-    frame: Frame,
-    me: RobotState,
-    limits: RobotLimits,
-    rolling: float,
-    model: BallModel = DEFAULT_BALL,
+    frame: Frame, me: RobotState, limits: RobotLimits, rolling: float
 ) -> tuple[Point, float]:
-    """Where the ball can be met soonest and when [m, s from now].
+    """Find where the ball can be met soonest and when [m, s from now].
 
     The ball is followed along its line until the robot, by the trapezoid on the
     straight line, can stand behind it there in time; if it never can, the point
     where the ball comes to rest or leaves the field.
 
     Args:
+        frame: what is on the field.
+        me: the robot.
+        limits: how it drives.
         rolling: speed at which the ball begins to roll [m/s].
     """
     ball = frame.ball
@@ -52,7 +51,7 @@ def earliest_meeting(
     before = late = 0.0
     time = 0.0
     while True:
-        way = min(most, model.way_in(time, speed, rolling))
+        way = min(most, DEFAULT_BALL.way_in(time, speed, rolling))
         point = (ball.x + way * ux, ball.y + way * uy)
         late = _arrival(me, point, ux, uy, limits) - time
         if late <= 0.0 or way >= most or time >= _HORIZON:
@@ -63,7 +62,7 @@ def earliest_meeting(
         return (point, time)
     for _ in range(4):
         middle = 0.5 * (before + time)
-        way = min(most, model.way_in(middle, speed, rolling))
+        way = min(most, DEFAULT_BALL.way_in(middle, speed, rolling))
         trial = (ball.x + way * ux, ball.y + way * uy)
         if _arrival(me, trial, ux, uy, limits) <= middle:
             time, point = middle, trial
@@ -75,9 +74,12 @@ def earliest_meeting(
 def meet(
     frame: Frame, me: RobotState, limits: RobotLimits, rolling: float, *, goalkeeper: bool = False
 ) -> RobotCommand:
-    """One tick of meeting the ball: drive onto its line, face it, and take it once it is near and slow.
+    """Meet the ball for one tick: drive onto its line, face it, and take it once it is near and slow.
 
     Args:
+        frame: what is on the field.
+        me: the robot.
+        limits: how to drive.
         rolling: speed at which the ball begins to roll [m/s].
         goalkeeper: may enter the own defence area.
     """
@@ -144,7 +146,7 @@ def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLi
 
 
 def _way_to_border(field: FieldGeometry, ball: BallState, ux: float, uy: float) -> float:
-    """How far the ball rolls along (ux, uy) until it is out of the field [m]."""
+    """Compute how far the ball rolls along (ux, uy) until it is out of the field [m]."""
     way = inf
     if ux != 0.0:
         way = ((field.half_length if ux > 0.0 else -field.half_length) - ball.x) / ux

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import atan2, cos, radians, sin
-from typing import ClassVar, Literal
+from typing import Literal
 
-from robobt.motion.dribbling import dribbling_limits
+from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.pace import Pace
-from robobt.motion.path_planner import allowed_target, travel, way_point
-from robobt.motion.pilot import command, turn_rate
+from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
@@ -85,8 +84,8 @@ class KickToTarget(Skill):
         ValueError: no such style.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
-    writes: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("shot", "pass_")
+    writes = ("team",)
 
     def __init__(
         self,
@@ -118,7 +117,7 @@ class KickToTarget(Skill):
         self._was_near = False
 
     def needs(self) -> list[tuple[str, ...]]:
-        """A shot or a pass, unless it has been told where to kick."""
+        """Require a shot or a pass, unless ``target`` is given."""
         return [("shot", "pass_")] if self.target is None else []
 
     def on_start(self) -> None:
@@ -172,11 +171,8 @@ class KickToTarget(Skill):
         )
 
     def _turn_with_ball(self, order: _Order) -> None:
-        me, limits, period = self.me, self._carry, self.frame.period
-        wanted = direction(self.ball.position, order.target)
-        omega = turn_rate(me, wanted, limits, period)
-        self.store.command = command(me, 0.0, 0.0, omega, limits, period)
-        self.store.command.dribbler = True
+        heading = direction(self.ball.position, order.target)
+        self.store.command = turn_with_ball(self.me, heading, self._carry, self.frame.period)
 
     def _come_from_behind(self, order: _Order) -> None:
         frame, me, ball = self.frame, self.me, self.ball
@@ -200,7 +196,7 @@ class KickToTarget(Skill):
         heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))
         if in_line and not at_wall and back < _RUN_UP_DISTANCE:
             through = (x + _THROUGH * ux, y + _THROUGH * uy)
-            if way_point(frame, me, through, goalkeeper=self.goalkeeper)[0] == through:
+            if next_waypoint(frame, me, through, goalkeeper=self.goalkeeper)[0] == through:
                 self.store.command = run_up(me, ball, facing, limits, frame.period)
                 self.store.command.dribbler = near
                 return

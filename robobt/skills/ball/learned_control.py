@@ -21,7 +21,7 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     GO_TO_BALL.name: go_to_ball_of,
     SHOOT.name: shoot_of,
 }
-"""What makes each observation from a frame."""
+"""The function that makes each observation from a frame."""
 
 P = TypeVar("P")
 
@@ -30,7 +30,7 @@ _LIMIT = 1.0 + 1e-4
 
 
 class PolicyError(RobobtError, RuntimeError):
-    """A policy answered what is no action; the robot must not act on it."""
+    """A policy's answer is no valid action; the robot must not act on it."""
 
 
 class LearnedControl:
@@ -38,10 +38,10 @@ class LearnedControl:
 
     Args:
         model: name of a shipped model, or the path of a model file.
-        skill: what the model has to be for; None for anything.
+        skill: the skill the model has to be made for; None for any.
 
     Attributes:
-        card: what the model says about itself.
+        card: the model's own description.
 
     Raises:
         ModelError: the model cannot be used.
@@ -63,7 +63,7 @@ class LearnedControl:
         self._scaling = self.card.action
 
     def decide(self, frame: Frame, me: RobotState) -> RobotCommand:
-        """The command of one tick.
+        """Compute the command of one tick.
 
         Raises:
             PolicyError: the policy's answer is not finite or lies outside [-1, 1].
@@ -79,13 +79,13 @@ class LearnedControl:
 def find_policy(
     name: str, policies: Registry[P], shipped: Mapping[str, str], learned: Callable[[str], P]
 ) -> P:
-    """What decides for a skill, by the word in its ``policy`` parameter.
+    """Return what decides for a skill, by the name in its ``policy`` parameter.
 
     Args:
         name: of a policy, or the name or file of a model.
-        policies: the skill's own.
-        shipped: those of them that are models, with the models' names.
-        learned: makes one of a model.
+        policies: the skill's own, by name.
+        shipped: names of policies that are models, with the models' names.
+        learned: makes a policy of a model.
 
     Raises:
         ValueError: there is no such policy, or its model cannot be used.
@@ -98,6 +98,6 @@ def find_policy(
         if name in shipped:
             raise
         raise ValueError(
-            f"no {policies.kind} is called {name!r}; there are {', '.join(policies)}, "
+            f"no {policies.kind} is called {name!r}; there are {', '.join(sorted({*policies, *shipped}))}, "
             "and models by name or file (robobt models)"
         ) from error

@@ -10,10 +10,10 @@ from robobt.world.command import RobotCommand
 
 @skill
 class LearnedSkill(Skill):
-    """Does what a trained policy says, tick by tick, and goes on for as long as it is ticked.
+    """Drive the robot by a trained policy, tick by tick; runs for as long as it is ticked.
 
     When to begin and when it is done is the tree's affair: put conditions beside
-    it. Fails, and stops the robot, when the policy answers something that is no
+    it. Fails, and stops the robot, when the policy's answer is no valid
     action.
 
     Args:
@@ -22,7 +22,7 @@ class LearnedSkill(Skill):
             Without one the leaf fails.
 
     Raises:
-        ModelError: the model cannot be used; the message names the file and says why.
+        ModelError: the model cannot be used; the message names the file and the reason.
     """
 
     def __init__(self, *, model: str = "", name: str = "") -> None:
@@ -39,4 +39,4 @@ class LearnedSkill(Skill):
         except PolicyError as error:
             self.store.command = RobotCommand()
             return self.fail(str(error))
-        return self.run(f"as {self.model} says")
+        return self.run(f"driven by {self.model}")

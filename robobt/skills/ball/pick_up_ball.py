@@ -17,12 +17,14 @@ LOST_DISTANCE = 0.3
 
 
 def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotCommand:
-    """One tick of creeping onto the ball: turn to it and drive at it ``speed`` faster than it rolls.
+    """Creep onto the ball for one tick: turn to it and drive at it ``speed`` faster than it rolls.
 
     The more the ball lies aside, the less the robot closes in, so that the mouth
     meets it and not the hull.
 
     Args:
+        me: the robot.
+        ball: the ball.
         speed: closing speed [m/s].
         period: time until the next command [s].
     """
@@ -39,14 +41,14 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
 
 
 class Grip:
-    """Since when the ball has been in the mouth without a break."""
+    """How long the ball has been in the mouth without a break."""
 
     def __init__(self) -> None:
         self._since = inf
         self._seen = -inf
 
     def held_for(self, frame: Frame, me: RobotState) -> float:
-        """Seconds of unbroken contact up to this frame; negative without contact."""
+        """Return the seconds of unbroken contact up to this frame; negative without contact."""
         if not me.ball_contact:
             self._since = inf
             return -1.0

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from math import atan2, cos, hypot, inf, sin, sqrt
-from typing import ClassVar
 
-from robobt.motion.dribbling import MAX_ACCELERATION, dribbling_limits
-from robobt.motion.pilot import command, turn_rate
+from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Store
@@ -34,10 +31,10 @@ Policy = Callable[[Store], RobotCommand]
 """What decides a shot, tick by tick, while the robot has the ball."""
 
 POLICIES: Registry[Policy] = Registry("shoot policy")
-"""Every way to shoot by its name."""
+"""Every hand-written way to shoot by its name."""
 
 SHIPPED = {"ddpg": "shoot_ddpg"}
-"""Those of them that are models, which are loaded when a leaf is made."""
+"""The shipped models by the name of their policy, loaded when a leaf is made."""
 
 
 @skill
@@ -45,21 +42,20 @@ class Shoot(Skill):
     """Turn on the spot with the ball and kick it into the attacked goal: the paper's Shoot-Towards-Goal.
 
     Succeeds when the ball has left after a kick, fails when the ball does not lie in
-    the mouth: one that merely lies before it cannot be kicked from the spot. Should
-    a trained policy answer something that is no action, the skill fails and the
-    robot stops.
+    the mouth: one that merely lies before it cannot be kicked from the spot. When
+    a trained policy's answer is no valid action, the skill fails and the robot stops.
 
     Args:
         policy: what decides turning and kick, by name: "geometric" aims at
             ``store.shot``, else at the middle of the goal; or another of
-            ``POLICIES``; or a trained one by its model's name or file.
+            ``POLICIES``; "ddpg", or another trained one by its model's name or file.
 
     Raises:
         ValueError: no policy has that name, or its model cannot be used.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot",)
-    optional: ClassVar[tuple[str, ...]] = ("shot",)
+    reads = ("shot",)
+    optional = ("shot",)
 
     def __init__(self, *, policy: str = "geometric", name: str = "") -> None:
         super().__init__(name)
@@ -99,12 +95,10 @@ def geometric(store: Store) -> RobotCommand:
     """
     frame, me, ball = store.frame, store.me, store.frame.ball
     aim, tolerance = _aim(store)
-    wanted = direction(ball.position, aim)
-    limits = dribbling_limits(max_turn=_MAX_TURN, max_acceleration=MAX_ACCELERATION)
-    decided = command(me, 0.0, 0.0, turn_rate(me, wanted, limits, frame.period), limits, frame.period)
-    decided.dribbler = True
+    heading = direction(ball.position, aim)
+    decided = turn_with_ball(me, heading, dribbling_limits(max_turn=_MAX_TURN), frame.period)
     sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
-    if abs(wrap_angle(wanted - me.heading - atan2(sideways, KICK_SPEED))) <= tolerance:
+    if abs(wrap_angle(heading - me.heading - atan2(sideways, KICK_SPEED))) <= tolerance:
         decided.kick_speed = KICK_SPEED
         decided.kick_trigger = KickTrigger.NOW
     return decided
@@ -124,10 +118,10 @@ class LearnedShot:
         self._control = LearnedControl(model, skill="Shoot")
 
     def __call__(self, store: Store) -> RobotCommand:
-        """The command of one tick.
+        """Compute the command of one tick.
 
         Raises:
-            PolicyError: the policy answers what is no action.
+            PolicyError: the policy's answer is no valid action.
         """
         decided, me = self._control.decide(store.frame, store.me), store.me
         held = me.limits.hold_acceleration
@@ -142,19 +136,8 @@ class LearnedShot:
         return decided
 
 
-@POLICIES.register("ddpg")
-def ddpg(store: Store) -> RobotCommand:
-    """Turn and kick as the shipped model says that was trained with DDPG."""
-    return _shipped()(store)
-
-
-@lru_cache(maxsize=1)
-def _shipped() -> LearnedShot:
-    return LearnedShot(SHIPPED["ddpg"])
-
-
 def _aim(store: Store) -> tuple[Point, float]:
-    """Where to shoot [m], and by how much the shot may be off [rad]."""
+    """Return where to shoot [m], and by how much the shot may be off [rad]."""
     if store.shot is not None:
         return store.shot.target, 0.5 * store.shot.tolerance
     frame = store.frame

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import cos
-from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
@@ -22,7 +21,7 @@ class BallAimedAtGoal(Skill):
     Source: RoboBulls' published code, Goalie.
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("target",)
+    writes = ("target",)
 
     def on_running(self) -> Status:
         """Look at every other robot's heading."""

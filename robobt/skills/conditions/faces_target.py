@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import radians
-from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
@@ -19,7 +18,7 @@ class FacesTarget(Skill):
         tolerance: angle that still counts as facing it [rad].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("target",)
+    reads = ("target",)
 
     def __init__(
         self, *, target: Point | None = None, tolerance: float = radians(5.0), name: str = ""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
@@ -17,7 +15,7 @@ class MayTouchBall(Skill):
     touched the ball, and for the own team once it may take a restart.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("team",)
 
     def on_running(self) -> Status:
         """Listen to the referee and remember who kicked."""

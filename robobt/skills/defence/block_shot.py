@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import ClassVar
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
@@ -38,7 +37,7 @@ class BlockShot(Skill):
         dive: whether it may drive through.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("target",)
+    reads = ("target",)
 
     def __init__(
         self,
@@ -70,7 +69,7 @@ class BlockShot(Skill):
         return self.run("diving" if final_speed > 0.0 else "to the line of the shot")
 
     def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
-        """The least speed at ``place`` with which the robot is there before the ball [m/s]."""
+        """Return the least speed at ``place`` with which the robot is there before the ball [m/s]."""
         me, ball = self.me, self.ball
         speed = ball.speed
         rolling = self._watch.rolling_speed(self.frame)
@@ -94,12 +93,12 @@ class BlockShot(Skill):
 
 
 def _time_through(gap: float, towards: float, final_speed: float, limits: RobotLimits) -> float:
-    """Time to get ``gap`` far and be ``final_speed`` fast there [s]."""
+    """Compute the time to cover ``gap`` and arrive at ``final_speed`` [s]."""
     braking = final_speed / limits.braking
     return travel_time(gap + 0.5 * final_speed * braking, towards, limits) - braking
 
 
 def _in_time_braking(gap: float, towards: float, time: float, limits: RobotLimits) -> bool:
-    """Whether a robot that brakes from now on gets ``gap`` far within ``time``."""
+    """Return whether a robot that brakes from now on covers ``gap`` within ``time``."""
     left = towards * towards - 2.0 * limits.braking * gap
     return towards > 0.0 and left >= 0.0 and towards - sqrt(left) <= limits.braking * time

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import marked
@@ -25,8 +23,8 @@ class MarkOpponent(Skill):
         gap: from centre to centre [m].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("team",)
-    writes: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("team",)
+    writes = ("team",)
 
     def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
         super().__init__(name)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.rules import carries
@@ -24,7 +22,7 @@ class ShotComing(Skill):
         margin: how far beside the mouth it still counts [m].
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("target",)
+    writes = ("target",)
 
     def __init__(self, *, min_speed: float = 0.1, margin: float = 0.0, name: str = "") -> None:
         super().__init__(name)

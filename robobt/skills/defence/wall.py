@@ -65,7 +65,7 @@ class DefenseEdge:
         self.length = 2.0 * self.depth + 2.0 * self.half
 
     def point(self, way: float) -> Point:
-        """The point ``way`` metres along the edge."""
+        """Return the point ``way`` metres along the edge."""
         if way < self.depth:
             return (self.line + way, self.half)
         if way < self.depth + 2.0 * self.half:
@@ -73,7 +73,7 @@ class DefenseEdge:
         return (self.line + self.length - way, -self.half)
 
     def towards(self, ball: Point) -> float:
-        """How far along the edge the line from the goal's centre to the ball leaves the area [m]."""
+        """Return how far along the edge the line from the goal's centre to the ball leaves the area [m]."""
         dx, dy = ball[0] - self.line, ball[1]
         to_front = self.depth / dx if dx > 0.0 else inf
         to_side = self.half / abs(dy) if dy != 0.0 else inf

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import attacker
@@ -25,7 +23,7 @@ class GoToKickoffPosition(Skill):
         spread: share of the field's width that the line takes.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("team",)
 
     def __init__(self, *, spread: float = 0.6, name: str = "") -> None:
         super().__init__(name)

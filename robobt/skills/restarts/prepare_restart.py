@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import hypot
-from typing import ClassVar
 
 from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
@@ -17,7 +16,7 @@ _STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
 
 @skill
 class PrepareRestart(Skill):
-    """Stand behind the ball of the own restart, looking over it at where it shall go.
+    """Stand behind the ball of the own restart, facing where it is to go.
 
     That is the target of ``shot``, else of ``pass_``, else the opponent's goal. In
     a stop it keeps to the rules' distance. SUCCESS once the restart may be taken,
@@ -27,8 +26,8 @@ class PrepareRestart(Skill):
         gap: from the ball to the robot's centre [m].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("shot", "pass_")
-    optional: ClassVar[tuple[str, ...]] = ("shot", "pass_")
+    reads = ("shot", "pass_")
+    optional = ("shot", "pass_")
 
     def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
         super().__init__(name)

@@ -29,7 +29,7 @@ class Phase(StrEnum):
 
 
 def phase(game: GameState, team: Team) -> Phase:
-    """The phase of the game as ``team`` sees it.
+    """Return the phase of the game as ``team`` sees it.
 
     Halts and time-outs are HALT. STOP comes before its restart, whichever that is;
     the restart's own phase lasts from the referee's command until the ball is in
@@ -67,7 +67,7 @@ class RefereeSwitch(Switch, Bound[Store]):
         super().__init__(name, cases, otherwise=otherwise)
 
     def case(self) -> str:
-        """What the referee's word means for this team."""
+        """Return the present phase as this team sees it."""
         frame = self.store.frame
         return phase(frame.game, frame.team).value
 

@@ -1,6 +1,6 @@
 """Where RoboBulls' path planner sends a robot first: round the ball and round other robots.
 
-Source: RoboBulls' published code, PathPlannerFPPA. Only the first way-point is
+Source: RoboBulls' published code, PathPlannerFPPA. Only the first waypoint is
 ever driven to, so only the first is worked out. Its side is fixed: to the right
 of the way unless that leads off the field, even where the left would be shorter;
 that is what the published times hold.
@@ -27,9 +27,12 @@ _ROBOT_FREE = 2 * RADIUS + 0.05
 
 
 def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: bool = False) -> Point:
-    """Where to drive now to get to ``goal`` without touching the ball or a robot [m].
+    """Return where to drive now to get to ``goal`` without touching the ball or a robot [m].
 
     Args:
+        frame: what is on the field.
+        me: the robot.
+        goal: where to [m].
         goalkeeper: whether ``me`` may drive in its own defence area.
     """
     start = me.position
@@ -47,7 +50,7 @@ def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: boo
 
 
 def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> Point:
-    """The point moved to where a robot may go: 0.1 m inside the lines and out of the defence areas [m]."""
+    """Move the point to where a robot may go: 0.1 m inside the lines, out of the defence areas [m]."""
     x = min(max(point[0], _BORDER - field.half_length), field.half_length - _BORDER)
     y = min(max(point[1], _BORDER - field.half_width), field.half_width - _BORDER)
     if goalkeeper and x <= 0.0:

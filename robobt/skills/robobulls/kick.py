@@ -20,7 +20,7 @@ from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, BallState, RobotState
 
 ROBOBULLS_KICK_SPEED = 7.5
-"""What RoboBulls sends for a shot at full power [m/s]."""
+"""Kick speed that RoboBulls commands for a shot at full power [m/s]."""
 
 _BEHIND = RADIUS + BALL_RADIUS + 0.005
 _TOUCH = RADIUS + BALL_RADIUS
@@ -70,7 +70,7 @@ class RobobullsKick:
 
     Args:
         tolerance: largest angle between heading and target at the kick [rad].
-        kick_speed: what the ball shall leave with [m/s].
+        kick_speed: speed at which the ball is to leave [m/s].
         limits: how to drive.
         goalkeeper: whether it may drive in its own defence area.
 
@@ -104,7 +104,8 @@ class RobobullsKick:
         """Set the command of one control period; SUCCESS once the ball has been kicked.
 
         Args:
-            target: where the ball shall go [m].
+            store: the robot's store.
+            target: where the ball is to go [m].
         """
         frame, me, ball = store.frame, store.me, store.frame.ball
         period = frame.period

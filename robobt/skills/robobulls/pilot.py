@@ -1,4 +1,4 @@
-"""Drives a robot to a pose as the paper's team did.
+"""Drive a robot to a pose as the paper's team did.
 
 Source: RoboBulls' published code, PilotOmni. Its turns round the ball, and with
 them the paper's times, depend on how this pilot takes a bend, so the baseline
@@ -27,15 +27,16 @@ def robobulls_drive(
     period: float,
     limits: RobotLimits = ROBOBULLS_LIMITS,
 ) -> RobotCommand:
-    """The command that brings ``me`` one control period nearer to a pose.
+    """Compute the command that brings ``me`` one control period nearer to a pose.
 
-    The velocity asked for leads straight to the target at the speed from which
+    The commanded velocity leads straight to the target at the speed from which
     ``limits.braking`` just stops there; it differs from the present velocity by
     no more than ``limits.acceleration`` allows, in whatever direction.
 
     Args:
+        me: the robot.
         target: where to [m].
-        heading: where the mouth shall point [rad].
+        heading: where the mouth is to point [rad].
         period: time until the next command [s].
         limits: how to drive.
     """

@@ -57,11 +57,12 @@ class BestFieldPosition(FieldSearch):
 
 @lru_cache(maxsize=16)
 def static_value(grid: PositionGrid, widest: float) -> GridArray:
-    """Nearness to the goal and straightness before it, (X, Y), 1 at most; -inf in the defence area.
+    """Rate nearness to the goal and straightness before it, (X, Y), 1 at most; -inf in the defence area.
 
     Made once for a grid and not to be written to.
 
     Args:
+        grid: the points.
         widest: angle off the straight way out of the goal that is worth nothing [rad].
     """
     nearness = 1.0 - grid.goal_distance / (grid.field.length / 3.0)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from math import inf
-from typing import ClassVar
 
 from robobt.skills.base import Skill
-from robobt.skills.rate_limit import Cadence
+from robobt.skills.rate_limit import RateLimit
 from robobt.skills.team.position_grid import GridArray, PositionGrid, position_grid
 from robobt.tree import Status
 from robobt.world.geometry import Point
@@ -25,7 +24,7 @@ class FieldSearch(Skill):
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
-    writes: ClassVar[tuple[str, ...]] = ("target",)
+    writes = ("target",)
 
     def __init__(self, *, spacing: float, every: float, keep: float, name: str) -> None:
         super().__init__(name)
@@ -33,12 +32,12 @@ class FieldSearch(Skill):
             raise ValueError(f"spacing must be positive, not {spacing}")
         self.spacing = spacing
         self.keep = keep
-        self._look = Cadence(every)
+        self._look = RateLimit(every)
         self._target: Point | None = None
 
     @abstractmethod
     def value(self, grid: PositionGrid) -> GridArray:
-        """How good each grid point is, (X, Y); -inf where nobody may go."""
+        """Rate each grid point, (X, Y); -inf where nobody may go."""
 
     def on_running(self) -> Status:
         """Look again when it is time to."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf
-from typing import ClassVar
 
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import attacker
@@ -22,8 +21,8 @@ class IsAttacker(Skill):
         farthest: largest x of the ball at which this robot goes for it [m]; None is any.
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("team",)
-    writes: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("team",)
+    writes = ("team",)
 
     def __init__(self, *, farthest: float | None = None, name: str = "") -> None:
         super().__init__(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import radians
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.steadiness import Steadiness
+from robobt.skills.debounce import Debounce
 from robobt.tree import Status
 from robobt.world.geometry import direction, distance, wrap_angle
 from robobt.world.rules import has_ball
@@ -34,7 +34,7 @@ class MateAimsAtMe(Skill):
         super().__init__(name)
         self.tolerance = tolerance
         self.nearest = nearest
-        self._steady = Steadiness(rise, rise, on=False)
+        self._steady = Debounce(rise, rise, on=False)
 
     def on_running(self) -> Status:
         """Look at the team-mate with the ball."""

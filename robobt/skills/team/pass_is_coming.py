@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.rules import has_ball
@@ -21,7 +19,7 @@ class PassIsComing(Skill):
         patience: longest time a pass takes [s].
     """
 
-    reads: ClassVar[tuple[str, ...]] = ("team",)
+    reads = ("team",)
 
     def __init__(self, *, slowest: float = 0.2, patience: float = 4.0, name: str = "") -> None:
         super().__init__(name)

@@ -63,24 +63,24 @@ class PositionGrid:
         self.goal_angle = np.arctan2(np.abs(self.y), to_goal)
 
     def best(self, value: GridArray) -> tuple[Point, float]:
-        """The point where ``value`` (X, Y) is largest, and that value."""
+        """Return the point where ``value`` (X, Y) is largest, and that value."""
         row, column = divmod(int(value.argmax()), value.shape[1])
         return (row * self.spacing, (column - self._side) * self.spacing), float(value[row, column])
 
     def at(self, value: GridArray, point: Point) -> float:
-        """``value`` (X, Y) at the grid point nearest to ``point``; -inf off the grid."""
+        """Return ``value`` (X, Y) at the grid point nearest to ``point``; -inf off the grid."""
         row = round(point[0] / self.spacing)
         column = round(point[1] / self.spacing) + self._side
         rows, columns = value.shape
         return float(value[row, column]) if 0 <= row < rows and 0 <= column < columns else -inf
 
     def distance_from(self, point: Point) -> GridArray:
-        """(X, Y) distances from ``point`` [m]."""
+        """Return the (X, Y) distances from ``point`` [m]."""
         distances: GridArray = np.sqrt(np.square(self.x - point[0]) + np.square(self.y - point[1]))
         return distances
 
     def count_regions(self, regions: Sequence[Region]) -> NDArray[np.uint8]:
-        """(X, Y): in how many of the regions each point lies."""
+        """Count for each point, (X, Y), in how many of the regions it lies."""
         if not regions:
             return np.zeros(self.forbidden.shape, dtype=np.uint8)
         a, b, c = np.array(regions, dtype=np.float32).transpose(2, 1, 0)[..., None, None]
@@ -92,18 +92,19 @@ class PositionGrid:
         return count
 
     def rows(self, low: float, high: float) -> slice:
-        """The rows with low <= x <= high."""
+        """Return the rows with low <= x <= high."""
         first = max(0, ceil(low / self.spacing))
         return slice(first, max(first, floor(high / self.spacing) + 1))
 
     def goal_hidden(self, opponents: Iterable[RobotState], extra: float) -> list[tuple[slice, BoolArray]]:
-        """Where opponents standing together hide both goal posts: rows, and a mask of them, each.
+        """Find where opponents standing together hide both goal posts: rows, and a mask of them, each.
 
         Hidden is what lies between the line from the left post past the leftmost of
         them and the line from the right post past the rightmost, from them back to
         where the lines meet.
 
         Args:
+            opponents: the robots that may hide it.
             extra: added to the shadow on either side [m].
         """
         goal_x = self.field.half_length
@@ -126,12 +127,12 @@ class PositionGrid:
 
 @lru_cache(maxsize=16)
 def position_grid(field: FieldGeometry, spacing: float) -> PositionGrid:
-    """The grid of a field, made once."""
+    """Return the grid of a field, made once."""
     return PositionGrid(field, spacing)
 
 
 def lane_shadow(origin: Point, robot: RobotState, radius: float) -> Region:
-    """Where a ball from ``origin`` would have to pass within ``radius`` [m] of ``robot``.
+    """Return where a ball from ``origin`` would have to pass within ``radius`` [m] of ``robot``.
 
     Only points farther than the robot count. A robot within ``radius`` shadows
     the whole half plane behind it.
@@ -152,7 +153,7 @@ def lane_shadow(origin: Point, robot: RobotState, radius: float) -> Region:
 
 
 def shot_path(field: FieldGeometry, origin: Point, room: float) -> Region:
-    """Between ``origin`` and the opponent's goal, ``room`` [m] beside either post included."""
+    """Return what lies between ``origin`` and the opponent's goal, up to ``room`` [m] beside either post."""
     x, y = origin
     reach = field.half_length - x
     half = field.goal_width / 2.0 + room
@@ -162,7 +163,7 @@ def shot_path(field: FieldGeometry, origin: Point, room: float) -> Region:
 
 
 def clusters(robots: Iterable[RobotState]) -> list[Sequence[RobotState]]:
-    """Robots in groups that let no ball through, from left (+y) to right; each group likewise."""
+    """Group robots that let no ball through between them, from left (+y) to right; each group likewise."""
     groups: list[list[RobotState]] = []
     for robot in sorted(robots, key=lambda robot: -robot.y):
         if groups and hypot(robot.x - groups[-1][-1].x, robot.y - groups[-1][-1].y) < CLUSTER_GAP:
@@ -173,7 +174,7 @@ def clusters(robots: Iterable[RobotState]) -> list[Sequence[RobotState]]:
 
 
 def _tangent(back: float, across: float, side: float) -> float:
-    """Slope of the line past a robot ``back`` from a post and ``across`` beside it, on the given side."""
+    """Return the slope of the line past a robot ``back`` from a post, ``across`` beside it, on one side."""
     gap = max(hypot(back, across), 1e-9)
     angle = atan2(across, back) + side * asin(min(1.0, ROBOT_RADIUS / gap))
     return tan(min(_STEEPEST, max(-_STEEPEST, angle)))

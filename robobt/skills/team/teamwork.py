@@ -40,7 +40,7 @@ _MARK_FROM = 0.5
 
 
 def attacker(frame: Frame, team: TeamStore) -> int | None:
-    """Number of the robot that goes for the ball; None when nobody may."""
+    """Return the number of the robot that goes for the ball; None when nobody may."""
     if team.agreed_on is not frame:
         team.agreed_on = frame
         _follow_restart(frame, team)
@@ -50,7 +50,7 @@ def attacker(frame: Frame, team: TeamStore) -> int | None:
 
 
 def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
-    """The opponent that the own robot with this number marks; None when there is none for it."""
+    """Return the opponent that the own robot with this number marks, None without one."""
     attacker(frame, team)
     opponent = team.marks.get(number)
     if opponent is None:
@@ -97,7 +97,7 @@ def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
 
 
 def _time_to_ball(frame: Frame, robot: RobotState) -> float:
-    """About when the robot can be at the ball, wherever that will be, with the goal before it [s]."""
+    """Estimate when the robot can be at the ball, wherever that will be, with the goal before it [s]."""
     ball, game = frame.ball, frame.game
     x, y = ball.x, ball.y
     if not game.in_play and game.placement is not None:
@@ -115,7 +115,7 @@ def _time_to_ball(frame: Frame, robot: RobotState) -> float:
 
 
 def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
-    """The opponents nearest to the own goal first, each to the nearest free marker."""
+    """Assign opponents, those nearest to the own goal first, each to the nearest free marker."""
     goal_x, goal_y = frame.field.our_goal
     holder = owner(frame)
     free = [robot for robot in frame.own if robot.id in team.markers and robot.id != team.attacker]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from pydantic import BaseModel, ConfigDict
 
@@ -33,7 +33,7 @@ class ShotRater(BaseModel, ABC):
 
     @abstractmethod
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
-        """Every distinct opening, the best first; empty when there is none.
+        """Return every distinct opening, the best first; empty without one.
 
         Among equally good ones the first is that for which ``me`` has to turn least.
 
@@ -47,14 +47,14 @@ class ShotRater(BaseModel, ABC):
     def judge(
         self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0
     ) -> tuple[list[Shot], Chances | None]:
-        """The openings, and what the rater thinks of every point of the goal line if it asks itself that.
+        """Return the openings, and the chance at every point of the goal line where the rater computes one.
 
         Arguments as in :meth:`rate_all`.
         """
         return self.rate_all(frame, origin, me, delay=delay), None
 
     def rate(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> Shot | None:
-        """The best opening, None when there is none; arguments as in :meth:`rate_all`."""
+        """Return the best opening, None without one; arguments as in :meth:`rate_all`."""
         shots = self.rate_all(frame, origin, me, delay=delay)
         return shots[0] if shots else None
 
@@ -67,8 +67,8 @@ RATERS: Registry[type[ShotRater]] = Registry(
 """The shot raters by name."""
 
 
-def make_rater(rater: str | ShotRater, **settings: Any) -> ShotRater:
-    """The rater with this name and these settings; a rater already made is returned as it is.
+def make_rater(rater: str | ShotRater, **settings: object) -> ShotRater:
+    """Return the rater with this name and these settings; a rater already made is returned as it is.
 
     Settings that are None are left at the rater's default.
 
@@ -82,11 +82,11 @@ def make_rater(rater: str | ShotRater, **settings: Any) -> ShotRater:
         if given:
             raise ValueError(f"give {', '.join(sorted(given))} to the rater itself")
         return rater
-    return RATERS[rater](**given)
+    return RATERS[rater].model_validate(given)
 
 
 def best_first(shots: Iterable[Shot], origin: Point, heading: float) -> list[Shot]:
-    """The shots by falling score; equal ones by the turn they need from ``heading``, then left to right."""
+    """Sort shots by falling score; equal ones by the turn they need from ``heading``, then left to right."""
 
     def rank(shot: Shot) -> tuple[float, float, float]:
         turn = abs(wrap_angle(direction(origin, shot.target) - heading))

@@ -23,7 +23,7 @@ class ExpectedGoal(ShotRater):
     """The probability of a goal for every target point, from the state of everyone at once.
 
     The predictor sees where all robots are and how they move, in one call for the
-    whole goal line. What it says is multiplied by the chance that a kick with a
+    whole goal line. Its prediction is multiplied by the chance that a kick with a
     small error stays between the posts; a point with a robot in its lane has none.
 
     Every local maximum along the goal line is a shot with that probability as its
@@ -67,9 +67,12 @@ class ExpectedGoal(ShotRater):
         return best_first(shots, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
-        """Probability of a goal for every target point, None where there is no way into the goal.
+        """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
         Args:
+            frame: the field, seen from the shooter's side.
+            origin: where the ball will be kicked from [m].
+            me: the robot that kicks.
             points: (T, 2) on the opponent's goal line, from right to left [m].
 
         Returns:
@@ -93,7 +96,7 @@ class ExpectedGoal(ShotRater):
     def _predicted(
         self, origin: Point, me: RobotState, points: FloatArray, ahead: list[RobotState]
     ) -> FloatArray:
-        """What the predictor says, (T,): of more robots than a scene has room for, groups are judged.
+        """Predict for every target point, (T,); more robots than a scene holds are judged in groups.
 
         The shooter is taken to point at each target already, with the ball before it:
         the predictor knows kicks, which go out when it does.

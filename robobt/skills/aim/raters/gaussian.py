@@ -57,7 +57,7 @@ class Gaussian(ShotRater):
         return best_first(shots, origin, me.heading)
 
     def chances(self, aims: FloatArray, mouth: Interval, blockers: list[tuple[float, float]]) -> FloatArray:
-        """Chance of a goal for every aim.
+        """Compute the chance of a goal for every aim.
 
         Args:
             aims: (T,) directions [rad].
@@ -94,7 +94,7 @@ class Gaussian(ShotRater):
 
 
 def _plateaus(level: FloatArray) -> list[tuple[int, int]]:
-    """Runs of equal positive values above both neighbours, as (first, one past the last)."""
+    """Find runs of equal positive values above both neighbours, as (first, one past the last)."""
     edges = [0, *(np.flatnonzero(level[1:] != level[:-1]) + 1).tolist(), len(level)]
     values = [0.0, *level[edges[:-1]].tolist(), 0.0]
     return [

@@ -24,7 +24,7 @@ _NOTICED = 2
 
 
 def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
-    """Target points on the opponent's goal line, from the right post (y < 0) to the left.
+    """Return target points on the opponent's goal line, from the right post (y < 0) to the left.
 
     As many as fit between the posts less :data:`POST_GAP` on either side, 94 on a
     goal of 1 m at the paper's 10 mm. The row is centred on the goal, so that it is
@@ -49,23 +49,24 @@ def _candidates(x: float, goal_width: float, spacing: float) -> FloatArray:
 
 
 def obstacles(frame: Frame, me: RobotState) -> FloatArray:
-    """Centres of all robots but ``me``, own ones first, (K, 2) [m]."""
+    """Return the centres of all robots but ``me``, own ones first, (K, 2) [m]."""
     return np.array([(robot.x, robot.y) for robot in frame.others(me.id)], dtype=np.float64).reshape(-1, 2)
 
 
 def lane_clearances(
     origin: Point, targets: FloatArray, centres: FloatArray, *, behind: bool = False
 ) -> FloatArray:
-    """Distance of every obstacle from every straight lane origin -> target.
+    """Compute the distance of every obstacle from every straight lane origin -> target.
 
     An obstacle whose nearest point on the lane would lie behind the origin is
-    not in the ball's way: its distance is infinite, unless those ``behind`` count,
-    with their distance from the origin.
+    not in the ball's way: its distance is infinite, unless ``behind`` is set:
+    then it is their distance from the origin.
 
     Args:
         origin: where the lanes start [m].
         targets: (T, 2) ends [m].
         centres: (K, 2) [m].
+        behind: whether obstacles behind the origin count.
 
     Returns:
         (T, K) distances [m].
@@ -89,7 +90,7 @@ def lane_clearances(
 
 
 def runs(clear: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Groups of neighbouring true entries as (first, one past the last), in order."""
+    """Find groups of neighbouring true entries as (first, one past the last), in order."""
     padded = np.zeros(len(clear) + 2, dtype=np.bool_)
     padded[1:-1] = clear
     edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
@@ -97,7 +98,7 @@ def runs(clear: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine | None = None) -> GoalLine:
-    """A goal line as it was judged, or the one ``before`` while it differs too little to be seen.
+    """Return the goal line as judged, or ``before`` while it differs too little to be seen.
 
     Args:
         points: (T, 2) on the goal line, evenly from right to left [m].

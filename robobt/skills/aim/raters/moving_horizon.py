@@ -51,7 +51,7 @@ class MovingHorizon(ShotRater):
         return opening_shots(field, origin, me.heading, free_intervals(mouth, shadows), self.full_angle)
 
     def reach(self, robot: RobotState, origin: Point, delay: float = 0.0) -> tuple[Point, float]:
-        """Centre and radius [m] of the disc in which ``robot`` can meet a ball kicked from ``origin``."""
+        """Return centre and radius of the disc in which ``robot`` can meet a ball from ``origin`` [m]."""
         speed = hypot(robot.vx, robot.vy)
         travel = self.ball.time_to(hypot(robot.x - origin[0], robot.y - origin[1]), self.kick_speed)
         reaction = self.reaction * (1.0 - min(1.0, speed / self.reacting_speed))
@@ -66,7 +66,7 @@ class MovingHorizon(ShotRater):
 
 
 def extent(speed: float, time: float, limits: RobotLimits) -> tuple[float, float]:
-    """How far along its motion a robot can be at most and at least after ``time`` [m].
+    """Compute how far along its motion a robot can be at most and at least after ``time`` [m].
 
     Full acceleration all the time, or full braking and then full acceleration back.
     """

@@ -66,9 +66,11 @@ class NNFiltered(ShotRater):
         return best_first(shots, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
-        """The least chance that any robot leaves each target point.
+        """Compute the least chance that any robot leaves each target point.
 
         Args:
+            frame: the field, seen from the shooter's side.
+            me: the robot that kicks.
             points: (T, 2) [m].
 
         Returns:

@@ -15,11 +15,13 @@ _SLIVER = 1e-9
 
 
 def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | None:
-    """Directions from ``origin`` to the right and the left post of the opponent's goal [rad].
+    """Return the directions from ``origin`` to the right and the left post of the opponent's goal [rad].
 
     None from a point on or behind the goal line.
 
     Args:
+        field: dimensions.
+        origin: where the ball will be kicked from [m].
         inset: what either post takes off the goal [m].
     """
     reach = field.half_length - origin[0]
@@ -30,7 +32,7 @@ def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | 
 
 
 def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: float) -> Interval | None:
-    """Directions that a disc hides from ``origin`` [rad], not wrapped.
+    """Return the directions that a disc hides from ``origin`` [rad], not wrapped.
 
     A disc that reaches over the origin hides the half plane on its side. One
     that lies wholly behind the goal line hides nothing (None).
@@ -45,7 +47,7 @@ def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: floa
 
 
 def free_intervals(mouth: Interval, shadows: list[Interval]) -> list[Interval]:
-    """What the shadows leave of the mouth, in order."""
+    """Return what the shadows leave of the mouth, in order."""
     low, high = mouth
     free = []
     for start, end in sorted(shadows):
@@ -63,7 +65,7 @@ def free_intervals(mouth: Interval, shadows: list[Interval]) -> list[Interval]:
 def opening_shots(
     field: FieldGeometry, origin: Point, heading: float, openings: list[Interval], full_angle: float
 ) -> list[Shot]:
-    """A shot along the bisector of each opening, best first.
+    """Return a shot along the bisector of each opening, best first.
 
     The score is the opening's width as a share of ``full_angle`` [rad], at most 1.
     """

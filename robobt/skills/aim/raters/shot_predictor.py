@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=32)
 def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
-    """A shot predictor by the name of a shipped model or by its path, loaded once per process.
+    """Load a shot predictor by a shipped model's name or a file's path, once per process.
 
     Raises:
-        ModelError: it cannot be used; the message names the file and says why.
+        ModelError: it cannot be used; the message names the file and the reason.
     """
     from robobt.models.policy import load_policy
 

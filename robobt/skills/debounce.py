@@ -1,10 +1,10 @@
-"""A yes or no that does not flicker: it turns only when the other answer has held for a while."""
+"""A yes or no that does not flicker: it changes only once the other answer has held for a while."""
 
 from __future__ import annotations
 
 
-class Steadiness:
-    """Follows a flickering answer slowly, in the world's own time.
+class Debounce:
+    """A debounced answer, in the world's own time.
 
     While off it counts the time for the answer yes, less the time for no, and
     turns on at ``rise``; while on it counts the same way up to ``fall`` and turns
@@ -34,7 +34,7 @@ class Steadiness:
         self._last: float | None = None
 
     def update(self, answer: bool, time: float) -> bool:
-        """Take the answer at ``time`` [s]; returns ``on``. A clock that runs backwards starts anew."""
+        """Take the answer at ``time`` [s] and return ``on``; a clock that runs backwards starts anew."""
         if self._last is not None and time < self._last:
             self.on, self._balance, self._last = self._first, 0.0, None
         passed = 0.0 if self._last is None else time - self._last

@@ -2,16 +2,16 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.skills.steadiness import Steadiness
+from robobt.skills.debounce import Debounce
 
 PERIOD = 0.02
 
 
 class Seen:
-    """Tells a Steadiness what was seen for how long."""
+    """Tells a Debounce what was seen for how long."""
 
     def __init__(self, rise: float, fall: float) -> None:
-        self.steady = Steadiness(rise, fall)
+        self.steady = Debounce(rise, fall)
         self.ticks = 0
 
     def for_(self, seconds: float, answer: bool) -> bool:
@@ -66,4 +66,4 @@ def test_a_clock_that_runs_backwards_starts_anew() -> None:
 @pytest.mark.parametrize(("rise", "fall"), [(-0.1, 0.0), (0.0, -0.1), (float("nan"), 0.0)])
 def test_times_are_not_negative(rise: float, fall: float) -> None:
     with pytest.raises(ValueError, match="rise and fall"):
-        Steadiness(rise, fall)
+        Debounce(rise, fall)
