@@ -324,6 +324,20 @@ def test_a_second_touch_by_the_kicker_is_a_free_kick_for_the_others(story: Story
     assert story.game.placement == approx((0.4, 2.0))
 
 
+def test_a_second_touch_counts_near_the_spot_too_once_the_kicker_has_let_go(story: Story) -> None:
+    def at(x: float) -> Story:
+        return story.ours(1, x + ROBOT_RADIUS + BALL_RADIUS, SPOT[1])
+
+    x = SPOT[0] - 0.06
+    throw_in(story).touch(1)
+    at(x).roll(x, SPOT[1])
+    assert story.game.in_play
+    at(x + 0.05).tick()
+    assert EventKind.DOUBLE_TOUCH not in story.kinds
+    at(x).tick()
+    assert story.events[-1] == (EventKind.DOUBLE_TOUCH, story.us)
+
+
 def test_a_second_touch_after_another_robots_is_allowed(story: Story) -> None:
     throw_in(story).touch(1).roll(0.5, 2.0).touch(2).roll(0.4, 2.0)
     story.ours(1, 0.4 - ROBOT_RADIUS - BALL_RADIUS, 2.0, heading=3.0).touch(1).tick()
