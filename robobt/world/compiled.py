@@ -8,6 +8,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
@@ -22,6 +23,11 @@ def compiled(function: Function) -> Function:
     except RuntimeError:
         # A read-only installation, run by somebody without a home: compile anew each time.
         return cast(Function, njit(function))
+
+
+def compilable(function: Function) -> Function:
+    """Leave a function as it is for Python, which calls it faster so, and let compiled code call it too."""
+    return cast(Function, register_jitable(function))
 
 
 def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:

@@ -1,8 +1,8 @@
 """What decides a match, once: lines, goals, defence areas, touches and possession.
 
 Referee, end conditions, training rewards, statistics and tests call the functions
-here. Those that take single numbers are compiled, so that the kernels of training
-and simulation can call them too. Lengths are metres, coordinates those of the world
+here. Those that take single numbers can be called from compiled code too, as the
+kernels of training do. Lengths are metres, coordinates those of the world
 (blue defends -x) unless a function says otherwise.
 
 Source: RoboCup SSL rules, chapters "Scoring Goals", "Ball Leaves The Field" and
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, pi, radians, sin
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point
@@ -71,13 +71,13 @@ def own_side(team: Team) -> float:
 # Lines and goals.
 
 
-@compiled
+@compilable
 def is_out(x: float, y: float, half_length: float, half_width: float) -> bool:
     """Return whether a ball at (x, y) is behind a line as a whole."""
     return abs(x) > half_length + BALL_RADIUS or abs(y) > half_width + BALL_RADIUS
 
 
-@compiled
+@compilable
 def leaving(
     x0: float, y0: float, x1: float, y1: float, half_length: float, half_width: float
 ) -> tuple[float, float, bool]:
@@ -100,7 +100,7 @@ def leaving(
     return x0 + share * (x1 - x0), y0 + share * (y1 - y0), goal_line
 
 
-@compiled
+@compilable
 def goal_side(
     x0: float, y0: float, x1: float, y1: float, half_length: float, half_width: float, half_goal: float
 ) -> int:
@@ -139,7 +139,7 @@ def scorer(field: FieldGeometry, before: Point, after: Point) -> Team | None:
 # Defence areas.
 
 
-@compiled
+@compilable
 def in_area(
     x: float, y: float, half_length: float, depth: float, width: float, tolerance: float = 0.0
 ) -> bool:
@@ -154,7 +154,7 @@ def in_their_defense_area(field: FieldGeometry, x: float, y: float, tolerance: f
 
 def in_own_defense_area(field: FieldGeometry, x: float, y: float, tolerance: float = 0.0) -> bool:
     """Return whether (x, y), as a team sees it, lies in its own defence area; see :func:`in_area`."""
-    return in_their_defense_area(field, -x, y, tolerance)
+    return in_area(-x, y, field.half_length, field.defense_depth, field.defense_width, tolerance)
 
 
 def in_defense_area(field: FieldGeometry, defender: Team, x: float, y: float, tolerance: float = 0.0) -> bool:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import copysign, cos, hypot, pi, radians, sin
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState, Team
+from robobt.world.compiled import compiled
 from robobt.world.geometry import Point
 from robobt.world.rules import (
     ALL_AROUND,
@@ -17,11 +18,13 @@ from robobt.world.rules import (
     ball_out,
     carries,
     exit_point,
+    goal_side,
     has_ball,
     hull_gap,
     in_area,
     in_defense_area,
     keeps_ball,
+    leaving,
     own_side,
     owner,
     scorer,
@@ -31,6 +34,7 @@ from robobt.world.rules import (
 FIELD = DIVISION_B
 EDGE_X, EDGE_Y = FIELD.half_length + BALL_RADIUS, FIELD.half_width + BALL_RADIUS
 POST = FIELD.goal_width / 2
+FIELD_SIZE = (FIELD.half_length, FIELD.half_width, POST)
 REACH = ROBOT_RADIUS + BALL_RADIUS + HELD_GAP
 
 inside = st.tuples(st.floats(-EDGE_X, EDGE_X), st.floats(-EDGE_Y, EDGE_Y))
@@ -143,6 +147,19 @@ def test_a_goal_leaves_the_field_over_a_goal_line_between_the_posts(before: Poin
     assert (team is not None) is scored
     if team is not None:
         assert copysign(1.0, after[0]) == -own_side(team)
+
+
+@compiled
+def _compiled_goal(x0: float, y0: float, x1: float, y1: float) -> tuple[int, tuple[float, float, bool]]:
+    side = goal_side(x0, y0, x1, y1, FIELD_SIZE[0], FIELD_SIZE[1], FIELD_SIZE[2])
+    return side, leaving(x0, y0, x1, y1, FIELD_SIZE[0], FIELD_SIZE[1])
+
+
+@settings(deadline=None)  # the first call compiles
+@given(inside, anywhere)
+def test_compiled_code_decides_the_same(before: Point, after: Point) -> None:
+    side = goal_side(*before, *after, *FIELD_SIZE)
+    assert _compiled_goal(*before, *after) == (side, leaving(*before, *after, *FIELD_SIZE[:2]))
 
 
 # Defence areas.
