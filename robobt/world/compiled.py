@@ -27,7 +27,7 @@ def compiled(function: Function) -> Function:
 
 def compilable(function: Function) -> Function:
     """Leave a function as it is for Python, which calls it faster so, and let compiled code call it too."""
-    return cast(Function, register_jitable(function))
+    return register_jitable(function)
 
 
 def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
