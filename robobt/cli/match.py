@@ -145,7 +145,7 @@ def match(
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
     """
-    from robobt.match import load_scenario, run_trials, summarise
+    from robobt.match import load_scenario, run_trials
     from robobt.worlds import SIM, sim_world, world_from
 
     import_files(imports)
@@ -201,7 +201,7 @@ def match(
             from robobt.match.recording.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
-    summary = summarise(run.results, loaded.seed if seed is None else seed)
+    summary = run.summary()
     if as_json:
         extra = {
             "requested": count,

@@ -90,12 +90,7 @@ def deployed(
 def deployed_scenario(speed: str, play: str, goalkeeper: str = "default") -> Scenario:
     """The shipped scenario with another attacker and, if asked for, the other goalkeeper's style."""
     scenario = load_scenario(f"deployed_{speed}")
-    blue, yellow = scenario.robots.blue[0], scenario.robots.yellow[0]
-    yellow = yellow.model_copy(update={"params": {**yellow.params, "style": goalkeeper}})
-    robots = scenario.robots.model_copy(
-        update={"blue": (blue.model_copy(update={"play": play}),), "yellow": (yellow,)}
-    )
-    return scenario.model_copy(update={"robots": robots})
+    return scenario.with_robot("yellow 0", style=goalkeeper).with_robot(_SHOOTER, play=play)
 
 
 def _figures(

@@ -162,12 +162,10 @@ def table4_scenario(
 ) -> Scenario:
     """The bundled scenario of a trial with another play's parameters, simulator or noise."""
     scenario = load_scenario(f"table4_trial{trial}")
-    shooter = scenario.robots.blue[0].model_copy(update={"params": dict(params)})
     simulator = {**scenario.simulator, "preset": preset}
     if realism is not None:
         simulator["realism"] = realism
-    robots = scenario.robots.model_copy(update={"blue": (shooter,)})
-    return scenario.model_copy(update={"robots": robots, "simulator": simulator})
+    return scenario.model_copy(update={"simulator": simulator}).with_robot(_SHOOTER, params=dict(params))
 
 
 def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world) -> Attempt:

@@ -12,7 +12,7 @@ import numpy as np
 from robobt.config.errors import RobobtError
 from robobt.match.loop import WorldFactory, play_match
 from robobt.match.results.file import ResultsFile
-from robobt.match.results.results import MatchResult
+from robobt.match.results.results import MatchResult, Summary, summarise
 from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
@@ -26,19 +26,29 @@ class RunError(RobobtError, RuntimeError):
 
 @dataclass(slots=True)
 class Run:
-    """What a run has come to.
+    """The trials that a run has played.
 
     Attributes:
-        results: the trials played, in the order of their numbers.
+        results: one a trial, in the order of their numbers.
+        seed: seed of the run, from which the trials' seeds follow.
         interrupted: whether it was stopped (Ctrl-C) before the last trial.
     """
 
     results: list[MatchResult]
+    seed: int
     interrupted: bool
+
+    def summary(self) -> Summary:
+        """Summarise the trials.
+
+        Raises:
+            ValueError: no trial was finished.
+        """
+        return summarise(self.results, self.seed)
 
 
 def trial_seed(seed: int, trial: int) -> int:
-    """The seed of one trial; it depends on nothing but the run's seed and the trial's number."""
+    """Return the seed of one trial, which depends only on the run's seed and the trial's number."""
     return int(np.random.SeedSequence([seed, trial]).generate_state(1, np.uint64)[0] >> np.uint64(11))
 
 
@@ -118,7 +128,7 @@ def run_trials(
     finally:
         if file is not None:
             file.__exit__(None, None, None)
-    return Run([results[trial] for trial in sorted(results)], interrupted)
+    return Run([results[trial] for trial in sorted(results)], seed, interrupted)
 
 
 @dataclass(slots=True, frozen=True)

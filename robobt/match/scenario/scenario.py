@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError, FieldError, RobobtError, message_of, one_line, short_repr
+from robobt.config.errors import ConfigError, FieldError, one_line, short_repr
 from robobt.config.resources import bundled_scenarios
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_starts
+from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
-from robobt.plays import PLAYS
-from robobt.plays.files import find_play, is_play_file
-from robobt.skills.store import GIVEN, Store
-from robobt.tree import Behaviour, WiringError, check_tree
-from robobt.tree.devtools import substitute
-from robobt.tree.interop import TreeFileError
-from robobt.tree.parameters import ParameterError, check_parameters
+from robobt.plays.files import is_play_file
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
-from robobt.world.limits import RobotLimits
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 
@@ -39,106 +33,6 @@ MAX_SEED = 2**53 - 1
 
 class ScenarioError(ConfigError):
     """A scenario that cannot be played; the file is the scenario's name when it came from no file."""
-
-
-class RobotSetup(Part):
-    """One robot: its number, what it plays and where it starts."""
-
-    number: int = Field(ge=0, le=15, description="number on its team")
-    play: str = Field(max_length=400, description="its play: a name, or a tree file beside the scenario")
-    params: dict[str, Any] = Field(default_factory=dict, description="parameters of the play")
-    goalkeeper: bool = Field(False, description="whether it is its team's goalkeeper")
-    limits: RobotLimits | None = Field(
-        None, description="limits of this robot; those not given are the simulator's"
-    )
-    substitute: dict[str, Any] | str = Field(
-        default_factory=dict,
-        description="nodes of its tree that follow a script instead, by the pattern of their paths; "
-        "or a file of such rules beside the scenario",
-    )
-    start: RobotStart = Field(description="pose at the start, in the own team's view")
-
-    @field_validator("play")
-    @classmethod
-    def _known(cls, play: str) -> str:
-        if not is_play_file(play) and play not in PLAYS:
-            there = f"no play is called {short_repr(play)}; there are {', '.join(PLAYS)}"
-            raise ValueError(PLAYS.problem_with(play) or there)
-        return play
-
-    @model_validator(mode="after")
-    def _playable(self) -> Self:
-        try:
-            tree, another = self.build_tree(), self.build_tree()
-            check_tree(tree, Store, GIVEN)
-        except ParameterError as error:
-            raise FieldError(f"params.{error.parameter}", str(error)) from error
-        except _SubstitutionError as error:
-            raise FieldError("substitute", message_of(error)) from error
-        except (TreeFileError, WiringError) as error:
-            raise FieldError("play", message_of(error)) from error
-        except Exception as error:
-            raise FieldError("params", message_of(error)) from error
-        if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
-            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
-            raise FieldError("play", f"{self.play} {problem}")
-        return self
-
-    def build_tree(self) -> Behaviour:
-        """A new tree of this robot's play."""
-        builder = find_play(self.play)
-        tree = builder(**check_parameters(self.play, builder, self.params))
-        if not self.substitute:
-            return tree
-        try:
-            return substitute(tree, self.substitute)
-        except TreeFileError as error:
-            # Rules in the scenario itself are in no file of their own.
-            told = str(error) if isinstance(self.substitute, str) else error.problem
-            raise _SubstitutionError(told) from error
-
-    def limits_over(self, base: RobotLimits) -> RobotLimits:
-        """The robot's limits where ``base`` holds for those the scenario leaves out."""
-        if self.limits is None:
-            return base
-        return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
-
-
-class _SubstitutionError(RobobtError, ValueError):
-    """A rule for nodes to be replaced is wrong."""
-
-
-class Robots(Part):
-    """The robots of both teams."""
-
-    blue: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
-    yellow: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
-
-    @model_validator(mode="after")
-    def _numbers_differ(self) -> Self:
-        for team in Team:
-            numbers: set[int] = set()
-            for index, robot in enumerate(self.of(team)):
-                if robot.number in numbers:
-                    raise FieldError(
-                        f"{team.value}.{index}.number", f"{team.value} has two robots {robot.number}"
-                    )
-                numbers.add(robot.number)
-            keepers = [index for index, robot in enumerate(self.of(team)) if robot.goalkeeper]
-            if len(keepers) > 1:
-                raise FieldError(f"{team.value}.{keepers[1]}.goalkeeper", f"{team.value} has two goalkeepers")
-        if not self.blue and not self.yellow:
-            raise ValueError("there is no robot")
-        return self
-
-    def of(self, team: Team) -> tuple[RobotSetup, ...]:
-        """The robots of one team."""
-        return self.blue if team is Team.BLUE else self.yellow
-
-    def __iter__(self) -> Iterator[tuple[RobotId, RobotSetup]]:  # type: ignore[override]
-        for team in Team:
-            for robot in self.of(team):
-                yield RobotId(team, robot.number), robot
 
 
 class Ends(Part):
@@ -225,9 +119,12 @@ class Scenario(Part):
     def _startable(self) -> Self:
         if self.ends.score_limit is not None and self.referee is None:
             raise FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
+        self._check_starts()
+        return self
+
+    def _check_starts(self) -> None:
         check_starts(self.field, self._starts, self.ball)
         self._placer(np.random.default_rng(0)).place()
-        return self
 
     @property
     def _starts(self) -> dict[RobotId, RobotStart]:
@@ -245,8 +142,44 @@ class Scenario(Part):
         """An error about this scenario."""
         return ScenarioError(self.source, problem, field)
 
+    def with_robot(self, robot: str | RobotId, /, **changes: object) -> Scenario:
+        """Return the scenario with one robot changed; this one stays as it is.
+
+        ``scenario.with_robot("blue 0", rater="open_angle")`` gives its play another parameter,
+        ``scenario.with_robot("blue 0", play="attack_nn", limits={"max_speed": 2.0})`` changes
+        the robot itself. What is not named stays, the other parameters of the play included.
+
+        Args:
+            robot: which robot, as "blue 0".
+            **changes: fields of :class:`RobotSetup`; any other name is a parameter of the play.
+
+        Raises:
+            ScenarioError: there is no such robot, the play has no such parameter, or a value
+                does not fit; the message names the robot and the field.
+        """
+        name = " ".join(str(robot).split())
+        named = {str(identity): (identity, setup) for identity, setup in self.robots}
+        if name not in named:
+            raise self.error(f"there is no robot {name!r}; there are {', '.join(named)}", "robots")
+        identity, setup = named[name]
+        place = f"robots.{identity.team.value}.{self.robots.of(identity.team).index(setup)}"
+        try:
+            replacement = setup.changed(changes)
+        except ValidationError as error:
+            field, problem = first_problem(error, RobotSetup, changes)
+            raise self.error(f"{name}: {problem}", f"{place}.{field}") from error
+        try:
+            changed = self.model_copy(update={"robots": self.robots.replaced({identity: replacement})})
+            changed._check_starts()
+        except ValidationError as error:
+            field, problem = first_problem(error, Robots, {})
+            raise self.error(problem, f"robots.{field}") from error
+        except FieldError as error:
+            raise self.error(str(error), error.field) from error
+        return changed
+
     def lasting(self, time_limit: float) -> Scenario:
-        """The same scenario with another time limit [s]."""
+        """Return the scenario with another time limit [s]."""
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
     def goalkeepers(self) -> dict[Team, int]:
