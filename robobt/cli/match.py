@@ -6,7 +6,7 @@ import re
 import tempfile
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -32,6 +32,7 @@ from robobt.cli.common import (
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
+    from robobt.match.results.results import Spread
 
 
 class OnError(StrEnum):
@@ -280,7 +281,7 @@ def _times(summary: Summary) -> Table:
         if robot.go_to_ball.n:
             spreads = [robot.go_to_ball, robot.shoot, robot.total]
             kicks = robot.kicks.mean or 0.0
-            listed.add_row(name, *[_say_spread(spread) for spread in spreads], f"{kicks:.1f}")
+            listed.add_row(name, *[_spread_text(spread) for spread in spreads], f"{kicks:.1f}")
     return listed
 
 
@@ -294,7 +295,7 @@ def _goals(summary: Summary) -> Table:
     return listed
 
 
-def _say_spread(spread: Any) -> str:
+def _spread_text(spread: Spread) -> str:
     if spread.mean is None:
         return "-"
     return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (var. {spread.variance:.4f})")
