@@ -87,7 +87,7 @@ def play_match(
         scenario: what is played.
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
-        record: file to record the match to; its name ends in ``.robobt.jsonl`` or ``.robobt.jsonl.gz``.
+        record: file to record the match to.
 
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.

@@ -68,12 +68,12 @@ def run_trials(
     is played. Ctrl-C ends the run; what is finished is kept.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         world_factory: makes the world of each trial; with several workers a function of a module,
             because it is sent to them by name.
-        trials: how often; by default what the scenario says.
-        workers: processes; one is this process itself.
-        seed: what the trials' seeds follow from; by default what the scenario says.
+        trials: number of trials; the scenario's by default.
+        workers: number of processes; one is this process itself.
+        seed: seed from which the trials' seeds follow; the scenario's by default.
         out: file to append each result to as it finishes; trials it holds already are not played again.
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes, and with those of ``out`` first.
@@ -127,7 +127,7 @@ def run_trials(
         interrupted = True
     finally:
         if file is not None:
-            file.__exit__(None, None, None)
+            file.close()
     return Run([results[trial] for trial in sorted(results)], seed, interrupted)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
@@ -36,7 +36,7 @@ class ScenarioError(ConfigError):
 
 
 class Ends(Part):
-    """What ends a trial; the first that happens."""
+    """Conditions that end a trial; the first that holds does."""
 
     time_limit: float = Field(gt=0, le=3600, description="longest trial [s]")
     goal: bool | None = Field(None, description="a goal; by default where there is no referee")
@@ -53,7 +53,7 @@ class Ends(Part):
 
 
 class Scenario(Part):
-    """One set-up that can be played any number of times.
+    """A set-up that can be played any number of times.
 
     A robot's start is in its own team's view (own goal at -x), the ball's in
     world coordinates, which are blue's view. SI units.
@@ -62,8 +62,8 @@ class Scenario(Part):
     name: str = Field("", max_length=80, description="what it is called; by default the file's name")
     description: str = Field("", max_length=2000)
     field: FieldGeometry = Field(DIVISION_B, description="a preset's name or dimensions [m]")
-    simulator: dict[str, Any] = Field(
-        default_factory=lambda: {"preset": "default"},
+    simulator: dict[str, object] = Field(
+        {"preset": "default"},
         description="a preset's name, or preset, realism and settings to change; for the world factory",
     )
     period: float = Field(0.025, ge=0.005, le=0.1, description="control period [s]")
@@ -73,7 +73,7 @@ class Scenario(Part):
         "the commands on their way",
     )
     seed: int = Field(0, ge=0, le=MAX_SEED, description="what every trial's randomness follows from")
-    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played unless told otherwise")
+    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played by default")
     robots: Robots
     ball: BallStart = Field(BallStart(position=(0.0, 0.0)), description="where the ball starts")
     clearance: float = Field(
@@ -98,7 +98,7 @@ class Scenario(Part):
 
     @field_validator("field", mode="before")
     @classmethod
-    def _field_by_name(cls, value: Any) -> Any:
+    def _field_by_name(cls, value: object) -> object:
         if not isinstance(value, str):
             return value
         if value not in FIELDS:
@@ -107,12 +107,12 @@ class Scenario(Part):
 
     @field_validator("simulator", mode="before")
     @classmethod
-    def _simulator_by_name(cls, value: Any) -> Any:
+    def _simulator_by_name(cls, value: object) -> object:
         return {"preset": value} if isinstance(value, str) else value
 
     @field_validator("referee", mode="before")
     @classmethod
-    def _referee_or_not(cls, value: Any) -> Any:
+    def _referee_or_not(cls, value: object) -> object:
         return {True: {}, False: None}[value] if isinstance(value, bool) else value
 
     @model_validator(mode="after")
@@ -135,11 +135,11 @@ class Scenario(Part):
 
     @property
     def source(self) -> str:
-        """The file it came from, or its name."""
+        """Return the file it came from, or its name."""
         return self._source or self.name or "scenario"
 
     def error(self, problem: str, field: str = "") -> ScenarioError:
-        """An error about this scenario."""
+        """Make an error about this scenario."""
         return ScenarioError(self.source, problem, field)
 
     def with_robot(self, robot: str | RobotId, /, **changes: object) -> Scenario:
@@ -183,11 +183,11 @@ class Scenario(Part):
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
     def goalkeepers(self) -> dict[Team, int]:
-        """Numbers of the teams' goalkeepers, for teams that have one."""
+        """Return the numbers of the teams' goalkeepers, for teams that have one."""
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}
 
     def place(self, rng: np.random.Generator) -> Placement:
-        """Where everything stands in one trial, in world coordinates.
+        """Sample where everything stands in one trial, in world coordinates.
 
         Raises:
             ScenarioError: an object found no free place in a bounded number of tries.
@@ -199,10 +199,10 @@ class Scenario(Part):
 
 
 def load_scenario(source: str | Path) -> Scenario:
-    """A scenario from a YAML file or, where there is no such file, a bundled one by its name.
+    """Load a scenario from a YAML file or, where there is no such file, a bundled one by its name.
 
     Raises:
-        ScenarioError: one line that names the file and the field or line.
+        ScenarioError: the file cannot be read or is no scenario; it names the field or line.
     """
     path = Path(source)
     bundled = bundled_scenarios()
@@ -219,17 +219,18 @@ def load_scenario(source: str | Path) -> Scenario:
     # From here, not from the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))
     scenario = scenario_from(data, str(path))
-    return scenario if scenario.name else _named(scenario, path.stem)
+    return scenario if scenario.name else scenario.model_copy(update={"name": path.stem})
 
 
 def scenario_from(data: object, source: str) -> Scenario:
-    """A scenario from plain data, as a YAML or JSON file holds it.
+    """Make a scenario of plain data, as a YAML or JSON file holds it.
 
     Args:
-        source: what messages call it.
+        data: the data.
+        source: name for messages.
 
     Raises:
-        ScenarioError: one line that names the source and the field.
+        ScenarioError: the data is no scenario; the message names the source and the field.
     """
     if not isinstance(data, dict):
         raise ScenarioError(source, "a scenario is a mapping of fields")
@@ -244,7 +245,7 @@ def scenario_from(data: object, source: str) -> Scenario:
 
 
 def rename_files(data: object, rename: Callable[[str], str]) -> None:
-    """Call the robots' files (trees, substitution rules) otherwise in a scenario's plain data."""
+    """Rename the robots' files (trees, substitution rules) in a scenario's plain data."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
@@ -255,9 +256,3 @@ def rename_files(data: object, rename: Callable[[str], str]) -> None:
                 robot["play"] = rename(play)
             if isinstance(rules, str):
                 robot["substitute"] = rename(rules)
-
-
-def _named(scenario: Scenario, name: str) -> Scenario:
-    named = scenario.model_copy(update={"name": name})
-    named._source = scenario._source
-    return named
