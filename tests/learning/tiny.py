@@ -115,7 +115,7 @@ def small_agent(observation: int, actions: int, seed: int = 0, **settings) -> DD
 def learn(
     agent: DDPG, transitions: Transitions, updates: int, batch: int = 64, seed: int = 0, decay: bool = False
 ) -> None:
-    """Updates on batches of given transitions, with rates that fall to nothing if told to."""
+    """Updates on batches of given transitions, with rates that fall to nothing if asked to."""
     sizes = transitions.observation.shape[1], transitions.action.shape[1]
     replay = Replay(len(transitions.reward), *sizes)
     replay.add(transitions)
@@ -123,4 +123,4 @@ def learn(
     for done in range(updates):
         if decay:
             agent.set_rates(1.0 - done / updates)
-        agent.update(replay.draw(batch, rng), rng)
+        agent.update(replay.sample(batch, rng), rng)

@@ -3,11 +3,11 @@
 The plain agent learns as Spinning Up defines DDPG. With Q the critic, mu the
 actor and Q', mu' their targets:
 
-    (1)  y  = r + gamma (1 - d) Q'(s', mu'(s'))              what Q(s, a) should be
+    (1)  y  = r + gamma (1 - d) Q'(s', mu'(s'))              the target of Q(s, a)
     (2)  critic: minimise the mean of (Q(s, a) - y)^2 over a batch
     (3)  actor:  maximise the mean of Q(s, mu(s)) over a batch
 
-and after each update both targets move a share tau towards what they follow
+and after each update both targets move a share tau towards the networks they follow
 (Spinning Up's polyak is 1 - tau). The replay hands out gamma (1 - d) as one
 number, ``discount``, so that n-step returns need no other equation.
 """
@@ -24,7 +24,7 @@ from torch import Tensor
 
 from robobt.learning.agents.distributional import Atoms
 from robobt.learning.agents.networks import Actor, Critic
-from robobt.learning.agents.replay import Batch, Outlook
+from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.training.settings import AgentSettings
 
 
@@ -36,13 +36,13 @@ class DDPG:
         scale: (observation,) typical size of each entry of the observation.
         smoothed: (action,) which entries of the action target smoothing may change; a
             threshold, as that of a kick, it may not.
-        seed: where the first weights come from.
+        seed: of the initial weights.
 
     Attributes:
-        actor, critic: the networks that learn.
-        target_actor, target_critic: the slow ones that :math:`y` is made with.
-        updates: how many there were.
-        critic_loss, value: sums over the updates since :meth:`forget_sums`.
+        actor, critic: the online networks.
+        target_actor, target_critic: the slow ones, of which the target y is made.
+        updates: number of updates so far.
+        critic_loss, value: sums over the updates since :meth:`reset_sums`.
     """
 
     def __init__(
@@ -65,13 +65,13 @@ class DDPG:
         for frozen in (self.target_actor, self.target_critic):
             frozen.requires_grad_(False)
         decay = settings.weight_decay
-        self._actor_descent = _Descent(list(self.actor.parameters()), settings.actor_rate, decay)
-        self._critic_descent = _Descent(list(self.critic.parameters()), settings.critic_rate, decay)
+        self._actor_adam = _Adam(list(self.actor.parameters()), settings.actor_rate, decay)
+        self._critic_adam = _Adam(list(self.critic.parameters()), settings.critic_rate, decay)
         self._online: list[Tensor] = [*self.actor.parameters(), *self.critic.parameters()]
         self._targets: list[Tensor] = [*self.target_actor.parameters(), *self.target_critic.parameters()]
         self._atoms = Atoms(*settings.returns, settings.atoms) if settings.atoms else None
         self._smoothed = torch.tensor(list(smoothed), dtype=torch.float32)
-        self._shares = (1.0, settings.one_step_weight)
+        self._loss_weights = (1.0, settings.one_step_weight)
         self.updates = 0
         self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
 
@@ -79,69 +79,69 @@ class DDPG:
         """Learn from a batch.
 
         Returns:
-            (batch,) squared errors and (batch,) squared slopes dQ/da of the actor, which
-            prioritised replay draws by; zeros for a batch that was drawn evenly.
+            (batch,) squared TD errors and (batch,) squared norms of dQ/da at the actor's action,
+            which make the priorities of a replay; zeros for a batch that was sampled uniformly.
         """
         self.updates += 1
         errors = self._update_critic(batch, rng)
-        slopes = torch.zeros_like(errors)
+        gradients = torch.zeros_like(errors)
         if self.updates % self.settings.actor_every == 0:
-            slopes = self._update_actor(batch.observation)
+            gradients = self._update_actor(batch.observation)
         if self.updates % self.settings.target_every == 0:
             self._move_targets()
-        return errors, slopes
+        return errors, gradients
 
     @torch.no_grad()
     def _move_targets(self) -> None:
-        """target <- (1 - tau) target + tau online."""
+        """Move both targets: target <- (1 - tau) target + tau online."""
         torch._foreach_lerp_(self._targets, self._online, self.settings.tau)
 
     def _update_critic(self, batch: Batch, rng: np.random.Generator) -> Tensor:
-        """(2): the loss of the critic, summed over the batch's outlooks; returns squared errors."""
+        """Take a step of (2), its losses summed over the batch's horizons; return squared TD errors."""
         estimate = self.critic(batch.observation, batch.action)
         loss, errors = torch.zeros(()), torch.zeros(len(batch.action))
-        for outlook, share in zip(batch.outlooks, self._shares, strict=False):
-            wanted = self._wanted(outlook, rng)
-            rows = self._loss(estimate, wanted)
+        for bootstrap, weight in zip(batch.bootstraps, self._loss_weights, strict=False):
+            target = self._target(bootstrap, rng)
+            rows = self._loss(estimate, target)
             if batch.weights is not None:
                 rows = rows * batch.weights
-                errors += share * self._squared_error(estimate, wanted)
-            loss = loss + share * rows.mean()
-        self._critic_descent.step(torch.autograd.grad(loss, self._critic_descent.weights))
+                errors += weight * self._squared_error(estimate, target)
+            loss = loss + weight * rows.mean()
+        self._critic_adam.step(torch.autograd.grad(loss, self._critic_adam.weights))
         self.critic_loss += loss.detach()
         return errors
 
     @torch.no_grad()
-    def _wanted(self, outlook: Outlook, rng: np.random.Generator) -> Tensor:
-        """(1): y = r + gamma (1 - d) Q'(s', mu'(s')), (batch, 1); of a distribution, (batch, atoms).
+    def _target(self, bootstrap: Bootstrap, rng: np.random.Generator) -> Tensor:
+        """Compute (1), y = r + gamma (1 - d) Q'(s', mu'(s')): (batch, 1), of a distribution (batch, atoms).
 
         With TD3's two critics Q' is the smaller.
         """
-        action = self._smooth(self.target_actor(outlook.following), rng)
-        output: Tensor = self.target_critic(outlook.following, action)
+        action = self._smooth(self.target_actor(bootstrap.next_observation), rng)
+        output: Tensor = self.target_critic(bootstrap.next_observation, action)
         if self._atoms is None:
-            return outlook.reward[:, None] + outlook.discount[:, None] * output.amin(0)
+            return bootstrap.reward[:, None] + bootstrap.discount[:, None] * output.amin(0)
         if len(output) > 1:
             smaller = self._atoms.mean(output).argmin(0)
             output = output[smaller, torch.arange(len(smaller))]
         probabilities = torch.softmax(output.reshape(-1, self._atoms.count), -1)
-        return self._atoms.project(probabilities, outlook.reward, outlook.discount)
+        return self._atoms.project(probabilities, bootstrap.reward, bootstrap.discount)
 
-    def _loss(self, estimate: Tensor, wanted: Tensor) -> Tensor:
-        """(batch,) (Q - y)^2, summed over the critics; C51 takes the distributions' cross-entropy."""
+    def _loss(self, estimate: Tensor, target: Tensor) -> Tensor:
+        """Compute (Q - y)^2, (batch,), summed over the critics; C51 takes the distributions' cross-entropy."""
         if self._atoms is None:
-            return (estimate - wanted).square().sum((0, 2))
-        return -(wanted * torch.log_softmax(estimate, -1)).sum((0, 2))
+            return (estimate - target).square().sum((0, 2))
+        return -(target * torch.log_softmax(estimate, -1)).sum((0, 2))
 
     @torch.no_grad()
-    def _squared_error(self, estimate: Tensor, wanted: Tensor) -> Tensor:
-        """(batch,) (Q - y)^2 of the first critic's mean."""
+    def _squared_error(self, estimate: Tensor, target: Tensor) -> Tensor:
+        """Compute (Q - y)^2, (batch,), of the first critic's mean."""
         if self._atoms is None:
-            return (estimate[0] - wanted)[:, 0].square()
-        return (self._atoms.mean(estimate[0]) - wanted @ self._atoms.values).square()
+            return (estimate[0] - target)[:, 0].square()
+        return (self._atoms.mean(estimate[0]) - target @ self._atoms.values).square()
 
     def _smooth(self, action: Tensor, rng: np.random.Generator) -> Tensor:
-        """TD3's target smoothing: clipped noise on the target's action."""
+        """Add clipped noise to the target actor's action, as TD3 does."""
         spread, limit = self.settings.smoothing, self.settings.smoothing_limit
         if spread == 0.0:
             return action
@@ -149,34 +149,34 @@ class DDPG:
         return (action + (spread * noise).clamp(-limit, limit) * self._smoothed).clamp(-1.0, 1.0)
 
     def _update_actor(self, observation: Tensor) -> Tensor:
-        """(3), as the chain rule dQ/dtheta = dQ/da dmu/dtheta; returns the squared slopes dQ/da."""
+        """Take a step of (3), by dQ/dtheta = dQ/da dmu/dtheta; return the squared norms of dQ/da."""
         action = self.actor(observation)
         taken = action.detach().requires_grad_()
         output = self.critic.first(observation, taken)
         value = output[:, 0] if self._atoms is None else self._atoms.mean(output)
-        # Asked for the slope alone, so that the critic gets no gradient from the actor's step.
-        (slope,) = torch.autograd.grad(value.sum(), taken)
-        squared: Tensor = slope.square().sum(-1)
-        if self.settings.slope_limit is not None:
-            slope = slope * (self.settings.slope_limit / squared.sqrt()).clamp(max=1.0)[:, None]
-        # Adam descends; the value is to rise.
-        weights = self._actor_descent.weights
-        self._actor_descent.step(torch.autograd.grad(action, weights, -slope / len(slope)))
+        # For dQ/da alone, so that the critic gets no gradient from the actor's step.
+        (gradient,) = torch.autograd.grad(value.sum(), taken)
+        squared: Tensor = gradient.square().sum(-1)
+        if self.settings.dqda_limit is not None:
+            gradient = gradient * (self.settings.dqda_limit / squared.sqrt()).clamp(max=1.0)[:, None]
+        # Adam minimises; the value is to be maximised.
+        weights = self._actor_adam.weights
+        self._actor_adam.step(torch.autograd.grad(action, weights, -gradient / len(gradient)))
         self.value += value.detach().mean() * self.settings.actor_every
         return squared
 
     def set_rates(self, share: float) -> None:
         """Scale both learning rates to ``share`` of those in the settings."""
-        for descent in (self._actor_descent, self._critic_descent):
-            for group in descent.adam.param_groups:
-                group["lr"] = descent.rate * share
+        for optimiser in (self._actor_adam, self._critic_adam):
+            for group in optimiser.adam.param_groups:
+                group["lr"] = optimiser.rate * share
 
-    def forget_sums(self) -> None:
-        """Start :attr:`critic_loss` and :attr:`value` anew."""
+    def reset_sums(self) -> None:
+        """Set :attr:`critic_loss` and :attr:`value` to zero."""
         self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Weights, optimisers and counters, as arrays by name."""
+        """Return weights, optimisers and counters as arrays by name."""
         state: dict[str, NDArray[np.generic]] = {
             "updates": np.array([self.updates]),
             "sums": np.array([float(self.critic_loss), float(self.value)]),
@@ -189,10 +189,11 @@ class DDPG:
         return {key: array.copy() for key, array in state.items()}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Become the agent whose ``state`` it was.
+        """Take over another agent's :meth:`state`.
 
         Raises:
-            KeyError, RuntimeError: it is another agent's.
+            KeyError: it is that of an agent with other settings.
+            RuntimeError: the same.
         """
         self.updates = int(state["updates"].tolist()[0])
         loss, value = state["sums"].tolist()
@@ -219,10 +220,10 @@ class DDPG:
         )
 
     def _optimisers(self) -> tuple[tuple[str, torch.optim.Adam], ...]:
-        return (("actor_adam", self._actor_descent.adam), ("critic_adam", self._critic_descent.adam))
+        return (("actor_adam", self._actor_adam.adam), ("critic_adam", self._critic_adam.adam))
 
 
-class _Descent:
+class _Adam:
     """Adam over all weights of a network, in single calls whatever their number."""
 
     def __init__(self, weights: list[torch.nn.Parameter], rate: float, decay: float) -> None:

@@ -15,26 +15,28 @@ class Atoms:
     """Evenly spaced values that a return may take.
 
     Args:
-        low, high: the smallest and largest return; what lies outside counts as these.
+        low: the smallest return; what lies below counts as this.
+        high: the largest return; what lies above counts as this.
         count: how many atoms, at least 2.
     """
 
     def __init__(self, low: float, high: float, count: int) -> None:
         if count < 2 or not low < high:
-            raise ValueError(f"{count} atoms from {low} to {high} hold no distribution")
+            raise ValueError(f"needs at least 2 atoms on a rising range, not {count} from {low} to {high}")
         self.low, self.high, self.count = low, high, count
         self.values = torch.linspace(low, high, count)
 
     def mean(self, logits: Tensor) -> Tensor:
-        """Expected return of (..., atoms) logits: (...)."""
+        """Compute the expected return of (..., atoms) logits: (...)."""
         return torch.softmax(logits, -1) @ self.values
 
     def project(self, probabilities: Tensor, reward: Tensor, discount: Tensor) -> Tensor:
-        """The distribution of reward + discount * Z, put back on the atoms.
+        """Project the distribution of reward + discount * Z on the atoms.
 
         Args:
             probabilities: (batch, atoms) of Z.
-            reward, discount: (batch,).
+            reward: (batch,).
+            discount: (batch,).
 
         Returns:
             (batch, atoms), each row of mass 1.

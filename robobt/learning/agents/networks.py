@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 import torch
@@ -13,12 +13,12 @@ from torch import Tensor, nn
 
 
 def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | None) -> nn.Sequential:
-    """Linear layers with ReLU between them, initialised as PyTorch does.
+    """Build linear layers with ReLU between them, initialised as PyTorch does.
 
     Args:
         sizes: of the input, the hidden layers and the output.
         layer_norm: normalise each hidden layer before its ReLU.
-        generator: where the weights come from; None for the global one.
+        generator: of the initial weights; None for the global one.
     """
     layers: list[nn.Module] = []
     for i, (fan_in, fan_out) in enumerate(pairwise(sizes)):
@@ -28,6 +28,15 @@ def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | Non
                 layers.append(nn.LayerNorm(fan_out))
             layers.append(nn.ReLU())
     return nn.Sequential(*layers)
+
+
+class ActorBuild(TypedDict):
+    """The arguments of an :class:`Actor`, as its file holds them."""
+
+    scale: list[float]
+    actions: int
+    hidden: list[int]
+    layer_norm: bool
 
 
 class Actor(nn.Module):
@@ -40,6 +49,8 @@ class Actor(nn.Module):
         scale: (observation,) typical size of each entry, in its SI unit.
         actions: length of the action.
         hidden: sizes of the hidden layers.
+        layer_norm: see :func:`mlp`.
+        generator: see :func:`mlp`.
 
     Attributes:
         build: the arguments that make an actor of the same shape.
@@ -56,7 +67,7 @@ class Actor(nn.Module):
         generator: torch.Generator | None = None,
     ) -> None:
         super().__init__()
-        self.build: dict[str, Any] = {
+        self.build: ActorBuild = {
             "scale": [float(size) for size in scale],
             "actions": actions,
             "hidden": list(hidden),
@@ -66,7 +77,7 @@ class Actor(nn.Module):
         self.body = mlp([len(scale), *hidden, actions], layer_norm, generator)
 
     def forward(self, observation: Tensor) -> Tensor:
-        """(..., observation) in SI units -> (..., action) in [-1, 1]."""
+        """Map (..., observation) in SI units to (..., action) in [-1, 1]."""
         return torch.tanh(self.body(observation * self.inverse_scale))
 
 
@@ -74,11 +85,13 @@ class Critic(nn.Module):
     """One or several independent estimates of the return of (observation, action).
 
     Args:
-        scale: as for :class:`Actor`.
-        actions: length of the action.
-        hidden: sizes of the hidden layers.
+        scale: see :class:`Actor`.
+        actions: see :class:`Actor`.
+        hidden: see :class:`Actor`.
         outputs: 1 for a value, else the logits of a distribution over so many atoms.
         heads: how many estimates; TD3 takes two.
+        layer_norm: see :func:`mlp`.
+        generator: see :func:`mlp`.
     """
 
     inverse_scale: Tensor
@@ -99,18 +112,18 @@ class Critic(nn.Module):
         self.heads = nn.ModuleList([mlp(sizes, layer_norm, generator) for _ in range(heads)])
 
     def forward(self, observation: Tensor, action: Tensor) -> Tensor:
-        """(batch, observation), (batch, action) -> (heads, batch, outputs)."""
+        """Map (batch, observation) and (batch, action) to (heads, batch, outputs)."""
         both = torch.cat([observation * self.inverse_scale, action], -1)
         return torch.stack([head(both) for head in self.heads])
 
     def first(self, observation: Tensor, action: Tensor) -> Tensor:
-        """The first estimate alone, which the actor climbs: (batch, outputs)."""
+        """Map to the first estimate alone, (batch, outputs), which the actor maximises."""
         output: Tensor = self.heads[0](torch.cat([observation * self.inverse_scale, action], -1))
         return output
 
 
 def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-    """An actor over numpy arrays, without gradient: (n, observation) -> (n, action)."""
+    """Return an actor over numpy arrays, without gradient: (n, observation) -> (n, action)."""
 
     def decide(observation: NDArray[np.float64]) -> NDArray[np.float64]:
         with torch.no_grad():
@@ -121,7 +134,7 @@ def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float6
 
 
 def _linear(fan_in: int, fan_out: int, generator: torch.Generator | None) -> nn.Linear:
-    """PyTorch's default layer, drawn from our generator instead of the process's."""
+    """Build PyTorch's default layer with weights from our generator instead of the process's."""
     layer: nn.Linear = nn.utils.skip_init(nn.Linear, fan_in, fan_out)  # type: ignore[no-untyped-call]
     bound = fan_in**-0.5
     with torch.no_grad():

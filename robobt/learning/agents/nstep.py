@@ -12,20 +12,20 @@ FloatArray = NDArray[np.float64]
 
 
 class Transitions(NamedTuple):
-    """What a critic learns from: value of (observation, action) = reward + discount * value(next).
+    """What a critic learns from: Q(observation, action) = reward + discount * Q(next observation, ...).
 
     Attributes:
         observation, action: (m, ...).
         reward: (m,) discounted sum of up to n rewards.
         discount: (m,) gamma^k for k rewards summed, 0 when the episode terminated.
-        following: (m, ...) the observation k steps later.
+        next_observation: (m, ...) the observation k steps later.
     """
 
     observation: FloatArray
     action: FloatArray
     reward: FloatArray
     discount: FloatArray
-    following: FloatArray
+    next_observation: FloatArray
 
 
 class NStep:
@@ -39,7 +39,8 @@ class NStep:
             once for each; what is smaller than the first must be 1.
         gamma: discount a step.
         envs: number of environments.
-        observation_size, action_size: lengths of the vectors.
+        observation_size: length of the vector.
+        action_size: length of the vector.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class NStep:
         self._ages = np.zeros(n, dtype=np.int64)
         self._first_rewards = np.zeros((n, envs))
         self._first_discounts = np.zeros((n, envs))
-        self._first_following = np.zeros((n, envs, observation_size))
+        self._first_next = np.zeros((n, envs, observation_size))
         self._step = 0
 
     def add(
@@ -64,17 +65,19 @@ class NStep:
         observation: FloatArray,
         action: FloatArray,
         reward: FloatArray,
-        following: FloatArray,
+        next_observation: FloatArray,
         terminated: NDArray[np.bool_],
         truncated: NDArray[np.bool_],
     ) -> list[tuple[Transitions, ...]]:
-        """Take in one step; returns the transitions that it completes, once for each horizon.
+        """Add one step of every environment; return the transitions it completes, once for each horizon.
 
         Args:
-            observation, action: (envs, ...) before the step.
+            observation: (envs, ...) before the step.
+            action: (envs, ...) taken in it.
             reward: (envs,) of it.
-            following: (envs, ...) after it: an ended episode's own last observation.
-            terminated, truncated: (envs,) how episodes ended with this step.
+            next_observation: (envs, ...) after it: an ended episode's own last observation.
+            terminated: (envs,) whether the episode ended with this step.
+            truncated: (envs,) whether a time limit cut it off.
         """
         slot = self._step % self._n
         self._step += 1
@@ -86,7 +89,7 @@ class NStep:
         if self._one_step_too:
             self._first_rewards[slot] = reward
             self._first_discounts[slot] = self._gamma * ~terminated
-            self._first_following[slot] = following
+            self._first_next[slot] = next_observation
         ended = terminated | truncated
         complete = []
         for i in range(self._n):
@@ -94,7 +97,7 @@ class NStep:
             self._ages[i] += 1
             out = self._open[i] & ended if self._ages[i] < self._n else self._open[i].copy()
             if out.any():
-                complete.append(self._take(i, out, following, terminated))
+                complete.append(self._take(i, out, next_observation, terminated))
         return complete
 
     def flush(self, observation: FloatArray) -> list[tuple[Transitions, ...]]:
@@ -107,12 +110,12 @@ class NStep:
         ]
 
     def _take(
-        self, slot: int, which: NDArray[np.bool_], following: FloatArray, terminated: NDArray[np.bool_]
+        self, slot: int, which: NDArray[np.bool_], next_observation: FloatArray, terminated: NDArray[np.bool_]
     ) -> tuple[Transitions, ...]:
         self._open[slot] &= ~which
         observation, action = self._observations[slot, which], self._actions[slot, which]
         discount = self._gamma ** self._ages[slot] * ~terminated[which]
-        far = Transitions(observation, action, self._returns[slot, which], discount, following[which])
+        far = Transitions(observation, action, self._returns[slot, which], discount, next_observation[which])
         if not self._one_step_too:
             return (far,)
         near = Transitions(
@@ -120,6 +123,6 @@ class NStep:
             action,
             self._first_rewards[slot, which],
             self._first_discounts[slot, which],
-            self._first_following[slot, which],
+            self._first_next[slot, which],
         )
         return (far, near)

@@ -1,4 +1,4 @@
-"""What the agent remembers: transitions in one packed array, drawn evenly or by priority."""
+"""The replay buffer: transitions in one packed array, sampled uniformly or by priority."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Floats = NDArray[np.float32]
 
 
 @dataclass(slots=True)
-class Outlook:
-    """One way to bootstrap: value = reward + discount * value(following); rows as in Transitions."""
+class Bootstrap:
+    """A return to bootstrap: target = reward + discount * Q(next observation); rows as in Transitions."""
 
     reward: Tensor
     discount: Tensor
-    following: Tensor
+    next_observation: Tensor
 
 
 @dataclass(slots=True)
@@ -31,14 +31,14 @@ class Batch:
 
     Attributes:
         observation, action: (batch, ...).
-        outlooks: one for each number of steps that the replay holds returns of.
-        weights: (batch,) importance weights, None when drawn evenly.
-        rows: (batch,) where they lie in the replay.
+        bootstraps: one for each horizon (number of steps) of the returns in the replay.
+        weights: (batch,) importance weights, None when sampled uniformly.
+        rows: (batch,) indices in the replay.
     """
 
     observation: Tensor
     action: Tensor
-    outlooks: list[Outlook]
+    bootstraps: list[Bootstrap]
     weights: Tensor | None
     rows: NDArray[np.int64]
 
@@ -46,18 +46,19 @@ class Batch:
 class Replay:
     """A ring of transitions behind an optional part that is never overwritten.
 
-    Every row is packed as observation, action, then for each outlook reward,
-    discount and following observation, so that a batch is one gather.
+    Every row is packed as observation, action, then for each horizon reward,
+    discount and next observation, so that a batch is one gather.
 
     Args:
         capacity: rows, demonstrations included.
-        observation_size, action_size: lengths of the vectors.
-        outlooks: for how many numbers of steps each row holds a return.
+        observation_size: length of the vector.
+        action_size: length of the vector.
+        horizons: for how many numbers of steps each row holds a return.
     """
 
-    def __init__(self, capacity: int, observation_size: int, action_size: int, outlooks: int = 1) -> None:
+    def __init__(self, capacity: int, observation_size: int, action_size: int, horizons: int = 1) -> None:
         self.capacity = capacity
-        self._sizes = [observation_size, action_size, *[1, 1, observation_size] * outlooks]
+        self._sizes = [observation_size, action_size, *[1, 1, observation_size] * horizons]
         # Untouched pages of zeros take no memory until they are written.
         self._rows: Floats = np.zeros((capacity, sum(self._sizes)), dtype=np.float32)
         self._view = torch.from_numpy(self._rows)
@@ -68,16 +69,19 @@ class Replay:
     def __len__(self) -> int:
         return self._filled
 
-    def add(self, *outlooks: Transitions) -> NDArray[np.int64]:
-        """Append transitions, over the oldest when full; the same ones seen over several horizons.
+    def add(self, *transitions: Transitions) -> NDArray[np.int64]:
+        """Append transitions, over the oldest when full; the same ones once for each horizon.
 
         Returns:
-            The rows they were put in.
+            Their rows in the replay.
+
+        Raises:
+            ValueError: they are more than the replay has room for.
         """
-        first = outlooks[0]
+        first = transitions[0]
         parts = [first.observation, first.action]
-        for seen in outlooks:
-            parts += [seen.reward[:, None], seen.discount[:, None], seen.following]
+        for part in transitions:
+            parts += [part.reward[:, None], part.discount[:, None], part.next_observation]
         packed = np.concatenate(parts, axis=1)
         room = self.capacity - self.kept
         if len(packed) > room:
@@ -89,7 +93,7 @@ class Replay:
         return rows
 
     def keep(self) -> None:
-        """Never overwrite what is in the replay now.
+        """Protect what is in the replay now from being overwritten.
 
         Raises:
             ValueError: that would leave no room for anything else.
@@ -98,48 +102,52 @@ class Replay:
             raise ValueError(f"{self._filled} kept transitions leave no room in a replay of {self.capacity}")
         self.kept = self._next = self._filled
 
-    def draw(self, count: int, rng: np.random.Generator) -> Batch:
-        """``count`` rows, each as likely as any other."""
+    def sample(self, count: int, rng: np.random.Generator) -> Batch:
+        """Sample ``count`` rows uniformly."""
         return self.gather(rng.integers(0, self._filled, count), None)
 
     def gather(self, rows: NDArray[np.int64], weights: NDArray[np.float64] | None) -> Batch:
-        """The given rows as a batch."""
+        """Return the given rows as a batch."""
         packed = self._view.index_select(0, torch.from_numpy(rows))
         observation, action, *rest = torch.split(packed, self._sizes, 1)
-        outlooks = [
-            Outlook(reward[:, 0], discount[:, 0], following)
-            for reward, discount, following in zip(rest[0::3], rest[1::3], rest[2::3], strict=True)
+        bootstraps = [
+            Bootstrap(reward[:, 0], discount[:, 0], next_observation)
+            for reward, discount, next_observation in zip(rest[0::3], rest[1::3], rest[2::3], strict=True)
         ]
         return Batch(
             observation,
             action,
-            outlooks,
+            bootstraps,
             None if weights is None else torch.from_numpy(weights.astype(np.float32)),
             rows,
         )
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Everything that a resumed run needs."""
+        """Return everything that a resumed run needs."""
         return {
             "rows": self._rows[: self._filled],
             "places": np.array([self.kept, self._next, self._filled]),
         }
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Become the replay whose ``state`` it was."""
+        """Take over another replay's :meth:`state`."""
         self.kept, self._next, self._filled = (int(value) for value in state["places"].tolist())
         self._rows[: self._filled] = state["rows"]
 
 
 class PrioritisedReplay(Replay):
-    """A replay that draws rows the more often, the more was learned from them.
+    """A replay that samples the rows with large errors more often.
 
-    P(i) = p_i^alpha / sum, and weights (N P(i))^-beta, the largest of a batch
-    scaled to 1, make up for it. New rows get the largest priority yet.
+    P(i) = p_i^alpha / sum, and importance weights (N P(i))^-beta, the largest of a
+    batch scaled to 1, correct for it. New rows get the largest priority yet.
 
     Args:
-        alpha: 0 draws evenly, 1 in full proportion.
-        beta: how far the weights make up for it, 1 in full.
+        capacity: see :class:`Replay`.
+        observation_size: see :class:`Replay`.
+        action_size: see :class:`Replay`.
+        horizons: see :class:`Replay`.
+        alpha: 0 samples uniformly, 1 in proportion to the priorities.
+        beta: how far the weights correct for it, 1 in full.
         floor: added to every priority.
         bonus: added to the priorities of kept rows (demonstrations).
 
@@ -152,48 +160,49 @@ class PrioritisedReplay(Replay):
         capacity: int,
         observation_size: int,
         action_size: int,
-        outlooks: int = 1,
+        horizons: int = 1,
         *,
         alpha: float,
         beta: float,
         floor: float,
         bonus: float,
     ) -> None:
-        super().__init__(capacity, observation_size, action_size, outlooks)
+        super().__init__(capacity, observation_size, action_size, horizons)
         self._alpha, self._beta, self._floor, self._bonus = alpha, beta, floor, bonus
         self._tree = SumTree(capacity)
         self._largest = 1.0
 
-    def add(self, *outlooks: Transitions) -> NDArray[np.int64]:
-        """As :meth:`Replay.add`; the rows get the largest priority yet."""
-        rows = super().add(*outlooks)
+    def add(self, *transitions: Transitions) -> NDArray[np.int64]:
+        """Append transitions with the largest priority yet; see :meth:`Replay.add`."""
+        rows = super().add(*transitions)
         self._tree.set(rows, np.full(len(rows), self._largest**self._alpha))
         return rows
 
-    def draw(self, count: int, rng: np.random.Generator) -> Batch:
-        """``count`` rows by priority, with their importance weights."""
-        rows = self._tree.draw(count, rng)
+    def sample(self, count: int, rng: np.random.Generator) -> Batch:
+        """Sample ``count`` rows by priority, with their importance weights."""
+        rows = self._tree.sample(count, rng)
         chance = self._tree[rows] / self._tree.total
         weights = (self._filled * chance) ** -self._beta
         return self.gather(rows, weights / weights.max())
 
-    def learned(self, rows: NDArray[np.int64], surprise: NDArray[np.float64]) -> None:
-        """Set the priorities of rows that were learned from.
+    def update_priorities(self, rows: NDArray[np.int64], errors: NDArray[np.float64]) -> None:
+        """Set the priorities of rows after an update.
 
         Args:
-            surprise: (batch,) squared error, and whatever else raises a priority.
+            rows: (batch,) indices in the replay.
+            errors: (batch,) squared TD errors, with whatever else raises a priority.
         """
-        priority = surprise + self._floor + self._bonus * (rows < self.kept)
+        priority = errors + self._floor + self._bonus * (rows < self.kept)
         self._largest = max(self._largest, float(priority.max()))
         self._tree.set(rows, priority**self._alpha)
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Everything that a resumed run needs."""
+        """Return everything that a resumed run needs."""
         rows = np.arange(self._filled)
         return super().state() | {"priorities": self._tree[rows], "largest": np.array([self._largest])}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Become the replay whose ``state`` it was."""
+        """Take over another replay's :meth:`state`."""
         super().restore(state)
         if self._filled:
             self._tree.set(np.arange(self._filled), state["priorities"].astype(np.float64))

@@ -1,4 +1,4 @@
-"""A sum tree over arrays: draw indices in proportion to their priorities."""
+"""A sum tree over arrays: sample indices in proportion to their priorities."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 class SumTree:
     """Priorities of ``capacity`` items, 0 to begin with.
 
-    Setting and drawing go level by level over whole arrays, so a batch costs
+    Setting and sampling go level by level over whole arrays, so a batch costs
     some twenty array operations whatever its size.
     """
 
@@ -23,7 +23,7 @@ class SumTree:
         return float(self._sums[1])
 
     def __getitem__(self, items: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The priorities of ``items``."""
+        """Return the priorities of ``items``."""
         return self._sums[items + self._leaves]
 
     def set(self, items: NDArray[np.int64], priorities: NDArray[np.float64]) -> None:
@@ -34,8 +34,8 @@ class SumTree:
             nodes = nodes >> 1
             self._sums[nodes] = self._sums[2 * nodes] + self._sums[2 * nodes + 1]
 
-    def draw(self, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
-        """``count`` items, one from each of as many equal shares of the total (stratified)."""
+    def sample(self, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+        """Sample ``count`` items, one from each of as many equal shares of the total (stratified)."""
         left = (np.arange(count) + rng.random(count)) * (self.total / count)
         nodes = np.ones(count, dtype=np.int64)
         while nodes[0] < self._leaves:

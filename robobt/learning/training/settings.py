@@ -60,7 +60,7 @@ class AgentSettings(_Settings):
     smoothing_limit: float = Field(0.5, gt=0, le=2, description="largest such noise")
     atoms: int = Field(0, ge=0, le=1001, description="atoms of a distributional critic; 0 for a value")
     returns: tuple[float, float] = Field((-170.0, 110.0), description="smallest and largest atom")
-    slope_limit: float | None = Field(None, gt=0, description="largest dQ/da that the actor follows (D4PG)")
+    dqda_limit: float | None = Field(None, gt=0, description="largest dQ/da that the actor follows (D4PG)")
     scale_observations: bool = Field(True, description="divide observations by the task's typical sizes")
 
     @model_validator(mode="after")
@@ -79,7 +79,7 @@ class PrioritySettings(_Settings):
     alpha: float = Field(0.3, ge=0, le=1, description="0 draws evenly, 1 in full proportion")
     beta: float = Field(1.0, ge=0, le=1, description="how far importance weights make up for it")
     floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
-    slope_weight: float = Field(1.0, ge=0, le=100, description="weight of the actor's squared slope")
+    dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the actor's squared slope")
 
 
 class DemonstrationSettings(_Settings):

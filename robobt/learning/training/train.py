@@ -189,7 +189,7 @@ class _Run:
         batch = self._replay.draw(self._settings.replay.batch, self._rng)
         errors, slopes = self._agent.update(batch, self._rng)
         if isinstance(self._replay, PrioritisedReplay):
-            weight = self._settings.replay.priority.slope_weight
+            weight = self._settings.replay.priority.dqda_weight
             self._replay.learned(batch.rows, (errors + weight * slopes).double().numpy())
 
     def _burn_in(self) -> None:

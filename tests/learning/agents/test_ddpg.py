@@ -15,7 +15,7 @@ SWITCHES = [
     {},
     {"twin": True, "actor_every": 2, "target_every": 2, "smoothing": 0.2},
     {"atoms": 21, "returns": (-5.0, 5.0)},
-    {"atoms": 21, "returns": (-5.0, 5.0), "twin": True, "slope_limit": 1.0},
+    {"atoms": 21, "returns": (-5.0, 5.0), "twin": True, "dqda_limit": 1.0},
     {"layer_norm": True, "weight_decay": 1e-4},
 ]
 
@@ -32,7 +32,7 @@ def batch(seed=0, rows=64, replay=None):
             rng.normal(size=(rows, 3)),
         )
     )
-    return replay.draw(32, rng)
+    return replay.sample(32, rng)
 
 
 def weights(module):
@@ -111,7 +111,11 @@ def test_the_update_is_that_of_spinning_up_written_out():
     for i in range(5):
         given = batch(i)
         agent.update(given, np.random.default_rng(i))
-        r, d, s2 = given.outlooks[0].reward, given.outlooks[0].discount, given.outlooks[0].following
+        r, d, s2 = (
+            given.bootstraps[0].reward,
+            given.bootstraps[0].discount,
+            given.bootstraps[0].next_observation,
+        )
         with torch.no_grad():
             y = r + d * plain.target_critic(s2, plain.target_actor(s2))[0, :, 0]
         loss = ((plain.critic(given.observation, given.action)[0, :, 0] - y) ** 2).mean()
@@ -150,9 +154,9 @@ def test_twin_critics_make_the_target_from_the_smaller_value():
             head[-1].weight.zero_()
             head[-1].bias.fill_(bias)
     given = batch()
-    wanted = agent._wanted(given.outlooks[0], np.random.default_rng(0))
-    outlook = given.outlooks[0]
-    assert torch.allclose(wanted[:, 0], outlook.reward - 5.0 * outlook.discount)
+    target = agent._target(given.bootstraps[0], np.random.default_rng(0))
+    bootstrap = given.bootstraps[0]
+    assert torch.allclose(target[:, 0], bootstrap.reward - 5.0 * bootstrap.discount)
 
 
 def test_twin_distributions_make_the_target_from_the_one_with_the_smaller_mean():
@@ -162,14 +166,14 @@ def test_twin_distributions_make_the_target_from_the_one_with_the_smaller_mean()
             head[-1].weight.zero_()
             head[-1].bias.copy_(torch.tensor(logits))
     given = batch()
-    given.outlooks[0].reward.zero_()
+    given.bootstraps[0].reward.zero_()
     assert torch.allclose(
-        agent._wanted(given.outlooks[0], np.random.default_rng(0))[:, 1], torch.ones(32), atol=1e-5
+        agent._target(given.bootstraps[0], np.random.default_rng(0))[:, 1], torch.ones(32), atol=1e-5
     )
 
 
 def test_the_slope_that_the_actor_follows_is_limited():
-    free, held = small_agent(3, 2), small_agent(3, 2, slope_limit=1e-3)
+    free, held = small_agent(3, 2), small_agent(3, 2, dqda_limit=1e-3)
     given = batch()
     for agent in (free, held):
         agent._update_actor(given.observation)
@@ -177,18 +181,18 @@ def test_the_slope_that_the_actor_follows_is_limited():
     assert largest[1] < 0.1 * largest[0]
 
 
-def test_errors_and_slopes_are_told_for_prioritised_replay():
+def test_errors_and_gradients_are_returned_for_prioritised_replay():
     replay = PrioritisedReplay(64, 3, 2, alpha=0.3, beta=1.0, floor=1e-3, bonus=0.0)
     agent = small_agent(3, 2)
     given = batch(replay=replay)
     with torch.no_grad():
         estimate = agent.critic(given.observation, given.action)[0, :, 0]
-        wanted = agent._wanted(given.outlooks[0], np.random.default_rng(0))[:, 0]
-    errors, slopes = agent.update(given, np.random.default_rng(0))
-    assert torch.allclose(errors, (estimate - wanted) ** 2, atol=1e-5)
-    assert errors.shape == slopes.shape == (32,)
-    assert float(slopes.min()) >= 0.0
-    assert float(slopes.max()) > 0.0
+        target = agent._target(given.bootstraps[0], np.random.default_rng(0))[:, 0]
+    errors, gradients = agent.update(given, np.random.default_rng(0))
+    assert torch.allclose(errors, (estimate - target) ** 2, atol=1e-5)
+    assert errors.shape == gradients.shape == (32,)
+    assert float(gradients.min()) >= 0.0
+    assert float(gradients.max()) > 0.0
 
 
 @pytest.mark.parametrize("switches", SWITCHES, ids=str)

@@ -57,17 +57,17 @@ def collect(run, horizons):
 def test_returns_are_those_of_brute_force_over_interleaved_episodes(horizons, seed):
     run = episodes(seed)
     seen = set()
-    for outlooks in collect(run, horizons):
-        assert len(outlooks) == len(horizons)
-        for n, part in zip(horizons, outlooks, strict=True):
+    for parts in collect(run, horizons):
+        assert len(parts) == len(horizons)
+        for n, part in zip(horizons, parts, strict=True):
             for i in range(len(part.reward)):
                 t, env = int(part.observation[i, 0]) % 1000, int(part.observation[i, 0]) // 1000
                 seen.add((n, t, env))
-                total, discount, following = brute_force(run, t, env, n)
+                total, discount, next_observation = brute_force(run, t, env, n)
                 assert part.action[i, 0] == run["action"][t, env, 0]
                 assert part.reward[i] == pytest.approx(total)
                 assert part.discount[i] == pytest.approx(discount)
-                assert np.array_equal(part.following[i], following)
+                assert np.array_equal(part.next_observation[i], next_observation)
     assert seen == {(n, t, env) for n in horizons for t in range(60) for env in range(ENVS)}
 
 
@@ -76,7 +76,7 @@ def test_an_ended_episode_is_followed_by_its_own_last_observation_not_the_next_s
     none, true = np.array([False]), np.array([True])
     steps.add(np.array([[1.0]]), np.zeros((1, 1)), np.ones(1), np.array([[2.0]]), none, none)
     rows = steps.add(np.array([[2.0]]), np.zeros((1, 1)), np.ones(1), np.array([[3.0]]), none, true)
-    assert [row[0].following[0, 0] for row in rows] == [3.0, 3.0]
+    assert [row[0].next_observation[0, 0] for row in rows] == [3.0, 3.0]
     later = steps.add(np.array([[50.0]]), np.zeros((1, 1)), np.ones(1), np.array([[51.0]]), none, none)
     assert later == []
 

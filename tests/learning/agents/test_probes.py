@@ -26,9 +26,12 @@ def act(agent, observation):
         return agent.actor(torch.tensor([observation], dtype=torch.float32))[0].tolist()
 
 
-def made(observation, action, reward, discount, following):
+def made(observation, action, reward, discount, next_observation):
     return Transitions(
-        *[np.asarray(part, dtype=np.float64) for part in (observation, action, reward, discount, following)]
+        *[
+            np.asarray(part, dtype=np.float64)
+            for part in (observation, action, reward, discount, next_observation)
+        ]
     )
 
 
@@ -116,10 +119,16 @@ def test_the_actor_of_a_linear_quadratic_problem_costs_what_riccati_says():
     rng = np.random.default_rng(7)
     rows = 4096
     state, action = rng.uniform(-0.5, 0.5, (rows, 2)), rng.uniform(-1, 1, (rows, 1))
-    following = state @ a.T + action @ b.T
+    next_observation = state @ a.T + action @ b.T
     reward = -np.square(state).sum(1) - 0.1 * np.square(action)[:, 0]
     agent = small_agent(2, 1, actor_rate=3e-3, critic_rate=3e-3)
-    learn(agent, made(state, action, reward, np.full(rows, gamma), following), 1500, batch=128, decay=True)
+    learn(
+        agent,
+        made(state, action, reward, np.full(rows, gamma), next_observation),
+        1500,
+        batch=128,
+        decay=True,
+    )
     x = rng.uniform(-0.35, 0.35, (200, 2))
     best = np.einsum("ni,ij,nj->n", x, p, x).mean()
     cost, discount = np.zeros(200), 1.0

@@ -19,8 +19,8 @@ def held(replay):
     batch = replay.gather(np.arange(len(replay)), None)
     numbers = batch.observation[:, 0].numpy()
     assert np.array_equal(batch.action[:, 0].numpy(), -numbers)
-    assert np.array_equal(batch.outlooks[0].reward.numpy(), 10 * numbers)
-    assert np.array_equal(batch.outlooks[0].following[:, 1].numpy(), numbers + 0.75)
+    assert np.array_equal(batch.bootstraps[0].reward.numpy(), 10 * numbers)
+    assert np.array_equal(batch.bootstraps[0].next_observation[:, 1].numpy(), numbers + 0.75)
     return sorted(numbers.tolist())
 
 
@@ -70,16 +70,16 @@ def test_a_batch_does_not_change_with_the_replay():
 def test_every_row_is_drawn_as_often_as_any_other():
     replay = Replay(8, 2, 1)
     replay.add(rows(0, 6))
-    drawn = np.bincount(replay.draw(60_000, np.random.default_rng(0)).rows, minlength=8)
+    drawn = np.bincount(replay.sample(60_000, np.random.default_rng(0)).rows, minlength=8)
     assert drawn[6:].sum() == 0
     assert np.abs(drawn[:6] - 10_000).max() < 500
 
 
-def test_outlooks_of_two_horizons_stay_apart():
-    replay = Replay(8, 2, 1, outlooks=2)
+def test_returns_of_two_horizons_stay_apart():
+    replay = Replay(8, 2, 1, horizons=2)
     near = rows(0, 3)._replace(reward=np.array([7.0, 8.0, 9.0]))
     replay.add(rows(0, 3), near)
-    far, close = replay.gather(np.arange(3), None).outlooks
+    far, close = replay.gather(np.arange(3), None).bootstraps
     assert far.reward.tolist() == [0.0, 10.0, 20.0]
     assert close.reward.tolist() == [7.0, 8.0, 9.0]
 
@@ -87,8 +87,8 @@ def test_outlooks_of_two_horizons_stay_apart():
 def test_rows_are_drawn_in_proportion_to_their_priorities_and_weighted_back():
     replay = prioritised()
     replay.add(rows(0, 4))
-    replay.learned(np.arange(4), np.array([1.0, 2.0, 3.0, 4.0]))
-    batch = replay.draw(50_000, np.random.default_rng(1))
+    replay.update_priorities(np.arange(4), np.array([1.0, 2.0, 3.0, 4.0]))
+    batch = replay.sample(50_000, np.random.default_rng(1))
     share = np.bincount(batch.rows, minlength=4) / 50_000
     assert share == pytest.approx([0.1, 0.2, 0.3, 0.4], abs=0.005)
     assert batch.weights is not None
@@ -101,9 +101,9 @@ def test_rows_are_drawn_in_proportion_to_their_priorities_and_weighted_back():
 def test_new_rows_are_drawn_before_what_is_known_well():
     replay = prioritised()
     replay.add(rows(0, 50))
-    replay.learned(np.arange(50), np.full(50, 1e-4))
+    replay.update_priorities(np.arange(50), np.full(50, 1e-4))
     replay.add(rows(50, 2))
-    drawn = replay.draw(64, np.random.default_rng(2)).rows
+    drawn = replay.sample(64, np.random.default_rng(2)).rows
     assert (drawn >= 50).mean() > 0.9
 
 
@@ -112,8 +112,8 @@ def test_demonstrations_have_a_bonus():
     replay.add(rows(0, 2))
     replay.keep()
     replay.add(rows(2, 2))
-    replay.learned(np.arange(4), np.full(4, 0.25))
-    share = np.bincount(replay.draw(30_000, np.random.default_rng(3)).rows, minlength=4) / 30_000
+    replay.update_priorities(np.arange(4), np.full(4, 0.25))
+    share = np.bincount(replay.sample(30_000, np.random.default_rng(3)).rows, minlength=4) / 30_000
     assert share == pytest.approx([5 / 12, 5 / 12, 1 / 12, 1 / 12], abs=0.01)
 
 
@@ -125,12 +125,12 @@ def test_a_restored_replay_goes_on_as_the_one_it_was(make):
     for first in range(10, 25, 5):
         replay.add(rows(first, 5))
     if isinstance(replay, PrioritisedReplay):
-        replay.learned(np.array([1, 1, 3]), np.array([5.0, 5.0, 0.3]))
+        replay.update_priorities(np.array([1, 1, 3]), np.array([5.0, 5.0, 0.3]))
     again.restore(replay.state())
     for each in (replay, again):
         each.add(rows(70, 3))
     assert held(again) == held(replay)
-    first, second = [each.draw(32, np.random.default_rng(5)).rows for each in (replay, again)]
+    first, second = [each.sample(32, np.random.default_rng(5)).rows for each in (replay, again)]
     assert np.array_equal(first, second)
 
 
@@ -145,5 +145,5 @@ def test_the_sum_tree_adds_up_and_never_draws_what_has_no_priority(capacity):
         known[items] = (items * 0.7) % 3
         assert tree.total == pytest.approx(known.sum())
         if known.sum() > 0:
-            assert (known[tree.draw(50, rng)] > 0).all()
+            assert (known[tree.sample(50, rng)] > 0).all()
     assert np.array_equal(tree[np.arange(capacity)], known)

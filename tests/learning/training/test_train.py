@@ -26,7 +26,7 @@ EVERYTHING = {
     "agent__actor_every": 2,
     "agent__layer_norm": True,
     "agent__final_rate": 0.1,
-    "agent__slope_limit": 1.0,
+    "agent__dqda_limit": 1.0,
     "collection__last_noise": 0.5,
     "evaluation__target_actor": True,
     "replay__priority": {"enabled": True},
