@@ -56,13 +56,13 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("runs/sb3"))
     given = parser.parse_args()
     steps = given.steps or load_settings(given.task, "fast").steps
-    told: list[dict[str, Any]] = []
+    runs: list[dict[str, Any]] = []
     for algorithm in given.algorithms:
         for seed in range(given.seeds):
             figures = train_peer(given.task, algorithm, seed, steps, given.every, given.starts, given.out)
-            told.append(figures)
+            runs.append(figures)
             print(json.dumps(figures), flush=True)
-            write_atomically(given.out / "peers.json", (json.dumps(told, indent=2) + "\n").encode())
+            write_atomically(given.out / "peers.json", (json.dumps(runs, indent=2) + "\n").encode())
 
 
 def train_peer(
@@ -77,7 +77,7 @@ def train_peer(
     """
     torch.set_num_threads(1)
     environment = environment_of(load_settings(task))
-    problem = problem_of(task, environment)
+    problem = problem_of(environment)
     name, skill, observation = TASKS[task]
     actions = len(problem.smoothed)
     agent = ALGORITHMS[algorithm](
@@ -87,11 +87,11 @@ def train_peer(
         seed=seed,
         device="cpu",
     )
-    judge = _Judge(problem, every)
-    agent.learn(steps, callback=judge)
-    if judge.num_timesteps % every:
-        judge.judge()
-    figures = held_out(problem.judge(_policy(judge.best), "held_out", starts))
+    evaluator = _Evaluator(problem, every)
+    agent.learn(steps, callback=evaluator)
+    if evaluator.num_timesteps % every:
+        evaluator.evaluate()
+    figures = held_out(problem.evaluate(_policy(evaluator.best), "held_out", starts))
     action = environment.action
     card = ModelCard(
         kind="policy",
@@ -110,20 +110,20 @@ def train_peer(
         code_version=robobt.__version__,
         created_by="benchmarks/sb3_peers.py",
     )
-    (file,) = export_model(judge.best, card, out)
+    (file,) = export_model(evaluator.best, card, out)
     return {
         "task": task,
         "algorithm": algorithm,
         "seed": seed,
-        "steps": judge.num_timesteps,
-        "cpu_s": round(judge.cpu_s, 1),
-        "to_99": judge.to_99,
+        "steps": evaluator.num_timesteps,
+        "cpu_s": round(evaluator.cpu_s, 1),
+        "to_99": evaluator.to_99,
         "file": str(file),
         "held_out": {key: one.model_dump(mode="json") for key, one in figures.items()},
     }
 
 
-class _Judge(BaseCallback):
+class _Evaluator(BaseCallback):
     """Plays the validation starts now and then and keeps the best actor, by success and then time."""
 
     best: nn.Module
@@ -134,30 +134,30 @@ class _Judge(BaseCallback):
         self._every = every
         self._score = (-1.0, 0.0)
         self._begun = time.process_time()
-        self._apart = 0.0
+        self._evaluation_s = 0.0
         self.to_99: dict[str, float] | None = None
 
     @property
     def cpu_s(self) -> float:
         """CPU time of collecting and learning."""
-        return time.process_time() - self._begun - self._apart
+        return time.process_time() - self._begun - self._evaluation_s
 
-    def judge(self) -> None:
-        """Judge the actor as it is now."""
+    def evaluate(self) -> None:
+        """Evaluate the actor as it is now."""
         spent, begun = self.cpu_s, time.process_time()
         # Of the policy only this maps observations: flattening and scaling do nothing to a vector.
         network = deepcopy(self.model.policy.actor.mu)
-        figures = self._problem.judge(_policy(network), "validation", 300)
+        figures = self._problem.evaluate(_policy(network), "validation", 300)
         score = (figures.rate, -figures.mean_time if figures.mean_time is not None else float("-inf"))
         if score > self._score:
             self._score, self.best = score, network
         if figures.rate >= 0.99 and self.to_99 is None:
             self.to_99 = {"steps": self.num_timesteps, "cpu_s": round(spent, 1)}
-        self._apart += time.process_time() - begun
+        self._evaluation_s += time.process_time() - begun
 
     def _on_step(self) -> bool:
         if self.num_timesteps % self._every == 0:
-            self.judge()
+            self.evaluate()
         return True
 
 

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from rich.live import Live
     from rich.table import Table
 
-    from robobt.learning.training.run_folder import TrainResult
-    from robobt.learning.training.train import Progress as Standing
+    from robobt.learning.training.progress import Progress as Standing
+    from robobt.learning.training.results import TrainResult
 
 Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")]
 Changes = Annotated[
@@ -78,7 +78,8 @@ def train(
     environment steps to 99 % and to what counts as learned; success, mean_time,
     time_ratio, steps, cpu_s, evaluation_cpu_s and wall_s with median, low, high).
     """
-    from robobt.learning.training.seeds import figures_of, train_seeds
+    from robobt.learning.training.results import figures_of
+    from robobt.learning.training.seeds import train_seeds
     from robobt.learning.training.settings import load_settings
 
     settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))

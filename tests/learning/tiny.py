@@ -58,7 +58,7 @@ class Slide:
         self._ticks[which] = 0
 
 
-def _judge(policy, split, starts) -> Evaluation:
+def _evaluate(policy, split, starts) -> Evaluation:
     task = Slide(starts)
     observation = task.reset(split_seed(split))
     optimum = (np.abs(observation[:, 0]) - REACH) / 1.0
@@ -71,7 +71,7 @@ def _judge(policy, split, starts) -> Evaluation:
     return Evaluation(np.isfinite(times), times, optimum, np.zeros(starts))
 
 
-SLIDE = Problem(Slide, _judge, (1.0, 1.0), (True,))
+SLIDE = Problem(Slide, _evaluate, (1.0, 1.0), (True,))
 
 
 def slide_settings(**changes) -> TrainSettings:

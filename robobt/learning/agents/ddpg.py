@@ -128,7 +128,7 @@ class DDPG:
         return self._atoms.project(probabilities, bootstrap.reward, bootstrap.discount)
 
     def _loss(self, estimate: Tensor, target: Tensor) -> Tensor:
-        """Compute (Q - y)^2, (batch,), summed over the critics; C51 takes the distributions' cross-entropy."""
+        """Compute (Q - y)^2, (batch,), summed over the critics; for C51 the cross-entropy."""
         if self._atoms is None:
             return (estimate - target).square().sum((0, 2))
         return -(target * torch.log_softmax(estimate, -1)).sum((0, 2))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import TypedDict
 
@@ -120,6 +121,17 @@ class Critic(nn.Module):
         """Map to the first estimate alone, (batch, outputs), which the actor maximises."""
         output: Tensor = self.heads[0](torch.cat([observation * self.inverse_scale, action], -1))
         return output
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let torch use one thread in the block: on networks this small, threads wait for each other."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:

@@ -11,6 +11,7 @@ from robobt.learning.envs.go_to_ball.env import GoToBallEnv, GoToBallVectorEnv
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward
 from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings, GoToBallStarts
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
+from robobt.learning.envs.make import make_task
 from robobt.learning.envs.settings import (
     HARDWARE_CHALLENGE,
     NoiseSettings,
@@ -49,6 +50,7 @@ __all__ = [
     "StepResult",
     "TaskSettings",
     "VectorTask",
+    "make_task",
     "run_starts",
     "straight_line_time",
 ]

@@ -11,7 +11,7 @@ import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,28 +19,38 @@ from numpy.typing import NDArray
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError
 
-_MAGIC = b"robobt-checkpoint-1\n"
+_MAGIC = b"robobt-checkpoint-2\n"
 _DIGEST = 32
-_PLAIN = "plain"
+_STATE = "state"
 
 Arrays = dict[str, NDArray[np.generic]]
+
+
+class RunState(TypedDict):
+    """What a run goes on from besides its arrays."""
+
+    steps: int
+    rng: Mapping[str, Any]
+    validations: list[dict[str, int | float | None]]
+    clock: dict[str, float]
+    robobt: str
 
 
 class CheckpointError(RobobtError, ValueError):
     """A checkpoint cannot be read; the message is one line that names the file."""
 
 
-def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], plain: Mapping[str, Any]) -> None:
+def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], state: RunState) -> None:
     """Write a checkpoint; the one before it is kept beside it as ``*.previous``.
 
     Args:
         path: the file.
         arrays: by name.
-        plain: what JSON holds.
+        state: what JSON holds.
     """
-    text = np.frombuffer(json.dumps(dict(plain)).encode(), dtype=np.uint8)
+    text = np.frombuffer(json.dumps(dict(state)).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=False, **{_PLAIN: text}, **arrays)
+    np.savez(buffer, allow_pickle=False, **{_STATE: text}, **arrays)
     payload = buffer.getbuffer()
     digest = hashlib.blake2b(payload, digest_size=_DIGEST).digest()
     if path.exists():
@@ -48,8 +58,8 @@ def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], plain: Mapping[s
     write_atomically(path, b"".join((_MAGIC, digest, payload)))
 
 
-def load(path: Path) -> tuple[Arrays, dict[str, Any]]:
-    """Arrays and plain data of a checkpoint.
+def load(path: Path) -> tuple[Arrays, RunState]:
+    """Return arrays and plain data of a checkpoint.
 
     Raises:
         CheckpointError: no such file, or it is cut short, damaged or another kind of file.
@@ -60,18 +70,18 @@ def load(path: Path) -> tuple[Arrays, dict[str, Any]]:
         raise CheckpointError(f"{path}: cannot be read: {error.strerror or error}") from error
     head = len(_MAGIC) + _DIGEST
     if not content.startswith(_MAGIC):
-        raise CheckpointError(f"{path}: not a checkpoint of robobt")
+        raise CheckpointError(f"{path}: not a checkpoint of this version of robobt")
     payload = memoryview(content)[head:]
     if hashlib.blake2b(payload, digest_size=_DIGEST).digest() != content[len(_MAGIC) : head]:
         raise CheckpointError(f"{path}: damaged or cut short")
     with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
         arrays: Arrays = {name: stored[name] for name in stored.files}
-    plain: dict[str, Any] = json.loads(arrays.pop(_PLAIN).tobytes())
-    return arrays, plain
+    state: RunState = json.loads(arrays.pop(_STATE).tobytes())
+    return arrays, state
 
 
-def load_latest(path: Path) -> tuple[Arrays, dict[str, Any], str | None]:
-    """The checkpoint, or the one before it where this one is missing or damaged.
+def load_latest(path: Path) -> tuple[Arrays, RunState, str | None]:
+    """Return the checkpoint, or the one before it where this one is missing or damaged.
 
     Returns:
         Arrays, plain data, and why the newest could not be used (None where it was).
@@ -89,5 +99,14 @@ def load_latest(path: Path) -> tuple[Arrays, dict[str, Any], str | None]:
 
 
 def previous(path: Path) -> Path:
-    """Where the checkpoint before the newest lies."""
+    """Return the path of the checkpoint before the newest."""
     return path.with_name(f"{path.name}.previous")
+
+
+def digest_of(arrays: Arrays) -> str:
+    """Return a hash of arrays and their names."""
+    digest = hashlib.blake2b(digest_size=16)
+    for name in sorted(arrays):
+        digest.update(name.encode())
+        digest.update(arrays[name].tobytes())
+    return digest.hexdigest()

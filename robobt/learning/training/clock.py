@@ -8,42 +8,43 @@ from contextlib import contextmanager
 
 
 class RunClock:
-    """What a run has cost, with what its broken parts cost, and evaluations by themselves."""
+    """The CPU and wall time of a run, that of interrupted processes included; evaluations count apart."""
 
     def __init__(self) -> None:
         self._cpu, self._wall = time.process_time(), time.monotonic()
-        self._earlier = {"cpu_s": 0.0, "wall_s": 0.0}
-        self.apart_s = 0.0
-        self._apart_here = 0.0
+        self._earlier_cpu_s = self._earlier_wall_s = 0.0
+        self._evaluation_here_s = 0.0
+        self.evaluation_s = 0.0
 
     @property
     def cpu_s(self) -> float:
-        """CPU time but for evaluations [s]."""
-        return self._earlier["cpu_s"] + time.process_time() - self._cpu - self._apart_here
+        """CPU time without evaluations [s]."""
+        return self._earlier_cpu_s + time.process_time() - self._cpu - self._evaluation_here_s
 
     @property
     def here_s(self) -> float:
-        """Time since this process took the run up [s]."""
+        """Wall time in this process [s]."""
         return time.monotonic() - self._wall
 
     @property
     def wall_s(self) -> float:
-        """Time in all [s]."""
-        return self._earlier["wall_s"] + self.here_s
+        """Wall time in all [s]."""
+        return self._earlier_wall_s + self.here_s
 
     @contextmanager
-    def apart(self) -> Iterator[None]:
-        """Count CPU time as an evaluation's."""
+    def evaluating(self) -> Iterator[None]:
+        """Count the CPU time of the block as an evaluation's."""
         begun = time.process_time()
         yield
-        self._apart_here += time.process_time() - begun
-        self.apart_s += time.process_time() - begun
+        spent = time.process_time() - begun
+        self._evaluation_here_s += spent
+        self.evaluation_s += spent
 
     def state(self) -> dict[str, float]:
-        """What a resumed run goes on from."""
-        return {"cpu_s": self.cpu_s, "wall_s": self.wall_s, "apart_s": self.apart_s}
+        """Return what a resumed run goes on from."""
+        return {"cpu_s": self.cpu_s, "wall_s": self.wall_s, "evaluation_s": self.evaluation_s}
 
     def restore(self, state: Mapping[str, float]) -> None:
-        """Count on from a broken run's ``state``."""
-        self._earlier = {"cpu_s": state["cpu_s"], "wall_s": state["wall_s"]}
-        self.apart_s = state["apart_s"]
+        """Go on from the ``state`` of an interrupted run."""
+        self._earlier_cpu_s, self._earlier_wall_s = state["cpu_s"], state["wall_s"]
+        self.evaluation_s = state["evaluation_s"]

@@ -6,24 +6,26 @@ import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from robobt.config.atomic import write_atomically
 from robobt.config.yaml import read_yaml
-from robobt.learning.training.seeds import OnProgress, together, train_seeds
+from robobt.learning.training.progress import OnProgress
+from robobt.learning.training.results import Spread, Summary, summary_of
+from robobt.learning.training.seeds import train_seeds
 from robobt.learning.training.settings import SWITCHES, SettingsError, TrainSettings, load_settings
 
 PAPER = "paper"
 """The name of the plain Spinning Up setting in a comparison."""
 
 
-def variants(task: str, changes: Mapping[str, Any] | None = None) -> dict[str, TrainSettings]:
-    """Settings by name: the fast preset, it with one switch changed each, and the paper's.
+def variants(task: str, changes: Mapping[str, object] | None = None) -> dict[str, TrainSettings]:
+    """Return settings by name: the fast preset, it with one switch changed each, and the paper's.
 
     They have the fast preset's budget of steps and stop when its bar is met, but
     for the paper's, which has its own.
 
     Args:
+        task: what is learned.
         changes: to all of them, by dotted name.
 
     Raises:
@@ -42,12 +44,12 @@ def compare(
     out: str | Path,
     seeds: Sequence[int],
     only: Sequence[str] = (),
-    changes: Mapping[str, Any] | None = None,
+    changes: Mapping[str, object] | None = None,
     workers: int = 1,
     on_variant: Callable[[str], None] | None = None,
     on_progress: OnProgress | None = None,
-) -> dict[str, Any]:
-    """Train every variant with every seed; what is in ``out`` already is kept or taken up again.
+) -> dict[str, Summary]:
+    """Train every variant with every seed; what is in ``out`` already is kept or resumed.
 
     ``comparison.json`` and ``comparison.md`` are written anew after each variant.
 
@@ -58,11 +60,11 @@ def compare(
         only: names of variants; all of them without.
         changes: to every variant's settings, by dotted name.
         workers: processes.
-        on_variant: called with the name of the variant that comes next.
+        on_variant: called with the name of the next variant.
         on_progress: see :func:`robobt.learning.training.seeds.train_seeds`.
 
     Returns:
-        :func:`robobt.learning.training.seeds.together` by name.
+        :func:`~robobt.learning.training.results.summary_of` the seeds, by name.
 
     Raises:
         SettingsError: an unknown name.
@@ -72,22 +74,23 @@ def compare(
     for name in only:
         if name not in found:
             raise SettingsError("", f"no variant is called {name!r}; there are {', '.join(found)}")
-    told: dict[str, Any] = {}
+    summaries: dict[str, Summary] = {}
     for name, settings in found.items():
         if only and name not in only:
             continue
         if on_variant is not None:
             on_variant(name)
         folder = out / re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-        told[name] = together(train_seeds(settings, seeds, folder, workers, True, on_progress))
-        text = json.dumps({"task": task, "variants": told}, indent=2, allow_nan=False) + "\n"
+        results = train_seeds(settings, seeds, folder, workers, True, on_progress)
+        summaries[name] = summary_of(results)
+        text = json.dumps({"task": task, "variants": summaries}, indent=2, allow_nan=False) + "\n"
         write_atomically(out / "comparison.json", text)
-        write_atomically(out / "comparison.md", table_of(told))
-    return told
+        write_atomically(out / "comparison.md", table_of(summaries))
+    return summaries
 
 
-def rows_of(told: Mapping[str, Any]) -> list[list[str]]:
-    """A comparison as rows of text, the first of them the heads."""
+def rows_of(summaries: Mapping[str, Summary]) -> list[list[str]]:
+    """Return a comparison as rows of text, the heads first."""
     rows = [
         [
             "setting",
@@ -99,31 +102,31 @@ def rows_of(told: Mapping[str, Any]) -> list[list[str]]:
             "time",
         ]
     ]
-    for name, figures in told.items():
+    for name, figures in summaries.items():
         to_99, to_bar = figures["to_99"], figures["to_bar"]
         time = figures["time_ratio"] or figures["mean_time"]
         rows.append(
             [
                 name,
-                _say(to_99["cpu_s"], "{:.1f}"),
-                _say(to_bar["steps"], "{:,.0f}"),
-                _say(to_bar["cpu_s"], "{:.1f}"),
+                _text(to_99["cpu_s"], "{:.1f}"),
+                _text(to_bar["steps"], "{:,.0f}"),
+                _text(to_bar["cpu_s"], "{:.1f}"),
                 f"{to_bar['reached']} of {len(figures['seeds'])}",
-                _say(figures["success"], "{:.1%}"),
-                _say(time, "{:.3f}"),
+                _text(figures["success"], "{:.1%}"),
+                _text(time, "{:.3f}"),
             ]
         )
     return rows
 
 
-def table_of(told: Mapping[str, Any]) -> str:
-    """A comparison as a Markdown table: medians, and ranges where seeds differ."""
-    head, *rows = ["| " + " | ".join(row) + " |" for row in rows_of(told)]
-    return "\n".join([head, "|" + " --- |" * len(rows_of(told)[0]), *rows]) + "\n"
+def table_of(summaries: Mapping[str, Summary]) -> str:
+    """Return a comparison as a Markdown table: medians, and ranges where seeds differ."""
+    head, *rows = ["| " + " | ".join(row) + " |" for row in rows_of(summaries)]
+    return "\n".join([head, "|" + " --- |" * len(rows_of(summaries)[0]), *rows]) + "\n"
 
 
-def _say(spread: Mapping[str, float] | None, form: str) -> str:
+def _text(spread: Spread | None, form: str) -> str:
     if spread is None:
         return "-"
-    low, middle, high = [form.format(spread[key]) for key in ("low", "median", "high")]
+    low, middle, high = [form.format(value) for value in (spread["low"], spread["median"], spread["high"])]
     return middle if low == high else f"{middle} ({low} to {high})"

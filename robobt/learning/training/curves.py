@@ -10,10 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from robobt.config.atomic import write_atomically
-from robobt.learning.training.run_folder import Judged
+from robobt.learning.training.results import Validation
 
 
-def draw_curves(runs: Mapping[str, Sequence[Judged]], title: str, path: str | Path) -> None:
+def draw_curves(runs: Mapping[str, Sequence[Validation]], title: str, path: str | Path) -> None:
     """Write a PNG: success and time of every run over environment steps and over CPU time.
 
     Args:
@@ -24,12 +24,12 @@ def draw_curves(runs: Mapping[str, Sequence[Judged]], title: str, path: str | Pa
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 2, sharey="row", sharex="col")
-    relative = any(judged.time_ratio is not None for run in runs.values() for judged in run)
+    relative = any(validation.time_ratio is not None for run in runs.values() for validation in run)
     for name, run in runs.items():
-        steps = [judged.steps for judged in run]
-        cpu = [judged.cpu_s for judged in run]
-        success = [100.0 * judged.success for judged in run]
-        times = [judged.time_ratio if relative else judged.mean_time for judged in run]
+        steps = [validation.steps for validation in run]
+        cpu = [validation.cpu_s for validation in run]
+        success = [100.0 * validation.success for validation in run]
+        times = [validation.time_ratio if relative else validation.mean_time for validation in run]
         shown = [float("nan") if value is None else value for value in times]
         for column, x in enumerate((steps, cpu)):
             axes[0, column].plot(x, success, marker=".", label=name)

@@ -33,7 +33,7 @@ from robobt import __version__
 from robobt.config.atomic import replacing
 from robobt.config.errors import RobobtError, naming
 from robobt.learning.agents.nstep import NStep, Transitions
-from robobt.learning.envs import GoToBallSettings, GoToBallTask, ShootSettings, ShootTask, TaskSettings
+from robobt.learning.envs import ArenaTask, TaskSettings, make_task
 from robobt.learning.envs.task import BoolArray, FloatArray
 from robobt.learning.training.teachers import TEACHERS
 
@@ -43,7 +43,7 @@ _ARENAS = 16
 """Side by side while recording."""
 
 _MEANINGS = ("action", "period", "reward", "contact")
-"""Settings that say what an action and a reward are; with others the critic would learn what is not so."""
+"""Settings that define what an action and a reward are; with others the critic would learn a wrong value."""
 
 
 class DemonstrationsError(RobobtError, ValueError):
@@ -56,7 +56,7 @@ class Demonstrations:
 
     Attributes:
         episode: (m,) rising.
-        observation, action, reward, following: (m, ...) of each step.
+        observation, action, reward, next_observation: (m, ...) of each step.
         terminated, truncated, success: (m,) how its episode ended with it.
         about: where they come from; the file's metadata.
     """
@@ -65,7 +65,7 @@ class Demonstrations:
     observation: FloatArray
     action: FloatArray
     reward: FloatArray
-    following: FloatArray
+    next_observation: FloatArray
     terminated: BoolArray
     truncated: BoolArray
     success: BoolArray
@@ -80,13 +80,13 @@ class Demonstrations:
         return int((self.terminated | self.truncated).sum())
 
     def first(self, episodes: int) -> Demonstrations:
-        """The first so many episodes."""
+        """Return the first so many episodes."""
         rows = np.searchsorted(self.episode, np.unique(self.episode)[:episodes][-1], side="right")
         parts = {item.name: getattr(self, item.name)[:rows] for item in fields(self) if item.name != "about"}
         return Demonstrations(**parts, about=self.about)
 
     def transitions(self, horizons: Sequence[int], gamma: float) -> Iterator[tuple[Transitions, ...]]:
-        """What a replay takes, as :class:`~robobt.learning.agents.nstep.NStep` makes it."""
+        """Yield what a replay takes, as :class:`~robobt.learning.agents.nstep.NStep` makes it."""
         returns = NStep(horizons, gamma, 1, self.observation.shape[1], self.action.shape[1])
         for i in range(len(self)):
             row = slice(i, i + 1)
@@ -94,7 +94,7 @@ class Demonstrations:
                 self.observation[row],
                 self.action[row],
                 self.reward[row],
-                self.following[row],
+                self.next_observation[row],
                 self.terminated[row],
                 self.truncated[row],
             )
@@ -110,7 +110,7 @@ class Demonstrations:
             "observation": _lists(self.observation),
             "action": _lists(self.action),
             "reward": pa.array(self.reward),
-            "next_observation": _lists(self.following),
+            "next_observation": _lists(self.next_observation),
             "terminated": pa.array(self.terminated),
             "truncated": pa.array(self.truncated),
             "success": pa.array(self.success),
@@ -121,7 +121,7 @@ class Demonstrations:
 
 
 def read_demonstrations(path: str | Path) -> Demonstrations:
-    """Demonstrations from their file.
+    """Read demonstrations from their file.
 
     Raises:
         DemonstrationsError: it cannot be read, or holds something else.
@@ -130,7 +130,7 @@ def read_demonstrations(path: str | Path) -> Demonstrations:
         table = pq.read_table(path)
         about = json.loads((table.schema.metadata or {})[b"robobt"])
     except (OSError, ValueError, KeyError) as error:
-        raise DemonstrationsError(f"{path}: no demonstrations can be read: {_say(error)}") from error
+        raise DemonstrationsError(f"{path}: no demonstrations can be read: {_reason(error)}") from error
     if not isinstance(about, dict) or about.get("format") != FORMAT:
         raise DemonstrationsError(f"{path}: not a file of demonstrations")
     try:
@@ -146,7 +146,7 @@ def read_demonstrations(path: str | Path) -> Demonstrations:
             about,
         )
     except (KeyError, ValueError) as error:
-        raise DemonstrationsError(f"{path}: {_say(error)}") from error
+        raise DemonstrationsError(f"{path}: {_reason(error)}") from error
 
 
 def record(
@@ -172,13 +172,13 @@ def record(
         raise ValueError(f"no teacher is called {teacher!r}; there are {', '.join(TEACHERS)}")
     if episodes < 1:
         raise ValueError(f"episodes must be at least 1, not {episodes}")
-    task = _task(environment, min(episodes, _ARENAS))
+    task = make_task(environment, min(episodes, _ARENAS))
     teaching = TEACHERS[teacher](task)
     starts = task.sample_starts(seed, episodes)
     observation = task.reset_to(starts, seed)
     teaching.begin(np.arange(task.n))
-    running: list[list[tuple[Any, ...]]] = [[] for _ in range(task.n)]
-    ended: dict[int, list[tuple[Any, ...]]] = {}
+    running: list[list[tuple[object, ...]]] = [[] for _ in range(task.n)]
+    ended: dict[int, list[tuple[object, ...]]] = {}
     while len(ended) < episodes:
         # A direction of length 1 may have been rounded past it.
         action = np.clip(teaching.act(observation), -1.0, 1.0)
@@ -211,22 +211,30 @@ def record(
     about = {
         "format": FORMAT,
         "task": task.observation.name,
-        "observation": {"name": task.observation.name, "version": task.observation.version},
+        "observation": _named(task),
         "environment": environment.model_dump(mode="json"),
         "teacher": teacher,
         "seed": seed,
         "robobt": __version__,
     }
-    observations, actions, rewards, following, terminated, truncated, success = columns
+    observations, actions, rewards, next_observation, terminated, truncated, success = columns
     return Demonstrations(
-        np.array(numbers), observations, actions, rewards, following, terminated, truncated, success, about
+        np.array(numbers),
+        observations,
+        actions,
+        rewards,
+        next_observation,
+        terminated,
+        truncated,
+        success,
+        about,
     )
 
 
 def demonstrations_for(
     environment: TaskSettings, episodes: int, file: str | None, seed: int
 ) -> Demonstrations:
-    """The demonstrations that training settings ask for: from a file, else the script's.
+    """Return the demonstrations that training settings ask for: from a file, else the script's.
 
     Raises:
         DemonstrationsError: the file cannot be used, is of another task, holds too few, or its
@@ -235,9 +243,8 @@ def demonstrations_for(
     if file is None:
         return record(environment, episodes, "script", seed)
     found = read_demonstrations(file)
-    wanted = _task(environment, 1)
-    observation = {"name": wanted.observation.name, "version": wanted.observation.version}
-    if found.about.get("observation") != observation or found.action.shape[1] != wanted.action_size:
+    task = make_task(environment, 1)
+    if found.about.get("observation") != _named(task) or found.action.shape[1] != task.action_size:
         raise DemonstrationsError(f"{file}: holds demonstrations of {found.about.get('observation')}")
     there, here = found.about.get("environment"), environment.model_dump(mode="json")
     for part in _MEANINGS:
@@ -250,12 +257,8 @@ def demonstrations_for(
     return found.first(episodes)
 
 
-def _task(environment: TaskSettings, n: int) -> GoToBallTask | ShootTask:
-    if isinstance(environment, GoToBallSettings):
-        return GoToBallTask(environment, n)
-    if isinstance(environment, ShootSettings):
-        return ShootTask(environment, n)
-    raise TypeError(f"{type(environment).__name__} is no environment of a task")
+def _named(task: ArenaTask) -> dict[str, object]:
+    return {"name": task.observation.name, "version": task.observation.version}
 
 
 def _lists(rows: FloatArray) -> pa.Array:
@@ -268,7 +271,7 @@ def _matrix(column: pa.ChunkedArray) -> FloatArray:
     return values.reshape(len(column), -1)
 
 
-def _say(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     return " ".join(str(error.args[0] if error.args else type(error).__name__).split())

@@ -9,15 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
-from robobt.learning.agents.networks import policy_of
+from robobt.learning.agents.networks import one_thread, policy_of
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import problem_of
-from robobt.learning.training.run_folder import RESULT, TrainResult, load_run
+from robobt.learning.training.results import TrainResult
+from robobt.learning.training.run_folder import RESULT, load_run
 from robobt.learning.training.settings import environment_of
-from robobt.models.actions import ActionScaling
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model
 from robobt.models.file import SUFFIXES, Format, ModelError
@@ -42,16 +41,16 @@ def export_run(
 ) -> tuple[Path, ...]:
     """Write the best actor of a finished run as model files and enter them in the folder's manifest.
 
-    The actor is judged once more on the held-out starts; these figures, with their
-    intervals, are what the card says.
+    The actor is evaluated once more on the held-out starts; these figures, with their
+    intervals, are on the card.
 
     Args:
         run: the folder of the run, or of several seeds of one, of which the best is taken: by
-            the starts that chose its actor, not by those that tell.
+            the starts that chose its actor, not the held-out ones.
         name: of the model; the task's with ``_ddpg`` when empty.
         folder: where to.
         formats: "torchscript", "onnx" or both.
-        starts: held-out starts to judge on; None for as many as the run was set to.
+        starts: number of held-out starts; None for as many as the run was set to.
 
     Returns:
         The files.
@@ -68,21 +67,18 @@ def export_run(
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
     environment = environment_of(settings, str(run))
-    problem = problem_of(settings.task, environment)
     count = settings.evaluation.held_out if starts is None else starts
-    torch.set_num_threads(1)  # as in training: on networks this small, threads wait for each other
-    figures = problem.judge(policy_of(result.actor), "held_out", count)
+    with one_thread():
+        figures = problem_of(environment).evaluate(policy_of(result.actor), "held_out", count)
     skill, observation = _SKILLS[settings.task]
-    action = getattr(environment, "action", None)
-    assert isinstance(action, ActionScaling)
     card = ModelCard(
         kind="policy",
         name=name or f"{settings.task}_ddpg",
         skill=skill,
         description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
         observation=ObservationCard.of(observation),
-        outputs=action_outputs(action),
-        action=action,
+        outputs=action_outputs(environment.action),
+        action=environment.action,
         period=environment.period,
         limits=environment.robot_limits,
         environment=settings.environment,
@@ -96,7 +92,7 @@ def export_run(
 
 
 def _best_seed(folder: Path) -> Path:
-    """The folder of the best seed where ``folder`` holds several, else ``folder`` itself."""
+    """Return the folder of the best seed where ``folder`` holds several, else ``folder`` itself."""
     try:
         seed = json.loads((folder / RESULT).read_text(encoding="utf-8"))["best_seed"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -105,19 +101,19 @@ def _best_seed(folder: Path) -> Path:
 
 
 def held_out(figures: Evaluation) -> dict[str, Measured]:
-    """What a card says of an evaluation: share of successes, mean time [s], its ratio to the optimum."""
+    """Return a card's figures: share of successes, mean time [s], its ratio to the optimum."""
     rate = figures.interval
     count = len(figures.success)
-    told = {
+    measured = {
         "success": Measured(value=figures.rate, low=rate.low, high=rate.high, n=count, interval="95 % Wilson")
     }
     timed = figures.success & np.isfinite(figures.times)
     if timed.any():
-        told["time"] = _mean(figures.times[timed], "s")
+        measured["time"] = _mean(figures.times[timed], "s")
     known = timed & (figures.optimum > 0.0)
     if known.any():
-        told["time_ratio"] = _ratio(figures.times[known], figures.optimum[known])
-    return told
+        measured["time_ratio"] = _ratio(figures.times[known], figures.optimum[known])
+    return measured
 
 
 def _mean(values: _Floats, unit: str) -> Measured:
@@ -133,7 +129,7 @@ def _mean(values: _Floats, unit: str) -> Measured:
 
 
 def _ratio(times: _Floats, optima: _Floats) -> Measured:
-    """Mean time over mean optimum; the interval is that of the mean of times less their share of it."""
+    """Compute mean time over mean optimum; the interval is that of the mean of times less their share."""
     ratio = float(times.sum() / optima.sum())
     low: float | None = None
     high: float | None = None

@@ -3,10 +3,10 @@
 | file | what |
 | --- | --- |
 | ``settings.yaml`` | every setting of the run |
-| ``log.jsonl`` | a line an evaluation: :class:`Judged` |
+| ``log.jsonl`` | a line an evaluation: :class:`~robobt.learning.training.results.Validation` |
 | ``checkpoint``, ``checkpoint.previous`` | all that a resumed run needs; gone once the run has ended |
 | ``actor.pt`` | the best actor's weights, and how to build it |
-| ``result.json`` | held-out figures: :meth:`TrainResult.figures` |
+| ``result.json`` | held-out figures: :class:`~robobt.learning.training.results.Figures` |
 | ``curves.png`` | success and time over steps |
 | ``tensorboard/`` | the log's figures as events |
 """
@@ -16,10 +16,10 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import torch
 
@@ -29,8 +29,13 @@ from robobt.config.errors import RobobtError, naming
 from robobt.config.yaml import read_yaml, write_yaml
 from robobt.learning.agents.networks import Actor
 from robobt.learning.training import checkpoint
-from robobt.learning.training.checkpoint import Arrays, CheckpointError
+from robobt.learning.training.checkpoint import Arrays, RunState
+from robobt.learning.training.curves import draw_curves
+from robobt.learning.training.results import Figures, TrainResult, Validation, title_of
 from robobt.learning.training.settings import SettingsError, TrainSettings, settings_of
+
+if TYPE_CHECKING:
+    from torch.utils.tensorboard import SummaryWriter
 
 SETTINGS, LOG, CHECKPOINT = "settings.yaml", "log.jsonl", "checkpoint"
 ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensorboard"
@@ -38,65 +43,6 @@ ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensor
 
 class RunFolderError(RobobtError, ValueError):
     """A run's folder cannot be used; the message is one line that names it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """An evaluation on the way.
-
-    Attributes:
-        steps, updates: so far.
-        success: share of the validation starts.
-        mean_time: of the successes [s]; None without any.
-        time_ratio: that time over the optimum; None where unknown.
-        mean_return: undiscounted; tells how the reward is collected, not how good the policy is.
-        cpu_s: CPU time spent on collecting and learning.
-        evaluation_cpu_s: CPU time spent on evaluations.
-        wall_s: time passed, broken runs' parts included.
-        critic_loss, value: means since the last evaluation; None without updates.
-    """
-
-    steps: int
-    updates: int
-    success: float
-    mean_time: float | None
-    time_ratio: float | None
-    mean_return: float
-    cpu_s: float
-    evaluation_cpu_s: float
-    wall_s: float
-    critic_loss: float | None
-    value: float | None
-
-    @property
-    def score(self) -> tuple[float, float]:
-        """What policies are ranked by: successes, then speed. Never by the return."""
-        return (self.success, float("-inf") if self.mean_time is None else -self.mean_time)
-
-
-@dataclass(frozen=True, slots=True)
-class TrainResult:
-    """What a run has come to.
-
-    Attributes:
-        settings: of the run.
-        folder: where it lies.
-        actor: the best actor by the validation starts: raw observation in SI units ->
-            action in [-1, 1].
-        judged: every evaluation on the validation starts.
-        figures: what ``result.json`` holds: ``task``, ``preset``, ``seed``, ``robobt``,
-            ``stopped_early``, ``steps``, ``updates``, ``best_steps`` (when the best actor was
-            met), ``cpu_s`` (collecting and learning), ``evaluation_cpu_s``, ``wall_s``,
-            ``held_out`` (``starts``, ``successes``, ``success``, ``low`` and ``high`` of
-            Wilson's 95 % interval, ``mean_time`` [s], ``optimum`` [s], ``time_ratio``) and
-            ``weights`` (a hash of the agent's final weights).
-    """
-
-    settings: TrainSettings
-    folder: Path
-    actor: Actor
-    judged: list[Judged]
-    figures: dict[str, Any]
 
 
 class RunFolder:
@@ -121,7 +67,7 @@ class RunFolder:
         self.path = path
         self.settings = settings
         self.result: TrainResult | None = None
-        self.stored: tuple[Arrays, dict[str, Any]] | None = None
+        self.stored: tuple[Arrays, RunState] | None = None
         self.warning: str | None = None
         if path.exists() and not path.is_dir():
             raise RunFolderError(f"{path}: is not a folder")
@@ -139,7 +85,7 @@ class RunFolder:
             self._log = (self.path / LOG).open("w", encoding="utf-8")
             self._log.write("".join(kept))
             self._log.flush()
-        self._events: Any = None
+        self._events: SummaryWriter | None = None
         if self.settings.tensorboard:
             from torch.utils.tensorboard import SummaryWriter
 
@@ -155,35 +101,33 @@ class RunFolder:
         if self._events is not None:
             self._events.close()
 
-    def log(self, judged: Judged) -> None:
+    def log(self, validation: Validation) -> None:
         """Append an evaluation; it is in the file when this returns."""
         with naming(self.path / LOG):
-            self._log.write(json.dumps(asdict(judged), allow_nan=False) + "\n")
+            self._log.write(json.dumps(asdict(validation), allow_nan=False) + "\n")
             self._log.flush()
         if self._events is not None:
-            for name, value in asdict(judged).items():
+            for name, value in asdict(validation).items():
                 if value is not None and name != "steps":
-                    self._events.add_scalar(name, value, judged.steps)
+                    self._events.add_scalar(name, value, validation.steps)
             self._events.flush()
 
-    def save(self, arrays: Arrays, plain: Mapping[str, Any]) -> None:
+    def save(self, arrays: Arrays, state: RunState) -> None:
         """Write the checkpoint."""
-        checkpoint.save(self.path / CHECKPOINT, arrays, {**plain, "robobt": __version__})
+        checkpoint.save(self.path / CHECKPOINT, arrays, state)
 
     def finish(self, result: TrainResult) -> None:
         """Write actor, curves and figures, the figures last: they say that the run has ended."""
-        from robobt.learning.training.curves import draw_curves
-
         save_actor(result.actor, self.path / ACTOR)
         name = f"seed {result.settings.seed}"
-        draw_curves({name: result.judged}, title_of(result.settings), self.path / CURVES)
+        draw_curves({name: result.validations}, title_of(result.settings), self.path / CURVES)
         text = json.dumps(result.figures, indent=2, allow_nan=False) + "\n"
         write_atomically(self.path / RESULT, text)
         for path in (*self._checkpoints(), *self.path.glob(f".*.{CHECKPOINT}")):
             path.unlink(missing_ok=True)
 
     def _has_begun(self) -> bool:
-        """Whether there is anything to lose: a run that failed before its first evaluation has nothing."""
+        """Return whether there is anything to lose; before the first evaluation there is nothing."""
         log = self.path / LOG
         written = any(path.exists() for path in (self.path / RESULT, *self._checkpoints()))
         return written or (log.exists() and log.stat().st_size > 0)
@@ -205,46 +149,41 @@ class RunFolder:
             return
         newest = self.path / CHECKPOINT
         if newest.exists() or checkpoint.previous(newest).exists():
-            arrays, plain, self.warning = checkpoint.load_latest(newest)
-            if plain["robobt"] != __version__:
+            arrays, state, self.warning = checkpoint.load_latest(newest)
+            if state["robobt"] != __version__:
                 raise RunFolderError(
-                    f"{self.path}: was begun by robobt {plain['robobt']}, this is {__version__}"
+                    f"{self.path}: was begun by robobt {state['robobt']}, this is {__version__}"
                 )
-            self.stored = arrays, plain
+            self.stored = arrays, state
 
     def _kept_lines(self) -> list[str]:
-        """The log up to the checkpoint; a resumed run writes the lines after it again."""
-        judged = [] if self.stored is None else self.stored[1]["judged"]
-        return [json.dumps(line) + "\n" for line in judged]
+        """Return the log up to the checkpoint; a resumed run writes the lines after it again."""
+        validations = [] if self.stored is None else self.stored[1]["validations"]
+        return [json.dumps(line) + "\n" for line in validations]
 
 
 def load_run(folder: str | Path) -> TrainResult:
-    """A run that has ended.
+    """Load a run that has ended.
 
     Raises:
         RunFolderError: something in the folder is missing or damaged.
     """
     path = Path(folder)
     try:
-        figures = json.loads((path / RESULT).read_text(encoding="utf-8"))
+        figures: Figures = json.loads((path / RESULT).read_text(encoding="utf-8"))
         lines = (path / LOG).read_text(encoding="utf-8").splitlines()
-        known = {entry.name for entry in fields(Judged)}
-        judged = [
-            Judged(**{key: value for key, value in json.loads(line).items() if key in known})
+        known = {entry.name for entry in fields(Validation)}
+        validations = [
+            Validation(**{key: value for key, value in json.loads(line).items() if key in known})
             for line in lines
         ]
     except (OSError, ValueError, TypeError) as error:
         raise RunFolderError(f"{path}: not the folder of a run that has ended: {error}") from error
-    return TrainResult(read_settings(path), path, load_actor(path / ACTOR), judged, figures)
-
-
-def title_of(settings: TrainSettings) -> str:
-    """What a run is called in pictures and tables."""
-    return f"{settings.task}, {settings.preset}" if settings.preset else settings.task
+    return TrainResult(read_settings(path), path, load_actor(path / ACTOR), validations, figures)
 
 
 def read_settings(folder: Path) -> TrainSettings:
-    """The settings of the run in a folder.
+    """Read the settings of the run in a folder.
 
     Raises:
         RunFolderError: they cannot be read.
@@ -264,7 +203,7 @@ def save_actor(actor: Actor, path: Path) -> None:
 
 
 def load_actor(path: str | Path) -> Actor:
-    """An actor from its file; nothing in the file is run.
+    """Load an actor from its file; nothing in the file is run.
 
     Raises:
         RunFolderError: it cannot be read.
@@ -279,23 +218,11 @@ def load_actor(path: str | Path) -> Actor:
     return actor
 
 
-def _first_difference(old: Mapping[str, Any], new: Mapping[str, Any], prefix: str = "") -> str:
+def _first_difference(old: Mapping[str, object], new: Mapping[str, object], prefix: str = "") -> str:
     for key in new:
-        if old.get(key) != new[key]:
-            if isinstance(old.get(key), Mapping) and isinstance(new[key], Mapping):
-                return _first_difference(old[key], new[key], f"{prefix}{key}.")
+        before, after = old.get(key), new[key]
+        if before != after:
+            if isinstance(before, Mapping) and isinstance(after, Mapping):
+                return _first_difference(before, after, f"{prefix}{key}.")
             return f"{prefix}{key}"
     return "more of them"
-
-
-__all__ = [
-    "CheckpointError",
-    "Judged",
-    "RunFolder",
-    "RunFolderError",
-    "TrainResult",
-    "load_actor",
-    "load_run",
-    "read_settings",
-    "save_actor",
-]

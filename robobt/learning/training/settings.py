@@ -1,4 +1,4 @@
-"""Settings of a training run: the agent's switches, how it collects, replays, explores and is judged."""
+"""Settings of a training run: agent, collection, replay, exploration and evaluation."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ class AgentSettings(_Settings):
     )
     layer_norm: bool = Field(False, description="normalise each hidden layer before its ReLU")
     gamma: float = Field(0.99, gt=0, lt=1, description="discount a control step")
-    tau: float = Field(0.005, gt=0, le=1, description="share of the way that targets follow an update")
+    tau: float = Field(
+        0.005, gt=0, le=1, description="share by which targets move towards the online networks"
+    )
     target_every: int = Field(1, ge=1, le=100_000, description="updates between the targets' moves")
     actor_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the actor (Adam)")
     critic_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the critic (Adam)")
@@ -76,10 +78,10 @@ class PrioritySettings(_Settings):
     """Prioritised replay; off unless ``enabled``."""
 
     enabled: bool = False
-    alpha: float = Field(0.3, ge=0, le=1, description="0 draws evenly, 1 in full proportion")
-    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights make up for it")
+    alpha: float = Field(0.3, ge=0, le=1, description="0 samples uniformly, 1 in proportion")
+    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights correct for it")
     floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
-    dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the actor's squared slope")
+    dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the squared norm of dQ/da")
 
 
 class DemonstrationSettings(_Settings):
@@ -97,10 +99,10 @@ class DemonstrationSettings(_Settings):
 
 
 class ReplaySettings(_Settings):
-    """What is remembered and how it is drawn."""
+    """The replay buffer and how it is sampled."""
 
     capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
-    batch: int = Field(100, ge=1, le=100_000, description="transitions an update")
+    batch: int = Field(100, ge=1, le=100_000, description="transitions of an update")
     priority: PrioritySettings = PrioritySettings()
     demonstrations: DemonstrationSettings = DemonstrationSettings()
 
@@ -129,7 +131,7 @@ class CollectionSettings(_Settings):
 
 
 class EvaluationSettings(_Settings):
-    """How progress is judged: by success and time, never by the return.
+    """How progress is evaluated: by success and time, never by the return.
 
     A slow policy near the ball collects more reward than a fast one.
     """
@@ -137,9 +139,11 @@ class EvaluationSettings(_Settings):
     every: int = Field(20_000, ge=1, description="steps between evaluations")
     starts: int = Field(300, ge=1, le=100_000, description="fixed validation starts of each evaluation")
     held_out: int = Field(
-        1_000, ge=1, le=100_000, description="fixed starts that the best actor is judged on"
+        1_000, ge=1, le=100_000, description="fixed starts that the best actor is evaluated on"
     )
-    target_actor: bool = Field(False, description="judge and ship the slow actor instead of the online one")
+    target_actor: bool = Field(
+        False, description="evaluate and ship the slow actor instead of the online one"
+    )
     stop_success: float | None = Field(
         None, ge=0, le=1, description="stop once this share of the starts succeeds and ..."
     )
@@ -186,12 +190,14 @@ class TrainSettings(_Settings):
 
 
 def presets(task: str) -> list[str]:
-    """Names of the presets that ship for a task."""
+    """Return the names of the presets that ship for a task."""
     return sorted(path.stem for path in (_PRESETS / task).glob("*.yaml"))
 
 
-def load_settings(task: str, preset: str = "fast", changes: Mapping[str, Any] | None = None) -> TrainSettings:
-    """Settings from a preset or a file.
+def load_settings(
+    task: str, preset: str = "fast", changes: Mapping[str, object] | None = None
+) -> TrainSettings:
+    """Load settings from a preset or a file.
 
     Args:
         task: of the preset.
@@ -227,7 +233,7 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
 
 
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
-    """The environment's settings.
+    """Return the environment's settings.
 
     Raises:
         SettingsError: they are wrong.
@@ -269,7 +275,7 @@ def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, An
     return result
 
 
-def _assign(data: dict[str, Any], path: list[str], value: Any, name: str) -> None:
+def _assign(data: dict[str, Any], path: list[str], value: object, name: str) -> None:
     *groups, last = path
     for group in groups:
         inner = data.get(group, {})

@@ -1,4 +1,4 @@
-"""What already knows how to do a task: the hand-written skills, and scripts as simple as can be.
+"""Teachers for demonstrations: the hand-written skills, and scripts as simple as can be.
 
 A teacher decides the actions of one task's arenas. The scripts see what a
 learned policy sees; the skills see the field, as they do in a match.
@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs import GoToBallTask, ShootTask
+from robobt.learning.envs import ArenaTask, GoToBallTask, ShootTask
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.models.actions import ActionScaling
 from robobt.skills import GoToBall, KickToTarget
@@ -36,20 +36,20 @@ class Teacher(Protocol):
     """Decides the actions of every arena of a task."""
 
     def begin(self, which: IntArray) -> None:
-        """Episodes of these arenas start."""
+        """Start new episodes in these arenas."""
 
     def act(self, observation: FloatArray) -> FloatArray:
-        """(n, observation) -> (n, action) in [-1, 1]."""
+        """Map (n, observation) to (n, action) in [-1, 1]."""
 
 
 class StraightDrive:
     """Drives straight at the ball at full speed and turns to it: the shortest time there is."""
 
-    def __init__(self, task: GoToBallTask) -> None:
+    def __init__(self, task: ArenaTask) -> None:
         self._turn = _AIM_GAIN / task.action.max_turn
 
     def begin(self, which: IntArray) -> None:
-        """Nothing to forget."""
+        """Do nothing: the script has no memory."""
 
     def act(self, observation: FloatArray) -> FloatArray:
         """See :class:`Teacher`."""
@@ -68,7 +68,7 @@ class TurnAndKick:
         self._pull = np.inf if dribbler.kind == "glue" else _CAREFUL * dribbler.pull
 
     def begin(self, which: IntArray) -> None:
-        """Nothing to forget."""
+        """Do nothing: the script has no memory."""
 
     def act(self, observation: FloatArray) -> FloatArray:
         """See :class:`Teacher`."""
@@ -93,7 +93,7 @@ class SkillTeacher:
         make: a new skill for an episode.
     """
 
-    def __init__(self, task: GoToBallTask | ShootTask, make: Callable[[], Skill]) -> None:
+    def __init__(self, task: ArenaTask, make: Callable[[], Skill]) -> None:
         self._task = task
         self._make = make
         self._limits = _within(task.settings.robot_limits, task.action)
@@ -101,7 +101,7 @@ class SkillTeacher:
         self._ticks = np.zeros(task.n, dtype=np.int64)
 
     def begin(self, which: IntArray) -> None:
-        """A new skill for each of these arenas."""
+        """Make a new skill for each of these arenas."""
         for arena in which.tolist():
             self._ticks[arena] = 0
             frame = self._frame(arena)
@@ -130,25 +130,25 @@ class SkillTeacher:
         return Frame(time, settings.field, BallState(*ball), (me,), period=settings.period)
 
 
-def script(task: GoToBallTask | ShootTask) -> Teacher:
-    """The script that does this task."""
+def script(task: ArenaTask) -> Teacher:
+    """Return the script that does this task."""
     return TurnAndKick(task) if isinstance(task, ShootTask) else StraightDrive(task)
 
 
-def skill(task: GoToBallTask | ShootTask) -> Teacher:
-    """The hand-written skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
+def skill(task: ArenaTask) -> Teacher:
+    """Return the skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
     if isinstance(task, GoToBallTask):
         return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
     goal, speed = task.settings.field.their_goal, task.action.kick_speed
     return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
 
 
-TEACHERS: dict[str, Callable[[GoToBallTask | ShootTask], Teacher]] = {"skill": skill, "script": script}
+TEACHERS: dict[str, Callable[[ArenaTask], Teacher]] = {"skill": skill, "script": script}
 """Teachers by name."""
 
 
 def action_of(command: RobotCommand, scaling: ActionScaling) -> FloatArray:
-    """The action in [-1, 1] that comes closest to a command; what it cannot say is left out."""
+    """Return the action in [-1, 1] closest to a command; what it cannot express is left out."""
     if scaling.kind == "drive":
         forward, left = command.vx / scaling.max_speed, command.vy / scaling.max_speed
         norm = max(1.0, float(np.hypot(forward, left)))
@@ -160,6 +160,6 @@ def action_of(command: RobotCommand, scaling: ActionScaling) -> FloatArray:
 
 
 def _within(limits: RobotLimits, action: ActionScaling) -> RobotLimits:
-    """The robot's limits less what actions cannot ask for."""
+    """Return the robot's limits less what actions cannot ask for."""
     fastest = min(limits.max_speed, action.max_speed) if action.kind == "drive" else limits.max_speed
     return limits.model_copy(update={"max_speed": fastest, "max_turn": min(limits.max_turn, action.max_turn)})

@@ -66,5 +66,5 @@ def test_a_support_that_rounds_badly_loses_nothing():
 
 
 def test_fewer_than_two_atoms_are_refused():
-    with pytest.raises(ValueError, match="1 atoms"):
+    with pytest.raises(ValueError, match="at least 2 atoms on a rising range, not 1"):
         Atoms(0.0, 1.0, 1)

@@ -14,7 +14,7 @@ from robobt.learning.training.demonstrations import (
     read_demonstrations,
     record,
 )
-from robobt.learning.training.problems import go_to_ball, shoot
+from robobt.learning.training.problems import problem_of
 from robobt.learning.training.settings import load_settings
 from robobt.learning.training.teachers import StraightDrive, TurnAndKick, action_of
 from robobt.learning.training.train import train
@@ -30,18 +30,18 @@ def recorded():
 def test_the_straight_drive_reaches_every_start_in_the_shortest_time():
     settings = GoToBallSettings()
     task = GoToBallTask(settings)
-    told = go_to_ball(settings).judge(StraightDrive(task).act, "validation", 200)
-    assert told.rate == 1.0
-    assert (told.times <= told.optimum + 2 * settings.period + 1e-9).all()
-    assert told.time_ratio is not None
-    assert told.time_ratio < 1.01
+    figures = problem_of(settings).evaluate(StraightDrive(task).act, "validation", 200)
+    assert figures.rate == 1.0
+    assert (figures.times <= figures.optimum + 2 * settings.period + 1e-9).all()
+    assert figures.time_ratio is not None
+    assert figures.time_ratio < 1.01
 
 
 @pytest.mark.parametrize("simulator", ["default", "robobulls", "erforce"])
 def test_the_scripted_shooter_hardly_ever_misses(simulator):
     settings = ShootSettings(simulator=simulator)
-    told = shoot(settings).judge(TurnAndKick(ShootTask(settings)).act, "validation", 200)
-    assert told.rate >= 0.99
+    figures = problem_of(settings).evaluate(TurnAndKick(ShootTask(settings)).act, "validation", 200)
+    assert figures.rate >= 0.99
 
 
 @pytest.mark.parametrize(("environment", "share"), [(GoToBallSettings(), 0.9), (ShootSettings(), 0.95)])
@@ -56,7 +56,7 @@ def test_episodes_are_whole_and_chained(recorded):
     assert recorded.episode.tolist() == sorted(recorded.episode.tolist())
     ended = recorded.terminated | recorded.truncated
     inside = np.flatnonzero(~ended)
-    assert np.array_equal(recorded.following[inside], recorded.observation[inside + 1])
+    assert np.array_equal(recorded.next_observation[inside], recorded.observation[inside + 1])
     assert np.array_equal(np.flatnonzero(ended)[:-1] + 1, np.flatnonzero(np.diff(recorded.episode)) + 1)
     assert (np.abs(recorded.action) <= 1.0).all()
     assert recorded.reward[recorded.success].min() > 90.0
@@ -102,7 +102,7 @@ def test_what_was_written_is_read(recorded, tmp_path):
         "observation",
         "action",
         "reward",
-        "following",
+        "next_observation",
         "terminated",
         "truncated",
         "success",
@@ -113,10 +113,12 @@ def test_what_was_written_is_read(recorded, tmp_path):
 
 
 def test_transitions_are_those_of_the_replay(recorded):
-    rows = [row for outlooks in recorded.transitions((3,), 0.9) for row in outlooks]
+    rows = [row for parts in recorded.transitions((3,), 0.9) for row in parts]
     assert sum(len(row.reward) for row in rows) == len(recorded)
     last = np.flatnonzero(recorded.terminated)[0]
-    ends = [row for row in rows if (row.following == recorded.following[last]).all(axis=1).any()]
+    ends = [
+        row for row in rows if (row.next_observation == recorded.next_observation[last]).all(axis=1).any()
+    ]
     assert all(row.discount[0] == 0.0 for row in ends)
 
 

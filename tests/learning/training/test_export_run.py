@@ -59,11 +59,11 @@ def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     assert card.code_version == __version__
     assert card.training["settings"]["agent"]["hidden"] == [8]
     assert card.training["figures"]["steps"] == result.figures["steps"]
-    success, told = card.held_out["success"], result.figures["held_out"]
+    success, figures = card.held_out["success"], result.figures["held_out"]
     assert (success.value, success.low, success.high, success.n) == (
-        told["success"],
-        told["low"],
-        told["high"],
+        figures["success"],
+        figures["low"],
+        figures["high"],
         20,
     )
 
@@ -106,12 +106,12 @@ def test_a_name_that_is_none_is_one_error(run: Path, tmp_path: Path, name: str) 
 def test_held_out_figures_carry_their_intervals() -> None:
     success = np.array([True, True, True, False])
     times = np.array([1.0, 2.0, 3.0, np.nan])
-    told = held_out(Evaluation(success, times, np.array([1.0, 1.5, 2.5, 1.0]), np.zeros(4)))
-    assert told["success"].value == 0.75
-    assert told["time"].value == 2.0
-    assert told["time"].n == 3
-    assert told["time_ratio"].value == pytest.approx(6.0 / 5.0)
-    for one in told.values():
+    figures = held_out(Evaluation(success, times, np.array([1.0, 1.5, 2.5, 1.0]), np.zeros(4)))
+    assert figures["success"].value == 0.75
+    assert figures["time"].value == 2.0
+    assert figures["time"].n == 3
+    assert figures["time_ratio"].value == pytest.approx(6.0 / 5.0)
+    for one in figures.values():
         assert one.low is not None
         assert one.high is not None
         assert one.low < one.value < one.high

@@ -5,8 +5,9 @@ import json
 import pytest
 
 from robobt.learning.training.compare import compare, table_of
-from robobt.learning.training.run_folder import Judged, load_run
-from robobt.learning.training.seeds import first_reaching, together, train_seeds
+from robobt.learning.training.results import Validation, first_reaching, summary_of
+from robobt.learning.training.run_folder import load_run
+from robobt.learning.training.seeds import train_seeds
 from robobt.learning.training.settings import SettingsError, load_settings
 
 SHORT = {
@@ -23,16 +24,21 @@ SHORT = {
 }
 
 
-def judged(steps, success, time_ratio=None, mean_time=1.0):
-    return Judged(steps, 0, success, mean_time, time_ratio, 0.0, steps / 100, 0.0, 0.0, None, None)
+def at(steps, success, time_ratio=None, mean_time=1.0):
+    return Validation(steps, 0, success, mean_time, time_ratio, 0.0, steps / 100, 0.0, 0.0, None, None)
 
 
 def test_the_first_evaluation_at_the_bar_is_found():
-    run = [judged(1, 0.9, 1.0), judged(2, 1.0, 1.2), judged(3, 0.99, 1.03), judged(4, 1.0, 1.01)]
+    run = [
+        at(1, 0.9, 1.0),
+        at(2, 1.0, 1.2),
+        at(3, 0.99, 1.03),
+        at(4, 1.0, 1.01),
+    ]
     assert first_reaching(run, 0.99) == run[1]
     assert first_reaching(run, 0.99, 1.04) == run[2]
     assert first_reaching(run, 1.0, 1.005) is None
-    assert first_reaching([judged(1, 1.0, None, 0.6), judged(2, 1.0, None, 0.4)], 0.98, 0.45).steps == 2
+    assert first_reaching([at(1, 1.0, None, 0.6), at(2, 1.0, None, 0.4)], 0.98, 0.45).steps == 2
 
 
 @pytest.mark.slow
@@ -44,9 +50,9 @@ def test_seeds_side_by_side_come_to_what_they_come_to_one_after_the_other(tmp_pa
     assert [r.figures["weights"] for r in beside] == [r.figures["weights"] for r in after]
     assert {progress.seed for progress in shown} == {0, 1}
     assert (tmp_path / "two" / "curves.png").read_bytes().startswith(b"\x89PNG")
-    told = json.loads((tmp_path / "two" / "result.json").read_text())
-    assert told["seeds"] == [0, 1]
-    assert told["success"].keys() == {"median", "low", "high"}
+    figures = json.loads((tmp_path / "two" / "result.json").read_text())
+    assert figures["seeds"] == [0, 1]
+    assert figures["success"].keys() == {"median", "low", "high"}
     assert load_run(tmp_path / "two" / "seed_1").settings.seed == 1
 
 
@@ -55,7 +61,7 @@ def test_seeds_that_have_ended_are_kept_and_new_ones_added(tmp_path):
     first = train_seeds(settings, [0], tmp_path)
     both = train_seeds(settings, [0, 1], tmp_path, resume=True)
     assert both[0].figures == first[0].figures
-    assert together(both)["seeds"] == [0, 1]
+    assert summary_of(both)["seeds"] == [0, 1]
 
 
 def test_nothing_to_train_is_refused(tmp_path):
@@ -66,15 +72,15 @@ def test_nothing_to_train_is_refused(tmp_path):
 
 def test_a_comparison_is_a_table_and_is_taken_up_again(tmp_path):
     only = ["fast", "twin critics"]
-    told = compare("go_to_ball", tmp_path, [0], only, SHORT)
-    assert list(told) == only
+    figures = compare("go_to_ball", tmp_path, [0], only, SHORT)
+    assert list(figures) == only
     table = (tmp_path / "comparison.md").read_text()
-    assert table == table_of(told)
+    assert table == table_of(figures)
     assert table.splitlines()[0].startswith("| setting | CPU s to 99 % |")
     assert "| twin critics |" in table
     before = (tmp_path / "fast" / "seed_0" / "result.json").stat().st_mtime_ns
     again = compare("go_to_ball", tmp_path, [0], only, SHORT)
-    assert again == told == json.loads((tmp_path / "comparison.json").read_text())["variants"]
+    assert again == figures == json.loads((tmp_path / "comparison.json").read_text())["variants"]
     assert (tmp_path / "fast" / "seed_0" / "result.json").stat().st_mtime_ns == before
 
 

@@ -58,8 +58,8 @@ def break_and_resume(settings, folder, moments):
     return train(settings, folder, resume=True, problem=SLIDE)
 
 
-def without_clocks(judged):
-    return [replace(each, cpu_s=0.0, evaluation_cpu_s=0.0, wall_s=0.0) for each in judged]
+def without_clocks(validation):
+    return [replace(each, cpu_s=0.0, evaluation_cpu_s=0.0, wall_s=0.0) for each in validation]
 
 
 def test_the_task_is_learned(tmp_path):
@@ -78,7 +78,7 @@ def test_a_run_that_was_cut_off_and_resumed_ends_with_the_same_weights(tmp_path,
     broken = break_and_resume(settings, tmp_path / "broken", moments)
     assert broken.figures["weights"] == whole.figures["weights"]
     assert broken.figures["held_out"] == whole.figures["held_out"]
-    assert without_clocks(broken.judged) == without_clocks(whole.judged)
+    assert without_clocks(broken.validations) == without_clocks(whole.validations)
     for a, b in zip(broken.actor.parameters(), whole.actor.parameters(), strict=True):
         assert torch.equal(a, b)
 
@@ -87,7 +87,7 @@ def test_the_log_of_a_resumed_run_has_every_evaluation_once(tmp_path):
     broken = break_and_resume(slide_settings(), tmp_path, (100, 70))
     lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     assert [line["steps"] for line in lines] == [480, 960, 1440, 1920]
-    assert [each.steps for each in broken.judged] == [480, 960, 1440, 1920]
+    assert [each.steps for each in broken.validations] == [480, 960, 1440, 1920]
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_gives_others(tmp_path):
@@ -124,7 +124,7 @@ def test_without_any_sound_checkpoint_there_is_one_clear_error_and_nothing_is_lo
     with pytest.raises(KilledError):
         train(slide_settings(), tmp_path, problem=breaking_after(150))
     for file in (tmp_path / CHECKPOINT, checkpoint.previous(tmp_path / CHECKPOINT)):
-        file.write_bytes(b"robobt-checkpoint-1\nnonsense")
+        file.write_bytes(b"robobt-checkpoint-2\nnonsense")
     log = (tmp_path / "log.jsonl").read_text()
     with pytest.raises(checkpoint.CheckpointError, match=f"{CHECKPOINT}: damaged or cut short"):
         train(slide_settings(), tmp_path, resume=True, problem=SLIDE)
@@ -198,7 +198,7 @@ def test_a_run_that_has_ended_is_read_not_repeated(tmp_path):
     first = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
     again = train(slide_settings(steps=480), tmp_path, resume=True, problem=breaking_after(0))
     assert again.figures == first.figures
-    assert again.judged == first.judged
+    assert again.validations == first.validations
 
 
 def test_what_a_run_leaves_behind(tmp_path):
@@ -213,20 +213,30 @@ def test_what_a_run_leaves_behind(tmp_path):
     assert float(result.actor(seen * 100).abs().max()) <= 1.0
 
 
+def test_training_leaves_torchs_threads_as_they_were(tmp_path):
+    before = torch.get_num_threads()
+    try:
+        torch.set_num_threads(2)
+        train(slide_settings(steps=480), tmp_path, problem=SLIDE)
+        assert torch.get_num_threads() == 2
+    finally:
+        torch.set_num_threads(before)
+
+
 def test_the_best_actor_is_chosen_by_success_and_time_and_never_by_the_return(tmp_path):
     """The later an evaluation, the larger its return and the worse its success."""
     rates = iter([0.5, 0.9, 0.9, 0.2])
     times = iter([1.0, 3.0, 2.0, 0.5])
 
-    def judge(policy, split, starts):
-        figures = SLIDE.judge(policy, split, starts)
+    def evaluate(policy, split, starts):
+        figures = SLIDE.evaluate(policy, split, starts)
         if split == "held_out":
             return figures
         success = np.arange(starts) < round(next(rates) * starts)
         taken = np.where(success, next(times), np.nan)
         return replace(figures, success=success, times=taken, returns=figures.returns + taken[0])
 
-    result = train(slide_settings(), tmp_path, problem=replace(SLIDE, judge=judge))
+    result = train(slide_settings(), tmp_path, problem=replace(SLIDE, evaluate=evaluate))
     assert result.figures["best_steps"] == 1440
 
 
@@ -235,7 +245,7 @@ def test_training_stops_once_the_bar_is_met(tmp_path):
     result = train(early, tmp_path, problem=SLIDE)
     assert result.figures["stopped_early"]
     assert result.figures["steps"] < 1920
-    assert [judged.success >= 0.9 for judged in result.judged][-2:] == [False, True]
+    assert [validation.success >= 0.9 for validation in result.validations][-2:] == [False, True]
 
 
 def test_weights_that_are_not_finite_end_the_run_with_an_error(tmp_path):

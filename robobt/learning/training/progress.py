@@ -1,0 +1,86 @@
+"""Where a training run stands, told now and then."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robobt.learning.training.clock import RunClock
+from robobt.learning.training.results import Validation
+from robobt.learning.training.selection import Selection
+from robobt.learning.training.settings import TrainSettings
+
+_EVERY = 0.5
+"""Time between reports [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where a run stands.
+
+    Attributes:
+        seed: of the run.
+        steps, of: environment steps taken, and at most.
+        wall_s, cpu_s: spent so far, in interrupted processes too.
+        left_s: time to the last step at the present pace; an early stop comes sooner.
+        latest, best: evaluations, None before the first.
+    """
+
+    seed: int
+    steps: int
+    of: int
+    wall_s: float
+    cpu_s: float
+    left_s: float
+    latest: Validation | None
+    best: Validation | None
+
+
+OnProgress = Callable[[Progress], None]
+
+
+class Reporter:
+    """Reports the progress of a run.
+
+    Args:
+        settings: of the run.
+        on_progress: called with every report.
+        clock: of the run.
+        selection: of the run.
+    """
+
+    def __init__(
+        self, settings: TrainSettings, on_progress: OnProgress | None, clock: RunClock, selection: Selection
+    ) -> None:
+        self._settings = settings
+        self._on_progress = on_progress
+        self._clock = clock
+        self._selection = selection
+        self._begun_at = 0
+        self._reported = 0.0
+
+    def begin(self, steps: int) -> None:
+        """Measure the pace from this step on."""
+        self._begun_at = steps
+
+    def report(self, steps: int, now: bool = False) -> None:
+        """Report, unless the last report is recent; with ``now`` in any case."""
+        if self._on_progress is None or not (now or time.monotonic() - self._reported > _EVERY):
+            return
+        self._reported = time.monotonic()
+        settings, clock, selection = self._settings, self._clock, self._selection
+        pace = clock.here_s / max(1, steps - self._begun_at)
+        left_s = pace * (settings.steps - steps)
+        self._on_progress(
+            Progress(
+                settings.seed,
+                steps,
+                settings.steps,
+                clock.wall_s,
+                clock.cpu_s,
+                left_s,
+                selection.latest,
+                selection.best,
+            )
+        )

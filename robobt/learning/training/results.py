@@ -1,0 +1,233 @@
+"""What training runs have come to: evaluations on the way, held-out figures, and several seeds together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from typing import TypedDict
+
+from robobt.learning.agents.networks import Actor
+from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.settings import TrainSettings
+
+BARS: dict[str, tuple[float, float]] = {"go_to_ball": (0.995, 1.04), "shoot": (0.98, 0.45)}
+"""What counts as learned: share of successes, and time over the optimum or, for Shoot, to the kick [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """An evaluation on the validation starts during training.
+
+    Attributes:
+        steps, updates: so far.
+        success: share of the starts.
+        mean_time: of the successes [s]; None without any.
+        time_ratio: that time over the optimum; None where unknown.
+        mean_return: undiscounted; tells how the reward is collected, not how good the policy is.
+        cpu_s: CPU time spent on collecting and learning.
+        evaluation_cpu_s: CPU time spent on evaluations.
+        wall_s: time passed, that of interrupted processes included.
+        critic_loss, value: means since the last evaluation; None without updates.
+    """
+
+    steps: int
+    updates: int
+    success: float
+    mean_time: float | None
+    time_ratio: float | None
+    mean_return: float
+    cpu_s: float
+    evaluation_cpu_s: float
+    wall_s: float
+    critic_loss: float | None
+    value: float | None
+
+    @property
+    def score(self) -> tuple[float, float]:
+        """What policies are ranked by: successes, then speed. Never by the return."""
+        return (self.success, float("-inf") if self.mean_time is None else -self.mean_time)
+
+    def reaches(self, success: float, time: float = float("inf")) -> bool:
+        """Return whether so many starts succeeded in that time (over the optimum where that is known)."""
+        taken = self.mean_time if self.time_ratio is None else self.time_ratio
+        return self.success >= success and taken is not None and taken <= time
+
+
+class HeldOutFigures(TypedDict):
+    """The best actor on the held-out starts, with Wilson's 95 % interval of its success; times in s."""
+
+    starts: int
+    successes: int
+    success: float
+    low: float
+    high: float
+    mean_time: float | None
+    optimum: float | None
+    time_ratio: float | None
+
+
+class Figures(TypedDict):
+    """What ``result.json`` holds.
+
+    ``best_steps`` is when the best actor was found, ``cpu_s`` the CPU time of collecting and
+    learning, ``weights`` a hash of the agent's final weights.
+    """
+
+    task: str
+    preset: str
+    seed: int
+    robobt: str
+    stopped_early: bool
+    steps: int
+    updates: int
+    best_steps: int
+    cpu_s: float
+    evaluation_cpu_s: float
+    wall_s: float
+    held_out: HeldOutFigures
+    weights: str
+
+
+class RunFigures(Figures):
+    """The figures of a run, and its folder."""
+
+    folder: str
+
+
+@dataclass(frozen=True, slots=True)
+class TrainResult:
+    """A run that has ended.
+
+    Attributes:
+        settings: of the run.
+        folder: its files.
+        actor: the best actor by the validation starts: raw observation in SI units ->
+            action in [-1, 1].
+        validations: every evaluation on the validation starts.
+        figures: what ``result.json`` holds.
+    """
+
+    settings: TrainSettings
+    folder: Path
+    actor: Actor
+    validations: list[Validation]
+    figures: Figures
+
+
+class Spread(TypedDict):
+    """Median and range over seeds."""
+
+    median: float
+    low: float
+    high: float
+
+
+class Reached(TypedDict):
+    """How many seeds reached a bar, and what it cost them; None unless all did."""
+
+    reached: int
+    cpu_s: Spread | None
+    steps: Spread | None
+
+
+class Summary(TypedDict):
+    """Several seeds of a run together.
+
+    ``best_seed`` is by the validation starts; ``to_99`` is the cost to 99 % of them, ``to_bar`` that
+    to :data:`BARS`; ``success``, ``mean_time`` and ``time_ratio`` are those on the held-out starts.
+    """
+
+    task: str
+    preset: str
+    seeds: list[int]
+    best_seed: int
+    to_99: Reached
+    to_bar: Reached
+    success: Spread | None
+    mean_time: Spread | None
+    time_ratio: Spread | None
+    steps: Spread | None
+    cpu_s: Spread | None
+    evaluation_cpu_s: Spread | None
+    wall_s: Spread | None
+
+
+class SeedsFigures(TypedDict):
+    """What ``robobt train --json`` prints: every seed's figures, and all of them together."""
+
+    runs: list[RunFigures]
+    together: Summary
+
+
+def held_out_figures(evaluation: Evaluation) -> HeldOutFigures:
+    """Return the figures of an evaluation on the held-out starts."""
+    return {
+        "starts": len(evaluation.success),
+        "successes": int(evaluation.success.sum()),
+        "success": evaluation.rate,
+        "low": evaluation.interval.low,
+        "high": evaluation.interval.high,
+        "mean_time": evaluation.mean_time,
+        "optimum": evaluation.mean_optimum,
+        "time_ratio": evaluation.time_ratio,
+    }
+
+
+def title_of(settings: TrainSettings) -> str:
+    """Return what a run is called in pictures and tables."""
+    return f"{settings.task}, {settings.preset}" if settings.preset else settings.task
+
+
+def summary_of(results: Sequence[TrainResult]) -> Summary:
+    """Compute medians and ranges over the seeds of a run."""
+    first = results[0].settings
+    bar = BARS.get(first.task, (0.99, float("inf")))
+    figures = [result.figures for result in results]
+    held_out = [each["held_out"] for each in figures]
+    return {
+        "task": first.task,
+        "preset": first.preset,
+        "seeds": [result.settings.seed for result in results],
+        "best_seed": max(results, key=lambda result: max(v.score for v in result.validations)).settings.seed,
+        "to_99": _reached([first_reaching(result.validations, 0.99) for result in results]),
+        "to_bar": _reached([first_reaching(result.validations, *bar) for result in results]),
+        "success": _spread([each["success"] for each in held_out]),
+        "mean_time": _spread([each["mean_time"] for each in held_out]),
+        "time_ratio": _spread([each["time_ratio"] for each in held_out]),
+        "steps": _spread([each["steps"] for each in figures]),
+        "cpu_s": _spread([each["cpu_s"] for each in figures]),
+        "evaluation_cpu_s": _spread([each["evaluation_cpu_s"] for each in figures]),
+        "wall_s": _spread([each["wall_s"] for each in figures]),
+    }
+
+
+def figures_of(results: Sequence[TrainResult]) -> SeedsFigures:
+    """Return every seed's figures and all of them together, for machines."""
+    return {
+        "runs": [{**result.figures, "folder": str(result.folder)} for result in results],
+        "together": summary_of(results),
+    }
+
+
+def first_reaching(
+    validations: Sequence[Validation], success: float, time: float = float("inf")
+) -> Validation | None:
+    """Return the first evaluation that :meth:`~Validation.reaches` the bar; None without one."""
+    return next((each for each in validations if each.reaches(success, time)), None)
+
+
+def _reached(found: Sequence[Validation | None]) -> Reached:
+    known = [each for each in found if each is not None]
+    whole = len(known) == len(found)
+    return {
+        "reached": len(known),
+        "cpu_s": _spread([each.cpu_s for each in known]) if whole else None,
+        "steps": _spread([each.steps for each in known]) if whole else None,
+    }
+
+
+def _spread(values: Sequence[float | None]) -> Spread | None:
+    known = [value for value in values if value is not None]
+    return {"median": median(known), "low": min(known), "high": max(known)} if known else None
