@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
-from math import isfinite
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angles
 from robobt.world.limits import RobotLimits
+from robobt.world.placement import check_inside, check_placement
 from robobt.world.protocol import Placement, Snapshots, World
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
@@ -69,18 +69,8 @@ class SimWorld(World):
 
     def reset(self, placement: Placement, seed: int) -> None:
         """See :meth:`robobt.world.World.reset`; every robot needs a pose."""
-        outer_x = self.field.half_length + self.field.margin
-        outer_y = self.field.half_width + self.field.margin
-        missing = [robot for robot in self._ids if robot not in placement.robots]
-        if missing:
-            raise ValueError(f"the placement has no pose for {', '.join(map(str, missing))}")
-        poses = np.zeros((len(self._ids), 3))
-        for robot, pose in placement.robots.items():
-            if robot not in self._index:
-                raise ValueError(f"{robot} is not part of this world")
-            _check_inside(str(robot), pose, outer_x, outer_y)
-            poses[self._index[robot]] = pose
-        _check_inside("the ball", placement.ball, outer_x, outer_y)
+        check_placement(placement, self.field, self._ids)
+        poses = np.array([placement.robots[robot] for robot in self._ids], dtype=float).reshape(-1, 3)
         # A new space: the old one remembers the contacts of its last steps and would act on them.
         self._arenas = self._make_arenas()
         self._arenas.place(poses[None], np.array([placement.ball]))
@@ -178,12 +168,7 @@ class SimWorld(World):
 
     def place_ball(self, x: float, y: float) -> None:
         """See :meth:`robobt.world.World.place_ball`."""
-        _check_inside(
-            "the ball",
-            (x, y),
-            self.field.half_length + self.field.margin,
-            self.field.half_width + self.field.margin,
-        )
+        check_inside("the ball", (x, y), self.field)
         self._arenas.place_ball(0, x, y)
 
     def _make_arenas(self) -> Arenas:
@@ -240,13 +225,3 @@ def _states(
             for (number, limits), row, touching in zip(known, rows, contact, strict=True)
         ]
     )
-
-
-def _check_inside(what: str, values: tuple[float, ...], outer_x: float, outer_y: float) -> None:
-    if not all(isfinite(value) for value in values):
-        raise ValueError(f"{what} is placed at {values}: not finite")
-    if abs(values[0]) > outer_x or abs(values[1]) > outer_y:
-        raise ValueError(
-            f"{what} is placed at ({values[0]:g}, {values[1]:g}), outside the walls at "
-            f"({outer_x:g}, {outer_y:g})"
-        )
