@@ -243,6 +243,17 @@ def preset(name: str, **changes: object) -> SimSettings:
     return PRESETS[name].model_copy(update=changes)
 
 
+def realism_level(name: str) -> RealismSettings:
+    """Return a realism level by name.
+
+    Raises:
+        KeyError: no such level; the message lists those there are.
+    """
+    if name not in REALISM:
+        raise KeyError(f"no realism level is called {name!r}; there are {', '.join(REALISM)}")
+    return REALISM[name]
+
+
 def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:
     """Build settings from what a scenario file holds.
 
@@ -260,9 +271,7 @@ def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:
     base = preset(str(changes.pop("preset", "default"))).model_dump()
     realism = changes.get("realism")
     if isinstance(realism, str):
-        if realism not in REALISM:
-            raise KeyError(f"no realism level is called {realism!r}; there are {', '.join(REALISM)}")
-        changes["realism"] = REALISM[realism].model_dump()
+        changes["realism"] = realism_level(realism).model_dump()
     return SimSettings.model_validate(_merged(base, changes))
 
 
