@@ -118,6 +118,11 @@ class Frame:
                 return robot
         return None
 
+    def robots(self) -> dict[RobotId, RobotState]:
+        """Return every robot on the field by team and number."""
+        own = {RobotId(self.team, robot.id): robot for robot in self.own}
+        return own | {RobotId(self.team.other, robot.id): robot for robot in self.opponents}
+
     def others(self, number: int) -> list[RobotState]:
         """Return every robot on the field but the own one with this number."""
         return [robot for robot in self.own if robot.id != number] + list(self.opponents)
