@@ -8,12 +8,15 @@ happens, and records the match.
 
 import sys
 
-import robobt
+from robobt.match import Match, load_scenario
+from robobt.worlds import sim_world
 
 
 def main(seconds: float = 60.0) -> None:
-    scenario = robobt.load_scenario("six_v_six").lasting(seconds)
-    match = robobt.Match(scenario, 1, robobt.sim_world, record="out/six_v_six.robobt.jsonl.gz")
+    scenario = load_scenario("six_v_six")
+    ends = scenario.ends.model_copy(update={"time_limit": seconds})
+    scenario = scenario.model_copy(update={"ends": ends})
+    match = Match(scenario, seed=1, world_factory=sim_world, record="out/six_v_six.robobt.jsonl.gz")
     command = None
     with match:  # closes the recording
         while match.tick():

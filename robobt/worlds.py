@@ -1,21 +1,15 @@
-"""World factories: from a scenario to the world it is played in, and matches played there.
+"""World factories: from a scenario to the world it is played in.
 
 Above ``match``, which knows no world, and ``sim``, which knows no scenario.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
-
 from pydantic import ValidationError
 
 from robobt.config.errors import message_of
 from robobt.config.validation import first_problem
-from robobt.match import loop, runner
 from robobt.match.loop import WorldFactory
-from robobt.match.results.results import MatchResult
-from robobt.match.runner import Run
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld
@@ -23,21 +17,15 @@ from robobt.world.protocol import World
 
 
 def sim_world(scenario: Scenario) -> World:
-    """Make the built-in simulator with the scenario's field and robots.
+    """Return the scenario's field and robots in the built-in simulator.
 
     Where its vision or commands are late and the scenario does not say otherwise, the
-    frames are brought up to now (:class:`~robobt.world.prediction.PredictedWorld`).
+    frames are predicted to the present (:class:`~robobt.world.prediction.PredictedWorld`).
 
     Raises:
         ScenarioError: the simulator's settings in the scenario are wrong.
     """
-    try:
-        settings = settings_from(scenario.simulator)
-    except ValidationError as error:
-        field, problem = first_problem(error, SimSettings, scenario.simulator)
-        raise scenario.error(problem, f"simulator.{field}") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise scenario.error(message_of(error), "simulator") from error
+    settings = scenario_settings(scenario)
     limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     world = SimWorld(scenario.field, limits, settings, scenario.period)
     realism = settings.realism
@@ -48,81 +36,41 @@ def sim_world(scenario: Scenario) -> World:
     )
 
 
+def scenario_settings(scenario: Scenario) -> SimSettings:
+    """Return the settings of a scenario's simulator.
+
+    Raises:
+        ScenarioError: they are wrong.
+    """
+    try:
+        return settings_from(scenario.simulator)
+    except ValidationError as error:
+        field, problem = first_problem(error, SimSettings, scenario.simulator)
+        raise scenario.error(problem, f"simulator.{field}") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise scenario.error(message_of(error), "simulator") from error
+
+
 SIM = "sim"
 """The name of the built-in simulator as a world."""
 
 
 def world_from(address: str) -> WorldFactory:
-    """Return the factory for the worlds of an address.
+    """Return the factory of an address: "sim", one of the league like ``league://grsim``, or a league log.
 
-    Args:
-        address: "sim", a field of the league like ``league://grsim`` (options as for
-            :func:`robobt.league.factory.parse_address`), or a league log (``*.log``,
-            ``*.log.gz``), which is only observed.
+    For the league's options see :func:`robobt.league.factory.parse_address`.
+    A log (``*.log``, ``*.log.gz``) is only observed.
 
     Raises:
-        robobt.league.factory.AddressError: the address is none of them.
+        robobt.league.factory.AddressError: the address names none of them.
     """
     if address == SIM:
         return sim_world
     if address.lower().endswith((".log", ".log.gz")) and "://" not in address:
-        from robobt.league.log.world import LogFactory
+        from robobt.league.log.world import log_factory
 
-        return LogFactory(address)
-    from robobt.league.factory import LeagueFactory  # protobuf and sockets, for those who play over a network
+        return log_factory(address)
+    # Protobuf and sockets are only needed to play over a network.
+    from robobt.league.factory import LeagueFactory
 
-    return LeagueFactory(address)
-
-
-def play_match(
-    scenario: Scenario,
-    seed: int | None = None,
-    *,
-    world: str | WorldFactory = SIM,
-    record: str | Path | None = None,
-) -> MatchResult:
-    """Play one match to its end.
-
-    Args:
-        scenario: what is played.
-        seed: fixes placement, world and trees; the scenario's by default.
-        world: an address as for :func:`world_from`, or a factory.
-        record: file to record the match to.
-
-    Raises:
-        ScenarioError: the scenario does not fit the world, or its objects find no place.
-        OSError: the recording cannot be written.
-    """
-    return loop.play_match(scenario, scenario.seed if seed is None else seed, _factory(world), record)
-
-
-def run_trials(
-    scenario: Scenario,
-    trials: int | None = None,
-    *,
-    world: str | WorldFactory = SIM,
-    seed: int | None = None,
-    workers: int = 1,
-    out: str | Path | None = None,
-    record: Mapping[int, str | Path] | None = None,
-    on_result: Callable[[MatchResult], None] | None = None,
-) -> Run:
-    """Play a scenario many times.
-
-    Arguments and errors are those of :func:`robobt.match.runner.run_trials`, but for the world.
-
-    Args:
-        scenario: what is played.
-        trials: number of trials; the scenario's by default.
-        world: an address as for :func:`world_from`, or a factory.
-        seed: seed from which the trials' seeds follow; the scenario's by default.
-        workers: number of processes; one is this process itself.
-        out: file to append each result to; trials it holds already are not played again.
-        record: files to record trials to, by trial number.
-        on_result: called with each result as it finishes.
-    """
-    return runner.run_trials(scenario, _factory(world), trials, workers, seed, out, record, on_result)
-
-
-def _factory(world: str | WorldFactory) -> WorldFactory:
-    return world_from(world) if isinstance(world, str) else world
+    return LeagueFactory(address, scenario_settings)

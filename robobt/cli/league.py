@@ -1,8 +1,10 @@
-"""``robobt serve``: our simulator for other teams' software."""
+"""``robobt serve`` and ``robobt log``: our simulator for other teams' software, and logs of a field."""
 
 from __future__ import annotations
 
 import time
+from contextlib import ExitStack, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
+    """Add the commands to the application."""
     app.command()(serve)
     app.command("log")(log_packets)
 
@@ -31,13 +33,13 @@ def _port(name: str, what: str) -> typer.models.OptionInfo:
 def serve(
     scenario: Annotated[
         str | None,
-        typer.Argument(help="A scenario file or the name of a bundled one; without, two teams line up."),
+        typer.Argument(help="A scenario file or the name of a bundled one; by default two teams line up."),
     ] = None,
     robots: Annotated[
-        int, typer.Option("--robots", min=0, max=16, help="Robots a team, where there is no scenario.")
+        int, typer.Option("--robots", min=0, max=16, help="Robots on each team, without a scenario.")
     ] = 6,
     field: Annotated[
-        str, typer.Option("--field", help="division_a or division_b, where there is no scenario.")
+        str, typer.Option("--field", help="division_a or division_b, without a scenario.")
     ] = "division_b",
     preset: Annotated[
         str | None,
@@ -49,16 +51,16 @@ def serve(
     ] = None,
     cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1,
     speed: Annotated[
-        float, typer.Option("--speed", min=0.05, max=20, help="Simulated time in shares of real time.")
+        float, typer.Option("--speed", min=0.05, max=20, help="Simulated time over real time.")
     ] = 1.0,
     referee: Annotated[
-        bool, typer.Option("--referee", help="Referee the match, and publish what the referee says.")
+        bool, typer.Option("--referee", help="Referee the match, and publish the referee's messages.")
     ] = False,
     seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after so long; by default on Ctrl-C.")
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
     ] = None,
     seed: Annotated[
-        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of the cameras' noise.")
+        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Seed of the cameras' noise.")
     ] = 0,
     interface: Annotated[
         str,
@@ -79,18 +81,19 @@ def serve(
     yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012,
     log: Annotated[
         Path | None,
-        typer.Option("--log", help="Write all that goes out to this league log (*.log, *.log.gz)."),
+        typer.Option("--log", help="Write everything that is sent to this league log (*.log, *.log.gz)."),
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Be one of the league's simulators: other teams' software connects to it as it does to grSim.
+    """Serve a simulated field: other teams' software connects to it as it does to grSim.
 
     Vision and tracked frames go out; grSim's packets and the simulation
     protocol come in. Robots stop a tenth of a second after their last command.
 
-    Keys of --json: frames (sent), simulated_s, packets: for each port what became of them.
+    Keys of --json: frames (sent), simulated_s, packets: for each port, what happened to them.
     """
-    from robobt.league.serve.serving import serve as serve_field
+    from robobt.league.log.files import LogWriter
+    from robobt.league.serve.server import SimServer
     from robobt.league.serve.serving import served_line_up, served_scenario
     from robobt.league.wire.endpoints import Endpoints, parse_endpoint
     from robobt.match import load_scenario
@@ -100,7 +103,8 @@ def serve(
     rules = RefereeSettings() if referee else None
     if scenario is None:
         if field not in FIELDS:
-            raise typer.BadParameter(f"there are {', '.join(FIELDS)}", param_hint="--field")
+            there = f"there is no field {field!r}; there are {', '.join(FIELDS)}"
+            raise typer.BadParameter(there, param_hint="--field")
         served = served_line_up(FIELDS[field], robots, preset or "grsim", realism, seed)
     else:
         loaded = load_scenario(scenario)
@@ -119,31 +123,35 @@ def serve(
         blue_status=blue_status_port,
         yellow_status=yellow_status_port,
     )
-    ready = None if as_json else _say_ready
-    server = serve_field(
-        served, endpoints, interface, cameras, speed, seed, time.time(), rules, seconds, log, ready
-    )
-    figures = {
-        "frames": server.frames,
-        "simulated_s": served.time,
-        "packets": {port: counts.to_json() for port, counts in server.counts.items()},
-    }
+    with ExitStack() as stack:
+        writer = None if log is None else stack.enter_context(LogWriter(log))
+        server = stack.enter_context(
+            SimServer(served, endpoints, interface, cameras, speed, seed, time.time(), writer, rules)
+        )
+        if not as_json:
+            _announce(server)
+        with suppress(KeyboardInterrupt):
+            server.run(seconds)
+    packets = {port: asdict(counts) for port, counts in server.counts.items()}
+    figures = {"frames": server.frames, "simulated_s": served.time, "packets": packets}
     if as_json:
         print_json(figures)
         return
     say(f"Served {server.frames} frames, {served.time:.1f} s.")
     for port, counts in server.counts.items():
         if counts.dropped:
-            dropped = {name: number for name, number in counts.to_json().items() if number}
-            say(f"{port}: " + ", ".join(f"{number} {name}" for name, number in dropped.items()))
+            say(
+                f"{port}: "
+                + ", ".join(f"{number} {name}" for name, number in packets[port].items() if number)
+            )
 
 
-def _say_ready(server: SimServer) -> None:
-    to = server.endpoints
+def _announce(server: SimServer) -> None:
+    to, robots = server.endpoints, server.field.truth().robots()
     say(
-        f"Serving {len(server.field.poses())} robots: vision to {to.vision}, tracked frames to {to.tracker}, "
+        f"Serving {len(robots)} robots: vision to {to.vision}, tracked frames to {to.tracker}, "
         f"commands at {to.grsim} (grSim), {to.blue} and {to.yellow} (control), {to.control} (teleport). "
-        "Ctrl-C ends it."
+        "Press Ctrl-C to stop."
     )
 
 
@@ -151,7 +159,7 @@ def _say_ready(server: SimServer) -> None:
 def log_packets(
     out: Annotated[Path, typer.Argument(help="The log to write (*.log, *.log.gz).")],
     seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after so long; by default on Ctrl-C.")
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
     ] = None,
     interface: Annotated[
         str | None,
@@ -162,9 +170,9 @@ def log_packets(
     referee: Annotated[str, typer.Option("--referee")] = "224.5.23.1:10003",
     as_json: Json = False,
 ) -> None:
-    """Write the league's log of what vision, trackers and game controller send.
+    """Log what vision, trackers and game controller send, in the league's format.
 
-    'robobt replay' shows it, and 'robobt match --world LOG' lets a scenario's robots watch it.
+    'robobt replay' turns a log into a page; 'robobt match --world LOG' lets a scenario's robots watch it.
 
     Keys of --json: vision, tracker, referee: packets written.
     """
@@ -173,7 +181,7 @@ def log_packets(
     from robobt.league.wire.endpoints import Endpoints, parse_endpoint
 
     if not is_log(out):
-        raise typer.BadParameter(f"takes a name that ends in .log or .log.gz, not '{out}'", param_hint="OUT")
+        raise typer.BadParameter(f"'{out}' must end in .log or .log.gz", param_hint="OUT")
     endpoints = Endpoints(
         vision=parse_endpoint(vision), tracker=parse_endpoint(tracker), referee=parse_endpoint(referee)
     )

@@ -5,41 +5,43 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import socket
 import time
+from collections.abc import Callable
+from contextlib import ExitStack
 from math import hypot
 from multiprocessing.connection import Connection as Pipe
 from typing import Any
 
 import numpy as np
 
+from robobt.league.connection import Connection
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
-from robobt.league.world import Connection, LeagueWorld
+from robobt.league.wire.sockets import LOOPBACK, Receiver
+from robobt.league.world import LeagueWorld
 from robobt.match.loop import Match
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import settings_from
-from robobt.world.protocol import Placement
-from robobt.world.state import Frame, RobotId
+from robobt.world.state import Frame
 
 RATE = 60.0
-"""Frames a second of the served vision."""
+"""Frame rate of the served vision [Hz]."""
 
 _STALL = 1.0
-"""For how long the vision is stopped [s]."""
+"""How long the vision is stopped [s]."""
 
 _START = 60.0
-"""How long a process may take to start, compiling included [s]."""
+"""Longest start of a process, compiling included [s]."""
 
-_SLOW = 0.1
-"""A robot slower than this stands [m/s]."""
+_AT_REST = 0.1
+"""A robot slower than this is at rest [m/s]."""
 
 
 def bench_league(
     scenario: Scenario, seconds: float = 30.0, simulator: str = "grsim", realism: str | None = None
-) -> dict[str, Any]:
+) -> dict[str, float]:
     """Play a scenario over the loopback against a server in a process of its own.
 
     Halfway the server is stopped for a second; at the end the playing process is
@@ -52,12 +54,10 @@ def bench_league(
         realism: of the server; by default the scenario's.
 
     Returns:
-        frame_rate (of the server), tick_rate and command_rate (of the player) [Hz];
-        latency_median_ms, latency_p95_ms from frame-in to command-out; ticks,
-        robots, lost (robots missing in a frame, summed over ticks), errors (ticks
-        a tree failed); stall_command_rate: commands a second while the vision
-        stalled [Hz]; stop_commanded_s, stop_at_rest_s: from the kill until every
-        robot was under the command to stand still, and stood [s]; dropped: packets.
+        Rates of the server's frames, and of the player's ticks and commands, also while the
+        vision stalled [Hz]; latency from a frame's arrival to the commands; robots missing in
+        frames, summed over the ticks; ticks in which a tree failed; dropped packets; and the
+        time from the kill until all robots were commanded to stop, and stood [s].
 
     Raises:
         RuntimeError: one of the processes died.
@@ -66,9 +66,11 @@ def bench_league(
     context = multiprocessing.get_context("spawn")
     server_pipe, server_end = context.Pipe()
     player_pipe, player_end = context.Pipe()
-    server = context.Process(target=_serve, args=(scenario, endpoints, realism, server_end), daemon=True)
+    server = context.Process(
+        target=_report_failure, args=(_serve, server_end, scenario, endpoints, realism), daemon=True
+    )
     player = context.Process(
-        target=_play, args=(scenario, endpoints, simulator, seconds, player_end), daemon=True
+        target=_report_failure, args=(_play, player_end, scenario, endpoints, simulator, seconds), daemon=True
     )
     try:
         server.start()
@@ -78,59 +80,47 @@ def bench_league(
         time.sleep(seconds / 2)
         stalled = time.monotonic()
         assert server.pid is not None
-        assert player.pid is not None
         os.kill(server.pid, signal.SIGSTOP)
         time.sleep(_STALL)
         os.kill(server.pid, signal.SIGCONT)
         resumed = time.monotonic()
         figures, sent = _expect(player_pipe, seconds + _START)
         within = [at for at in sent if stalled + 0.05 <= at < resumed - 0.05]
-        figures["stall_command_rate"] = len(within) / (resumed - stalled - 0.1)
         time.sleep(1.0)
         killed = time.monotonic()
-        os.kill(player.pid, signal.SIGKILL)
+        player.kill()
         time.sleep(2.0)
         server_pipe.send((stalled, resumed))
-        served = _expect(server_pipe, _START)
+        served, moments = _expect(server_pipe, _START)
     finally:
         for process in (player, server):
             if process.pid is not None:
                 process.kill()
                 process.join()
-    moments = served.pop("moments")
     driven = [at for at, moving, _ in moments if at > killed and moving]
-    moving = [at for at, _, speed in moments if at > killed and speed > _SLOW]
+    moving = [at for at, _, speed in moments if at > killed and speed > _AT_REST]
     return {
-        "scenario": scenario.name,
-        "simulator": simulator,
-        "seconds": seconds,
         **served,
         **figures,
+        "stall_command_rate": len(within) / (resumed - stalled - 0.1),
         "stop_commanded_s": max(driven, default=killed) - killed,
         "stop_at_rest_s": max(moving, default=killed) - killed,
     }
 
 
 def _free_endpoints() -> Endpoints:
-    """Ports that nobody uses at the moment, so that nothing else on this machine interferes."""
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(8)]
-    for sock in sockets:
-        sock.bind(("127.0.0.1", 0))
-    ports = [sock.getsockname()[1] for sock in sockets]
-    for sock in sockets:
-        sock.close()
-    names = ("grsim", "control", "blue", "yellow", "blue_status", "yellow_status")
-    return Endpoints(
-        vision=Endpoint(VISION_GROUP, ports[6]),
-        tracker=Endpoint(VISION_GROUP, ports[7]),
-        **dict(zip(names, ports[:6], strict=True)),
-    )
+    """Return ports that are free at the moment, so that nothing else on this machine interferes."""
+    names = [name for name in Endpoints.model_fields if name != "referee"]
+    with ExitStack() as opened:
+        ports = {name: opened.enter_context(Receiver(LOOPBACK, 0)).port for name in names}
+    groups = {name: Endpoint(VISION_GROUP, ports.pop(name)) for name in ("vision", "tracker")}
+    return Endpoints.model_validate(ports | groups)
 
 
 def _expect(pipe: Pipe, seconds: float) -> Any:
-    """What the process at the other end says next."""
+    """Return what the process at the other end sends next."""
     if not pipe.poll(seconds):
-        raise RuntimeError(f"a process has said nothing for {seconds:g} s")
+        raise RuntimeError(f"a process of the measurement has been silent for {seconds:g} s")
     try:
         answer = pipe.recv()
     except EOFError as error:
@@ -140,91 +130,71 @@ def _expect(pipe: Pipe, seconds: float) -> Any:
     return answer
 
 
-def _serve(scenario: Scenario, endpoints: Endpoints, realism: str | None, pipe: Pipe) -> None:
+def _report_failure(run: Callable[..., None], pipe: Pipe, *arguments: object) -> None:
+    """Run in a process of its own, and send the message of an error."""
     try:
-        field = served_scenario(scenario, realism=realism)
-        field.step()
-        moments: list[tuple[float, bool, float]] = []
-
-        def note(field: ServedField) -> None:
-            truth = field.truth()
-            speed = max((hypot(r.vx, r.vy) for r in (*truth.own, *truth.opponents)), default=0.0)
-            moments.append((time.monotonic(), field.driven(), speed))
-
-        with SimServer(field, endpoints) as server:
-            pipe.send(True)
-            server.run(on_step=note, stop=pipe.poll)
-            stalled, resumed = pipe.recv()
-            times = np.array([at for at, _, _ in moments])
-            running = times[-1] - times[0] - (resumed - stalled)
-            dropped = sum(counts.dropped for counts in server.counts.values())
-            rate = (len(times) - 1) / running
-            pipe.send({"frame_rate": float(rate), "server_dropped": dropped, "moments": moments})
+        run(pipe, *arguments)
     except Exception as error:
-        pipe.send(f"the server failed: {type(error).__name__}: {error}")
+        pipe.send(f"{run.__name__} failed: {type(error).__name__}: {error}")
 
 
-class _Timed(LeagueWorld):
-    """A league world that notes when it sent, and which robots were missing."""
+def _serve(pipe: Pipe, scenario: Scenario, endpoints: Endpoints, realism: str | None) -> None:
+    field = served_scenario(scenario, realism=realism)
+    field.step()
+    moments: list[tuple[float, bool, float]] = []
 
-    def __init__(self, *arguments: Any) -> None:
-        self.sends: list[float] = []
-        self.lost = 0
-        super().__init__(*arguments)
+    def note(field: ServedField) -> None:
+        robots = field.truth().robots().values()
+        speed = max((hypot(robot.vx, robot.vy) for robot in robots), default=0.0)
+        moments.append((time.monotonic(), field.driven(), speed))
 
-    def reset(self, placement: Placement, seed: int) -> None:
-        super().reset(placement, seed)
-        self.sends, self.lost = [], 0
+    with SimServer(field, endpoints) as server:
+        pipe.send(True)
+        server.run(on_step=note, stop=pipe.poll)
+        stalled, resumed = pipe.recv()
+        running = moments[-1][0] - moments[0][0] - (resumed - stalled)
+        dropped = sum(counts.dropped for counts in server.counts.values())
+        pipe.send(({"frame_rate": (len(moments) - 1) / running, "server_dropped": dropped}, moments))
+
+
+class _CountingWorld(LeagueWorld):
+    """A league world that counts the robots missing in its frames."""
+
+    lost = 0
 
     def observe(self) -> Frame:
         frame = super().observe()
-        expected = len(self._robots or {})
-        self.lost += expected - len(frame.own) - len(frame.opponents)
+        self.lost += len(self._robots or ()) - len(frame.robots())
         return frame
 
-    def _transmit(self) -> None:
-        super()._transmit()
-        self.sends.append(time.monotonic())
 
-
-def _play(scenario: Scenario, endpoints: Endpoints, simulator: str, seconds: float, pipe: Pipe) -> None:
-    try:
-        worlds: list[_Timed] = []
-
-        def world(scenario: Scenario) -> LeagueWorld:
-            settings = settings_from(scenario.simulator)
-            robots: dict[RobotId, Any] = {
-                robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots
-            }
-            connection = Connection.model_validate({"simulator": simulator, "endpoints": endpoints})
-            worlds.append(_Timed(scenario.field, robots, settings, 1 / RATE, connection))
-            return worlds[0]
-
-        played = scenario.lasting(seconds + 60.0).model_copy(update={"period": 1 / RATE})
-        match = Match(played, scenario.seed, world)
-        pipe.send(True)
-        began = time.monotonic()
-        ticks = 0
-        while time.monotonic() - began < seconds + _STALL and match.tick():
-            ticks += 1
-        elapsed = time.monotonic() - began
-        (one,) = worlds
-        latencies = np.array(one.latencies) * 1e3
-        result = match.result(elapsed)
-        figures = {
-            "ticks": ticks,
-            "robots": len(match.players),
-            "lost": one.lost,
-            "errors": sum(robot.errors for robot in result.robots.values()),
-            "tick_rate": ticks / elapsed,
-            "command_rate": len(one.sends) / elapsed,
-            "latency_median_ms": float(np.median(latencies)),
-            "latency_p95_ms": float(np.percentile(latencies, 95)),
-            "dropped": sum(counts.dropped for counts in one.counts().values()),
-        }
-        pipe.send((figures, one.sends))
-        # On until killed.
-        while match.tick():
-            pass
-    except Exception as error:
-        pipe.send(f"the player failed: {type(error).__name__}: {error}")
+def _play(pipe: Pipe, scenario: Scenario, endpoints: Endpoints, simulator: str, seconds: float) -> None:
+    settings = settings_from(scenario.simulator)
+    robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
+    connection = Connection.model_validate({"simulator": simulator, "endpoints": endpoints})
+    world = _CountingWorld(scenario.field, robots, settings, 1 / RATE, connection)
+    played = scenario.lasting(seconds + 60.0).model_copy(update={"period": 1 / RATE})
+    match = Match(played, scenario.seed, lambda _: world)
+    pipe.send(True)
+    began = time.monotonic()
+    ticks = 0
+    while time.monotonic() - began < seconds + _STALL and match.tick():
+        ticks += 1
+    elapsed = time.monotonic() - began
+    latencies = np.array(world.latencies) * 1e3
+    result = match.result(elapsed)
+    figures = {
+        "ticks": ticks,
+        "robots": len(match.players),
+        "lost": world.lost,
+        "errors": sum(robot.errors for robot in result.robots.values()),
+        "tick_rate": ticks / elapsed,
+        "command_rate": len(world.send_times) / elapsed,
+        "latency_median_ms": float(np.median(latencies)),
+        "latency_p95_ms": float(np.percentile(latencies, 95)),
+        "dropped": sum(counts.dropped for counts in world.counts().values()),
+    }
+    pipe.send((figures, list(world.send_times)))
+    # Play on until killed.
+    while match.tick():
+        pass

@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import ValidationError
 
 from robobt.config.errors import ConfigError, message_of
 from robobt.config.validation import first_problem
-from robobt.league.wire.endpoints import Endpoints, parse_endpoint
-from robobt.league.world import Connection, LeagueWorld
+from robobt.league.connection import Connection
+from robobt.league.wire.endpoints import Endpoints
+from robobt.league.world import LeagueWorld
 from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import PRESETS, SimSettings, settings_from
+from robobt.sim.settings import PRESETS, SimSettings
 
 SCHEME = "league://"
 
-_OPTIONS = (
-    "host",
-    "interface",
-    "source",
-    "teams",
-    "blue_on_positive_half",
-    "follow_referee",
-    "latency",
-    "speed",
-    "physics",
-)
-_ADDRESSES = ("vision", "tracker", "referee")
-_PORTS = ("grsim", "blue_status", "yellow_status", "control", "blue", "yellow")
+_OPTIONS = [name for name in Connection.model_fields if name not in ("simulator", "endpoints")]
+_KNOWN = [*_OPTIONS, "physics", *Endpoints.model_fields]
 
 
 class AddressError(ConfigError):
@@ -36,16 +26,14 @@ class AddressError(ConfigError):
 
 
 def parse_address(address: str) -> tuple[Connection, str | None]:
-    """The connection an address describes, and the preset of the physics there if it names one.
+    """Return the connection of an address, and the preset of the physics there if it names one.
 
-    ``league://SIMULATOR?name=value&...`` with the simulator "grsim",
-    "protocol" or "observer" and as names host, interface, source, teams (blue, yellow or
-    both), blue_on_positive_half, follow_referee, latency, speed, physics; vision,
-    tracker and referee (ADDRESS:PORT); and the ports grsim, blue_status,
-    yellow_status, control, blue and yellow.
+    The form is ``league://SIMULATOR?name=value&...`` with "grsim", "protocol" or "observer"
+    as the simulator. The names are the fields of :class:`Connection`, "physics", and the
+    fields of :class:`Endpoints` (ADDRESS:PORT or a port); teams is blue, yellow or both.
 
     Raises:
-        AddressError: it is none.
+        AddressError: the address has another form, or a value is wrong.
     """
     if not address.startswith(SCHEME):
         raise AddressError(address, f"a world of the league is {SCHEME}SIMULATOR")
@@ -54,74 +42,54 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         given = dict(parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query)))
     except ValueError as error:
         raise AddressError(address, message_of(error)) from error
-    known = (*_OPTIONS, *_ADDRESSES, *_PORTS)
     for name in given:
-        if name not in known:
-            raise AddressError(address, f"there is no option {name!r}; there are {', '.join(known)}")
+        if name not in _KNOWN:
+            raise AddressError(address, f"there is no option {name!r}; there are {', '.join(_KNOWN)}")
     physics = given.pop("physics", None)
     if physics is not None and physics not in PRESETS:
         problem = f"no preset is called {physics!r}; there are {', '.join(PRESETS)}"
         raise AddressError(address, problem, "physics")
-    endpoints: dict[str, Any] = {name: given.pop(name) for name in _PORTS if name in given}
-    for name in _ADDRESSES:
-        if name in given:
-            try:
-                endpoints[name] = parse_endpoint(given.pop(name))
-            except ValueError as error:
-                raise AddressError(address, message_of(error), name) from error
-    options: dict[str, Any] = {"simulator": parts.netloc, **given}
-    if "teams" in options:
-        teams = options["teams"]
-        options["teams"] = ("blue", "yellow") if teams == "both" else (teams,)
+    endpoints = {name: given.pop(name) for name in Endpoints.model_fields if name in given}
+    options: dict[str, object] = {"simulator": parts.netloc, "endpoints": endpoints, **given}
+    if "teams" in given:
+        options["teams"] = ["blue", "yellow"] if given["teams"] == "both" else [given["teams"]]
     try:
-        options["endpoints"] = Endpoints.model_validate(endpoints)
         return Connection.model_validate(options), physics
     except ValidationError as error:
         field, problem = first_problem(error, Connection)
-        raise AddressError(address, problem, field) from error
+        raise AddressError(address, problem, field.removeprefix("endpoints.")) from error
 
 
 class LeagueFactory:
-    """Makes the world of each match on one connection; the one before is closed first.
+    """Makes the world of each match on one connection, after closing the previous one.
 
     Args:
         address: see :func:`parse_address`.
+        settings: returns the settings of a scenario's simulator, for addresses that name no physics.
 
     Raises:
-        AddressError: the address is none.
+        AddressError: the address is wrong.
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, settings: Callable[[Scenario], SimSettings]) -> None:
         self._connection, self._physics = parse_address(address)
+        self._settings = settings
         self._world: LeagueWorld | None = None
 
     def __call__(self, scenario: Scenario) -> LeagueWorld:
-        """The scenario's robots on the field at the other end.
+        """Return the world with the scenario's robots.
 
         Raises:
             ScenarioError: the simulator's settings in the scenario are wrong.
         """
         self.close()
-        settings = _settings(scenario, self._physics)
+        settings = self._settings(scenario) if self._physics is None else PRESETS[self._physics]
         robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
         self._world = LeagueWorld(scenario.field, robots, settings, scenario.period, self._connection)
         return self._world
 
     def close(self) -> None:
-        """Let go of the robots."""
+        """Stop the robots and release all ports."""
         if self._world is not None:
             self._world.close()
             self._world = None
-
-
-def _settings(scenario: Scenario, physics: str | None) -> SimSettings:
-    """The physics that are expected: as the address says, or as the scenario does."""
-    if physics is not None:
-        return settings_from(physics)
-    try:
-        return settings_from(scenario.simulator)
-    except ValidationError as error:
-        field, problem = first_problem(error, SimSettings, scenario.simulator)
-        raise scenario.error(problem, f"simulator.{field}") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise scenario.error(message_of(error), "simulator") from error

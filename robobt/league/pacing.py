@@ -1,15 +1,15 @@
-"""When to act: at a fixed rate, in step with the vision's frames where these come at about that rate.
+"""When to act: at a fixed rate, in phase with the vision's frames where these come at about that rate.
 
 No clock here: all times are arguments.
 """
 
 from __future__ import annotations
 
-_SHIFT = 0.03
-"""Share of a period by which a frame may move the beat; the rate stays within so much of the wanted."""
+_MAX_SHIFT = 0.03
+"""Share of a period by which a frame may shift the phase; the rate error stays within it."""
 
-_SLACK = 0.45
-"""Share of a period around the beat in which a frame is acted on at once."""
+_WINDOW = 0.45
+"""Share of a period around the due time in which a frame triggers an act."""
 
 
 class Pace:
@@ -17,7 +17,7 @@ class Pace:
 
     Args:
         period: between two acts [s].
-        now: the first beat [s].
+        now: time of the first beat [s].
     """
 
     def __init__(self, period: float, now: float) -> None:
@@ -25,26 +25,31 @@ class Pace:
         self._beat = now
 
     def restart(self, now: float) -> None:
-        """Begin anew with an act at ``now``."""
+        """Restart the beat with an act at ``now``."""
         self._beat = now
 
     def opens(self) -> float:
-        """From when on the next frame is acted on at once [s]."""
-        return self._beat + self.period * (1.0 - _SLACK)
+        """Return from when on the next frame triggers an act [s]."""
+        return self._beat + self.period * (1.0 - _WINDOW)
 
     def closes(self) -> float:
-        """When it is time to act even if no frame has come [s]."""
-        return self._beat + self.period * (1.0 + _SLACK)
+        """Return when to act even without a frame [s]."""
+        return self._beat + self.period * (1.0 + _WINDOW)
 
     def acted(self, now: float, frame: float | None) -> None:
-        """An act happened at ``now``; the newest frame since the one before came at ``frame``, if any."""
+        """Record an act.
+
+        Args:
+            now: when it happened [s].
+            frame: when the newest frame since the previous act arrived, if any [s].
+        """
         due = self._beat + self.period
         if now > due + 4.0 * self.period:
-            # This process was held up; hurrying after the beat would help nobody.
+            # This process was held up; catching up would help nobody.
             due = now
         elif frame is not None:
             # Towards the frames' phase, whichever way is shorter.
             off = (frame - due + self.period / 2) % self.period - self.period / 2
-            most = self.period * _SHIFT
+            most = self.period * _MAX_SHIFT
             due += min(max(off, -most), most)
         self._beat = due

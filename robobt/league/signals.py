@@ -1,4 +1,4 @@
-"""Robots are stopped also when their process is told to end from outside."""
+"""Signals that end a process, turned into a normal exit so that robots are stopped."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ import threading
 from types import FrameType
 
 _BASE = 128
-"""What a shell adds to a signal's number for the exit code."""
+"""Exit codes of processes ended by a signal are its number plus this."""
 
 
 def exit_on_signals() -> None:
     """Let SIGTERM and SIGHUP end this process as ``sys.exit`` does, so that worlds are closed.
 
-    For programs; handlers that somebody has set are left alone.
+    For programs; handlers that are already installed stay.
     """
     if threading.current_thread() is not threading.main_thread():
         return
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, _leave)
+            signal.signal(number, _exit)
 
 
-def _leave(number: int, _: FrameType | None) -> None:
+def _exit(number: int, _: FrameType | None) -> None:
     sys.exit(_BASE + number)

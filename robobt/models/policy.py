@@ -1,4 +1,4 @@
-"""Trained models as functions of arrays; the one place where a skill meets torch."""
+"""Trained models as functions of arrays. Only here a skill meets torch, and only when it loads a model."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,9 +24,6 @@ from robobt.models.file import (
 )
 from robobt.world.features import ObservationSpec
 
-if TYPE_CHECKING:
-    from torch import Tensor
-
 Floats = NDArray[np.float32]
 
 _MOST_LOADED = 100
@@ -38,23 +35,23 @@ _SLACK = 1e-4
 
 
 class Network(Protocol):
-    """A loaded network, whatever its format."""
+    """What a format's loader returns."""
 
     def batch(self, inputs: Floats) -> Floats:
-        """Map (n, size) to (n, outputs), in single precision."""
+        """(n, size) -> (n, outputs), in single precision."""
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
-        """Return a function of one observation; it has memory of its own, so it is not for two threads."""
+        """A function of one observation, with memory of its own: not for two threads at once."""
 
 
 class Policy:
-    """A loaded model: a function of arrays, and the card that describes them.
+    """A loaded model: a function of arrays, and the card that says what they mean.
 
     Attributes:
-        card: the model's card.
+        card: what the model says about itself.
         path: the file it was loaded from.
-        sha256: checksum of that file.
-        network: the network that runs.
+        sha256: of that file.
+        network: what runs it.
     """
 
     def __init__(self, file: ModelFile, network: Network) -> None:
@@ -64,7 +61,7 @@ class Policy:
         self.network = network
 
     def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
-        """Return the model's outputs.
+        """What the model answers.
 
         Args:
             inputs: (size,) or (n, size), in SI units.
@@ -73,7 +70,7 @@ class Policy:
             (outputs,) or (n, outputs).
 
         Raises:
-            ValueError: the inputs have the wrong shape.
+            ValueError: the inputs have another shape.
         """
         given = np.asarray(inputs, dtype=np.float32)
         size = self.card.observation.size
@@ -85,9 +82,9 @@ class Policy:
         return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
-        """Return a quick function of one observation, for one robot's control loop.
+        """A quick function of one observation, for one robot's control loop.
 
-        It does not check its input, and has memory of its own.
+        It does not check what it is given. Each one has memory of its own.
         """
         return self.network.single()
 
@@ -101,12 +98,11 @@ def load_policy(
     but arithmetic (:mod:`~robobt.models.checks`). Then it is tried on zeros and on
     random inputs: it has to answer finite numbers of its card's shape and range, the
     same each time, and for a batch what it answers one by one. The same file is
-    loaded once per process. Each call runs on one thread; torch's settings stay as they are.
+    loaded once per process. From then on torch computes on one thread in this process.
 
     Args:
-        name_or_path: name of a shipped model, or a file.
-        skill: skill that will use it; None for any.
-        observation: observation that it will be given; None for any.
+        skill: what it shall be used for; None for anything.
+        observation: what it shall be given; None for anything.
 
     Raises:
         ModelError: it cannot be used; the message names the file and says why.
@@ -135,7 +131,7 @@ def load_policy(
 
 
 def bare_module(policy: Policy) -> Callable[[], object]:
-    """Return a call of the frozen module on a tensor of one observation, the yardstick of benchmarks.
+    """A call of a policy's frozen module on a tensor of one observation, and nothing else: to measure by.
 
     Raises:
         ModelError: the policy is no TorchScript one.
@@ -157,6 +153,8 @@ class _TorchScript:
 
         members = unpack_archive(file.content)
         check_code(members)
+        if torch.get_num_threads() != 1:
+            torch.set_num_threads(1)
         with _quiet():
             try:
                 loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
@@ -173,11 +171,11 @@ class _TorchScript:
         self._torch = torch
         self._size = file.card.observation.size
         # Without Module.__call__, which looks for hooks that a frozen module cannot have.
-        self._forward: Callable[[Tensor], Tensor] = module.forward
+        self._forward: Callable[[Any], Any] = module.forward
 
     def batch(self, inputs: Floats) -> Floats:
         with self._torch.inference_mode():
-            answer = self._on_one_thread(self._torch.from_numpy(inputs))
+            answer = self._forward(self._torch.from_numpy(inputs))
         if not isinstance(answer, self._torch.Tensor):
             raise ModelError("answers no tensor")
         return np.asarray(answer.numpy(), dtype=np.float32)
@@ -185,7 +183,7 @@ class _TorchScript:
     def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
         tensor = self._torch.from_numpy(buffer)
-        forward, no_gradient = self._on_one_thread, self._torch.inference_mode()
+        forward, no_gradient = self._forward, self._torch.inference_mode()
 
         def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
@@ -193,17 +191,6 @@ class _TorchScript:
                 return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
 
         return infer
-
-    def _on_one_thread(self, inputs: Tensor) -> Tensor:
-        # On networks this small, threads wait for each other. Their number is the process.s: restore it.
-        threads = self._torch.get_num_threads()
-        if threads == 1:
-            return self._forward(inputs)
-        self._torch.set_num_threads(1)
-        try:
-            return self._forward(inputs)
-        finally:
-            self._torch.set_num_threads(threads)
 
     def bare(self) -> Callable[[], object]:
         module, tensor = self.module, self._torch.zeros(1, self._size)
@@ -240,17 +227,17 @@ class _Onnx:
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
-        run, outputs, inputs = self._session.run, self._output, {self._input: buffer}
+        run, wanted, given = self._session.run, self._output, {self._input: buffer}
 
         def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
-            return run(outputs, inputs)[0].tolist()[0]  # type: ignore[no-any-return]
+            return run(wanted, given)[0].tolist()[0]  # type: ignore[no-any-return]
 
         return infer
 
 
 LOADERS: Mapping[Format, Callable[[ModelFile], Network]] = {"torchscript": _TorchScript, "onnx": _Onnx}
-"""Loaders by format; they raise :class:`ModelError` without the file's name."""
+"""What makes a file of each format a function. They raise :class:`ModelError` without the file's name."""
 
 _LOADED: dict[tuple[Path, str], Policy] = {}
 
@@ -288,7 +275,7 @@ def _first_line(error: Exception) -> str:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Silence warnings: a player can do nothing about TorchScript's deprecation upstream."""
+    """Whoever plays with a model cannot do anything about TorchScript being deprecated upstream."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -36,7 +36,7 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
             2,
             *quiet(),
             "--seconds",
-            0.3,
+            1.0,
             "--speed",
             4,
             "--referee",
@@ -63,7 +63,7 @@ def test_serve_takes_a_scenario() -> None:
     [
         (["serve", "--preset", "moon"], "no simulator preset is called 'moon'"),
         (["serve", "--realism", "moon"], "no realism level is called 'moon'"),
-        (["serve", "--vision", "here"], "'here' is no address like 224.5.23.2:10006"),
+        (["serve", "--vision", "here"], "'here' is not an address like 224.5.23.2:10006"),
         (["serve", "--interface", "203.0.113.7"], "203.0.113.7"),
         (
             ["match", "striker_vs_goalie", "--world", "webots"],
@@ -82,7 +82,7 @@ def test_what_is_wrong_is_one_plain_line(arguments: list[str], problem: str) -> 
 def test_a_spoilt_log_is_named(tmp_path: Path) -> None:
     path = tmp_path / "spoilt.log"
     path.write_bytes(b"nothing of the kind")
-    assert f"robobt: {path}: is no log" in robobt("replay", path, code=1)
+    assert f"robobt: {path}: is not a log" in robobt("replay", path, code=1)
 
 
 def test_log_writes_what_is_heard(tmp_path: Path) -> None:
@@ -92,7 +92,7 @@ def test_log_writes_what_is_heard(tmp_path: Path) -> None:
     printed = json.loads(robobt("log", out, "--seconds", 0.1, *where, "--json"))
     assert printed == {"vision": 0, "tracker": 0, "referee": 0}
     assert list(read_log(out)) == []
-    assert "ends in .log" in robobt("log", tmp_path / "heard.txt", code=2)
+    assert "must end in .log" in robobt("log", tmp_path / "heard.txt", code=2)
 
 
 def test_the_filter_is_measured() -> None:

@@ -23,12 +23,14 @@ class LockstepWorld(LeagueWorld):
         self._server = server
         self._time = 0.0
         super().__init__(clock=lambda: self._time, **arguments)
+        self._hear = self._feed.receive
+        self._feed.receive = self._receive  # type: ignore[method-assign]
 
     def _receive(self, wait: float) -> None:
-        heard = self.frames
-        super()._receive(0.0)
+        heard = self._feed.frames
+        self._hear(0.0)
         end = self._time + max(0.0, wait)
-        while self.frames == heard and wait > 0.0:
+        while self._feed.frames == heard and wait > 0.0:
             due = self._server.field.time + self._server.field.period
             if due > end + 1e-9:
                 self._time = end
@@ -37,4 +39,4 @@ class LockstepWorld(LeagueWorld):
             self._server.receive()
             self._server.step()
             self._server.send_due(self._time)
-            super()._receive(0.0)
+            self._hear(0.0)

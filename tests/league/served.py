@@ -10,6 +10,12 @@ from contextlib import contextmanager
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
+from robobt.world.state import RobotId
+
+
+def poses(field: ServedField) -> dict[RobotId, tuple[float, float, float]]:
+    """x, y, heading of every robot on the field."""
+    return {robot: (state.x, state.y, state.heading) for robot, state in field.truth().robots().items()}
 
 
 def free_endpoints(group: str = VISION_GROUP) -> Endpoints:

@@ -6,6 +6,7 @@ import math
 import socket
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from itertools import islice
 
 import numpy as np
@@ -14,15 +15,10 @@ import pytest
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.serve.server import SimServer
-from robobt.league.wire.commands import (
-    BallTeleport,
-    Teleport,
-    write_grsim,
-    write_grsim_placement,
-    write_teleport,
-)
+from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.grsim import write_grsim, write_grsim_replacement
 from robobt.league.wire.messages import (
     Message,
     RealismConfigErForce,
@@ -34,7 +30,8 @@ from robobt.league.wire.messages import (
     TrackerWrapperPacket,
     grSim_Packet,
 )
-from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.simulation import write_teleport
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_field, write_vision
 from robobt.league.world import LeagueWorld
@@ -44,7 +41,7 @@ from robobt.world.field import DIVISION_B
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.state import RobotId
 from tests.league.mutations import mutations
-from tests.league.served import free_endpoints
+from tests.league.served import free_endpoints, poses
 
 FEW, MANY = 2_000, 1_000_000
 BATCH = 40
@@ -84,7 +81,7 @@ def hammer(
     packets = mutations(seeds, seed=amount)
 
     def counted(name: str | None = None) -> int:
-        every = [one.to_json() for one in counts]
+        every = [asdict(one) for one in counts]
         return sum(one[name] if name else sum(one.values()) for one in every)
 
     before = counted()
@@ -109,7 +106,7 @@ def hammer(
 def commands_of_grsim() -> list[Message]:
     commands = {number: RobotCommand(1.0, -0.5, 2.0, 4.0, dribbler=True) for number in range(2)}
     robots = [Teleport(RobotId(team, n), 1.0, float(n), 0.5) for team in Team for n in range(2)]
-    place = write_grsim_placement(robots, BallTeleport(0.5, 0.5, 1.0, 0.0))
+    place = write_grsim_replacement(robots, BallTeleport(0.5, 0.5, 1.0, 0.0))
     wheels = grSim_Packet.FromString(write_grsim(Team.YELLOW, commands, 1.0))
     for robot in wheels.commands.robot_commands:
         robot.wheelsspeed = True
@@ -172,11 +169,11 @@ def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: 
 
     hammer(("127.0.0.1", getattr(server.endpoints, port)), seeds, amount, [server.counts[port]], take_in)
     # Nothing is left of it but a field like any other, on which robots obey.
-    server._set_realism(REALISM["none"])
+    server._ports.set_realism(REALISM["none"])
     server.field.teleport_ball(BallTeleport(-1.0, 1.0, 0.0, 0.0))
     assert server.field.teleport(Teleport(ME, 0.0, 0.0, 0.0)) is None
     server.field.limit(ME, server.field.settings.limits)
-    for robot, pose in server.field.poses().items():
+    for robot, pose in poses(server.field).items():
         assert all(map(math.isfinite, pose)), robot
         if robot != ME:
             server.field.teleport(Teleport(robot, present=False))
@@ -185,7 +182,7 @@ def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: 
         server.step()
     (me,) = server.field.truth().own
     assert me.speed == pytest.approx(1.0, abs=0.01)
-    assert server.field.ball() == pytest.approx((-1.0, 1.0))
+    assert server.field.truth().ball.position == pytest.approx((-1.0, 1.0))
 
 
 class Vision:
@@ -198,7 +195,7 @@ class Vision:
 
     def packet(self) -> bytes:
         self.time += 1 / 60
-        (frame,) = self.cameras.look(self.time, self.time, self.field.poses(), self.field.ball())
+        (frame,) = self.cameras.capture(self.field.truth(), self.time, self.time)
         return write_vision(frame, write_field(DIVISION_B))
 
 
@@ -213,7 +210,7 @@ def test_the_player_survives_what_is_sent_as_vision(
     def take_in() -> None:
         nonlocal turn
         turn += 1
-        world._receive(0.0)
+        world._feed.receive(0.0)
         for frame in (world.observe(), world.truth()):
             for state in (*frame.own, *frame.opponents):
                 assert all(
@@ -228,11 +225,11 @@ def test_the_player_survives_what_is_sent_as_vision(
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         for _ in range(60):
             sock.sendto(vision.packet(), endpoints.vision)
-            world._receive(0.1)
+            world._feed.receive(0.1)
             world.observe()
-    assert {RobotId(team, n) for team in Team for n in range(2)} <= set(world.robots())
     frame = world.truth()
-    assert frame.own[0].position == pytest.approx(vision.field.poses()[ME][:2], abs=0.01)
+    assert {RobotId(team, n) for team in Team for n in range(2)} <= set(frame.robots())
+    assert frame.own[0].position == pytest.approx(poses(vision.field)[ME][:2], abs=0.01)
 
 
 @pytest.mark.parametrize("amount", AMOUNTS)
@@ -256,9 +253,8 @@ def test_the_player_survives_what_is_sent_to_its_other_ports(
         to = ("127.0.0.1", getattr(endpoints, port))
 
     def take_in() -> None:
-        world._receive(0.0)
-        for robot, contact in world._link.feedback():
-            world._filter.feedback(robot, contact)
+        world._feed.receive(0.0)
+        world._feed.filter.possession.feedback.update(world._link.feedback())
         world.observe()
 
     hammer(to, seeds, amount, counts, take_in)
@@ -274,7 +270,7 @@ def test_the_player_survives_what_is_sent_as_tracked_frames(endpoints: Endpoints
     with LeagueWorld(robots=dict.fromkeys((ME, HER)), endpoints=endpoints, source="tracker") as world:
 
         def take_in() -> None:
-            world._receive(0.0)
+            world._feed.receive(0.0)
             for state in world.observe().own:
                 assert all(map(math.isfinite, (state.x, state.y, state.heading, state.vx, state.vy)))
 
@@ -287,7 +283,7 @@ def test_packets_that_ask_for_more_robots_than_there_are_cost_next_to_nothing(se
         control.robot_commands.add(id=1)
         grsim.replacement.robots.add(x=0.0, y=0.0, dir=0.0, id=1, yellowteam=True)
         orders.config.realism_config.custom.add()
-    before = server.field.poses()
+    before = poses(server.field)
     ports = server.endpoints
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         for name, port, message in (
@@ -301,4 +297,4 @@ def test_packets_that_ask_for_more_robots_than_there_are_cost_next_to_nothing(se
                 if server.counts[name].dropped:
                     break
             assert server.counts[name].implausible == 1
-    assert server.field.poses() == before
+    assert poses(server.field) == before

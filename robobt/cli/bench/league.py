@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.markup import escape
@@ -11,7 +11,7 @@ from robobt.cli.common import MAX_SEED, Json, console, errors, one_line_errors, 
 
 
 def add_to(bench: typer.Typer) -> None:
-    """Enter the commands."""
+    """Add the commands to the application."""
     bench.command("filter")(bench_filter)
     bench.command("league")(bench_league)
 
@@ -27,7 +27,9 @@ def bench_filter(
     realism: Annotated[
         str, typer.Option("--realism", help="none, friendly, rc2021 or realistic.")
     ] = "realistic",
-    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1,
+    cameras: Annotated[
+        int, typer.Option("--cameras", min=1, max=16, help="Cameras that share the field.")
+    ] = 1,
     seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED)] = 0,
     as_json: Json = False,
 ) -> None:
@@ -42,22 +44,25 @@ def bench_filter(
     """
     from robobt.league.bench_filter import bench_filter as measure
     from robobt.match import load_scenario
+    from robobt.sim.settings import realism_level
 
     loaded = load_scenario(scenario)
+    level = realism_level(realism)
     with errors.status("filtering"):
-        figures = measure(loaded, seconds, seed, realism, cameras)
+        situations = measure(loaded, seconds, seed, realism, cameras)
     if as_json:
-        print_json(figures)
+        noise = {"robot": level.robot_noise, "ball": level.ball_noise, "heading": level.heading_noise}
+        given = {"realism": realism, "seed": seed, "seconds": seconds, "cameras": cameras}
+        print_json(given | {"latency": level.vision_delay, "noise": noise} | situations)
         return
-    noise = figures["noise"]
     say(
-        f"Noise of the cameras ({realism}), an axis: robot {noise['robot'] * 1e3:.1f} mm, "
-        f"ball {noise['ball'] * 1e3:.1f} mm, heading {noise['heading']:.3f} rad; "
-        f"latency {figures['latency'] * 1e3:.0f} ms."
+        f"Noise of the cameras ({realism}), an axis: robot {level.robot_noise * 1e3:.1f} mm, "
+        f"ball {level.ball_noise * 1e3:.1f} mm, heading {level.heading_noise:.3f} rad; "
+        f"latency {level.vision_delay * 1e3:.0f} ms."
     )
     for situation, title in (("constant_velocity", "at constant velocity"), ("play", "in a match")):
         listed = table(title, "robot, mm", "rad", "m/s", "rad/s", "ball, mm", "m/s")
-        for when, rms in figures[situation].items():
+        for when, rms in situations[situation].items():
             listed.add_row(when.replace("_", " "), *_row(rms))
         console.print(listed)
 
@@ -91,21 +96,21 @@ def bench_league(
 
     Keys of --json: scenario, simulator, seconds, frame_rate, tick_rate,
     command_rate, stall_command_rate (Hz), latency_median_ms, latency_p95_ms
-    (frame-in to command-out), ticks, robots, lost (robots missing in frames),
+    (from a frame's arrival to the commands), ticks, robots, lost (robots missing in frames),
     errors (ticks a tree failed), dropped, server_dropped (packets),
-    stop_commanded_s and stop_at_rest_s (from the kill until the server has all
-    robots under the command to stand still, and they stand).
+    stop_commanded_s and stop_at_rest_s (from the kill until all robots
+    are commanded to stop, and stand).
     """
     from robobt.league.bench_network import bench_league as measure
     from robobt.match import load_scenario
 
     if simulator not in ("grsim", "protocol"):
-        raise typer.BadParameter("takes grsim or protocol", param_hint="--simulator")
+        raise typer.BadParameter(f"{simulator!r} must be grsim or protocol", param_hint="--simulator")
     loaded = load_scenario(scenario)
     with errors.status(f"playing {escape(loaded.name)} over the loopback"):
-        figures: dict[str, Any] = measure(loaded, seconds, simulator, realism)
+        figures = measure(loaded, seconds, simulator, realism)
     if as_json:
-        print_json(figures)
+        print_json({"scenario": loaded.name, "simulator": simulator, "seconds": seconds} | figures)
         return
     say(
         f"{loaded.name} over {simulator}, {figures['robots']} robots, {figures['ticks']} ticks: vision "
@@ -113,7 +118,7 @@ def bench_league(
         f"{figures['command_rate']:.2f} Hz ({figures['stall_command_rate']:.2f} Hz while the vision stalled)."
     )
     say(
-        f"Frame-in to command-out: median {figures['latency_median_ms']:.2f} ms, 95 % within "
+        f"From a frame's arrival to the commands: median {figures['latency_median_ms']:.2f} ms, 95 % within "
         f"{figures['latency_p95_ms']:.2f} ms. Robots lost {figures['lost']}, errors {figures['errors']}, "
         f"packets dropped {figures['dropped'] + figures['server_dropped']}."
     )

@@ -1,1 +1,1 @@
-"""From detections to states: filters and clocks."""
+"""From detections to states: filter and clocks."""

@@ -1,8 +1,8 @@
-"""The league's log files: read, written, and made recordings that ``robobt replay`` shows.
+"""The league's log files, read and written.
 
 Source of the format: ssl-logtools. A header of 12 bytes ``SSL_LOG_FILE`` and an
-int32 version, then records of an int64 receiver time [ns], an int32 type, an
-int32 size and the packet, all big-endian; ``.gz`` files are the same compressed.
+int32 version, then records of an int64 timestamp of reception [ns], an int32 type, an
+int32 size and the packet, all big-endian; ``.gz`` files are the same, compressed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import zlib
 from collections.abc import Iterator
 from enum import IntEnum
 from pathlib import Path
-from types import TracebackType
 from typing import IO, NamedTuple, Self, cast
 
 from robobt.config.errors import RobobtError
@@ -26,12 +25,15 @@ _VERSION = 1
 _HEADER = struct.Struct(">12si")
 _RECORD = struct.Struct(">qii")
 
-_MOST_BYTES = 1 << 20
-"""No record is longer; a size beyond it is none. Those of other kinds than ours may exceed our packets."""
+_MAX_RECORD = 1 << 20
+"""Longest record [bytes]. Records of kinds that are not used here may be longer than our packets."""
+
+_FLUSH_EVERY = 600
+"""Records from one flush to the next: some seconds of a match."""
 
 
 class LogError(RobobtError, ValueError):
-    """Something is wrong with a log; the message is one line that names the file."""
+    """A problem with a log; the message is one line that names the file."""
 
 
 class LogKind(IntEnum):
@@ -47,7 +49,7 @@ class LogKind(IntEnum):
 
 
 class LogRecord(NamedTuple):
-    """One record: when it was received [ns], its kind's number and the packet as it came."""
+    """One record: timestamp of reception [ns], number of its kind, and the packet."""
 
     time: int
     kind: int
@@ -57,64 +59,52 @@ class LogRecord(NamedTuple):
 class LogWriter:
     """Writes a log. A context manager.
 
-    What is written before the process dies can be read, but for the last moments.
+    If the process dies, the log can be read up to its last moments.
 
     Args:
-        path: file to write, replaced when it exists; a name that ends in ``.gz`` is compressed.
+        path: file to write, replaced when it exists; compressed when the name ends in ``.gz``.
 
     Raises:
         OSError: the file cannot be written.
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
-        self._file = _open(self.path, "wb")
+        self._file = _open(Path(path), "wb")
         self._file.write(_HEADER.pack(_MAGIC, _VERSION))
-        self._since = 0
+        self._unflushed = 0
 
     def write(self, time: int, kind: LogKind, data: bytes) -> None:
         """Add a record.
 
         Args:
             time: when the packet was received [ns].
+            kind: what it holds.
+            data: the packet.
 
         Raises:
             OSError: the disk is full.
         """
         self._file.write(_RECORD.pack(time, kind, len(data)) + data)
-        self._since += 1
-        if self._since >= _FLUSH_EVERY:
+        self._unflushed += 1
+        if self._unflushed >= _FLUSH_EVERY:
             self._file.flush()
-            self._since = 0
-
-    def close(self) -> None:
-        """Finish the file."""
-        self._file.close()
+            self._unflushed = 0
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-
-_FLUSH_EVERY = 600
-"""Records from one flush to the next: some seconds of a match."""
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
 
 
 def read_log(path: str | Path) -> Iterator[LogRecord]:
-    """The records of a log, in their order; records of unknown kinds are among them.
+    """Yield the records of a log in their order, those of unknown kinds included.
 
-    A log whose end is cut off, as a killed recorder leaves it, ends with its
-    last whole record and a warning.
+    A truncated log, as a killed recorder leaves it, ends with its last complete
+    record and a warning.
 
     Raises:
-        LogError: the file is no log, or goes on with what is no record.
+        LogError: the file is not a log, or is corrupt.
         OSError: the file cannot be read.
     """
     where = Path(path)
@@ -122,17 +112,14 @@ def read_log(path: str | Path) -> Iterator[LogRecord]:
         try:
             header = file.read(_HEADER.size)
         except (gzip.BadGzipFile, zlib.error, EOFError) as error:
-            raise LogError(f"{where}: is no log: {error}") from error
+            raise LogError(f"{where}: is not a log: {error}") from error
         if len(header) < _HEADER.size or not header.startswith(_MAGIC):
-            raise LogError(f"{where}: is no log: it does not begin with {_MAGIC.decode()}")
+            raise LogError(f"{where}: is not a log: it does not begin with {_MAGIC.decode()}")
         version = _HEADER.unpack(header)[1]
         if version != _VERSION:
-            raise LogError(f"{where}: version {version} of the format is unknown; there is {_VERSION}")
+            raise LogError(f"{where}: has version {version} of the format; only {_VERSION} can be read")
         number = 0
-        while True:
-            record = _read_record(file, where, number)
-            if record is None:
-                return
+        while (record := _read_record(file, where, number)) is not None:
             yield record
             number += 1
 
@@ -144,8 +131,8 @@ def _read_record(file: IO[bytes], where: Path, number: int) -> LogRecord | None:
             return None
         if len(head) == _RECORD.size:
             time, kind, size = _RECORD.unpack(head)
-            if not 0 <= size <= _MOST_BYTES:
-                raise LogError(f"{where}: record {number}: {size} bytes is no size of a packet")
+            if not 0 <= size <= _MAX_RECORD:
+                raise LogError(f"{where}: record {number}: impossible size of {size} bytes")
             data = file.read(size)
             if len(data) == size:
                 return LogRecord(time, kind, data)
@@ -164,9 +151,5 @@ def _open(path: Path, mode: str) -> IO[bytes]:
 
 
 def is_log(path: str | Path) -> bool:
-    """Whether a file is called as a league log is."""
-    name = Path(path).name.lower()
-    return name.endswith((".log", ".log.gz"))
-
-
-__all__ = ["LogError", "LogKind", "LogRecord", "LogWriter", "is_log", "read_log"]
+    """Return whether a file is named as a league log."""
+    return Path(path).name.lower().endswith((".log", ".log.gz"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import select
 import time
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from robobt.league.log.files import LogKind, LogWriter
@@ -14,17 +15,19 @@ from robobt.league.wire.sockets import Receiver
 def log_field(
     path: str | Path, endpoints: Endpoints, interface: str | None = None, seconds: float | None = None
 ) -> dict[LogKind, int]:
-    """Write what vision, tracker and game controller send, until interrupted or for so many seconds.
+    """Log what vision, tracker and game controller send, until interrupted or for so many seconds.
 
     Args:
-        path: the log; a name that ends in ``.gz`` is compressed.
+        path: the log; compressed when the name ends in ``.gz``.
+        endpoints: where to listen.
         interface: own address of the interface to listen on; none: this machine's packets only.
+        seconds: how long [s]; None until interrupted.
 
     Returns:
         How many packets of each kind were written.
 
     Raises:
-        OSError: the file cannot be written, or there is no such interface.
+        OSError: the file cannot be written, or no interface has the address.
     """
     sources = {
         LogKind.VISION: endpoints.vision,
@@ -32,21 +35,17 @@ def log_field(
         LogKind.REFEREE: endpoints.referee,
     }
     written = dict.fromkeys(sources, 0)
-    receivers: dict[Receiver, LogKind] = {}
-    try:
-        for kind, endpoint in sources.items():
-            receivers[Receiver(*endpoint, interface)] = kind
+    with ExitStack() as opened:
+        receivers = {
+            opened.enter_context(Receiver(*endpoint, interface)): kind for kind, endpoint in sources.items()
+        }
+        log = opened.enter_context(LogWriter(path))
         end = None if seconds is None else time.monotonic() + seconds
-        with LogWriter(path) as log:
+        # An interrupt is how one stops listening.
+        with suppress(KeyboardInterrupt):
             while end is None or time.monotonic() < end:
                 for receiver in select.select(list(receivers), [], [], 0.1)[0]:
                     for packet in receiver.receive():
                         log.write(time.time_ns(), receivers[receiver], packet.data)
                         written[receivers[receiver]] += 1
-    except KeyboardInterrupt:
-        # What was heard is written; that is how one stops listening.
-        return written
-    finally:
-        for receiver in receivers:
-            receiver.close()
     return written

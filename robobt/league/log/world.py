@@ -2,82 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.log.files import LogError, LogKind, LogRecord, read_log
 from robobt.league.wire.gamecontroller import RefereeFollower
-from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B, FieldGeometry
-from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.game import OPEN_PLAY
 from robobt.world.protocol import Placement, World
 from robobt.world.state import BallState, Frame, RobotId
 
 _GAP = 2.0
-"""A pause in a log is shortened to this [s]."""
-
-_VISION = (LogKind.VISION, LogKind.VISION_2010)
+"""Pauses in a log are shortened to this [s]."""
 
 
 class LogWorld(World):
-    """Plays a log back: :class:`robobt.world.World` whose robots obey nobody.
+    """Plays a log back as a :class:`robobt.world.World` whose robots obey nobody.
 
     Frames come from the log's vision through the filter, or from its tracked
-    frames where it holds no vision; the game state from its referee messages.
-    Everything is as it was seen, so truth and observation are the same. Pauses
-    are shortened to 2 s.
+    frames where it holds no vision; the game state comes from its referee messages.
+    Truth and observation are the same. Pauses are shortened to 2 s.
 
     Args:
         path: the log.
-        field: dimensions until the log says them.
-        settings: the physics to be expected.
+        field: dimensions until the log reports others.
         period: from one frame to the next [s].
 
     Attributes:
-        ended: whether the log is over; from then on nothing changes but the time.
-        counts: what became of the packets.
+        counts: what happened to the packets.
 
     Raises:
-        LogError: the file is no log.
+        LogError: the file is not a log.
         OSError: it cannot be read.
     """
 
-    def __init__(
-        self,
-        path: str | Path,
-        field: FieldGeometry = DIVISION_B,
-        settings: SimSettings | None = None,
-        period: float = 1 / 60,
-    ) -> None:
+    def __init__(self, path: str | Path, field: FieldGeometry = DIVISION_B, period: float = 1 / 60) -> None:
         self.path = Path(path)
         self.field = field
         self.period = period
         self.counts = PacketCounts()
-        self._settings = settings or SimSettings()
-        self._clock = self._ticks = 0
+        self._clock = 0
         self._rewind()
 
     def reset(self, placement: Placement, seed: int) -> None:  # noqa: ARG002
-        """Begin at the log's first robots; nothing can be put anywhere and nothing is random.
+        """Rewind to the log's first robots; nothing can be placed and nothing is random.
 
         Raises:
             LogError: the log holds no robot.
         """
         self._rewind()
-        while not self._known():
-            if not self._next():
+        while not (self._filter.robots() or (self._tracked and self._tracked[1].robots())):
+            if self._waiting is None:
                 raise LogError(f"{self.path}: holds no robot")
-        self._ticks = 0
+            self._use(self._waiting)
 
     def observe(self) -> Frame:
-        """The frame of now, seen from blue's side."""
+        """Return the present frame, seen from blue's side."""
         frame = self._frame()
         frame.time, frame.period = self._ticks * self.period, self.period
         return frame
@@ -87,49 +74,35 @@ class LogWorld(World):
         return self.observe()
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:  # noqa: ARG002
-        """Let a period of the log pass; nobody hears the commands."""
+        """Let one period of the log pass; commands have no effect."""
         self._ticks += 1
         self._clock += round(self.period * 1e9)
-        while not self.ended:
-            waiting = self._waiting
-            if waiting is not None and waiting.time > self._clock:
-                if waiting.time - self._clock > _GAP * 1e9:
-                    self._clock = waiting.time - round(_GAP * 1e9)
-                return
-            self._next()
+        while self._waiting is not None and self._waiting.time <= self._clock:
+            self._use(self._waiting)
+        if self._waiting is not None:
+            self._clock = max(self._clock, self._waiting.time - round(_GAP * 1e9))
 
     def place_ball(self, x: float, y: float) -> None:
-        """Nothing: the ball is where it was."""
+        """Do nothing: the ball is where it was."""
 
-    def robots(self) -> list[RobotId]:
-        """The robots that are seen now."""
-        frame = self._frame()
-        own = [RobotId(Team.BLUE, robot.id) for robot in frame.own]
-        return own + [RobotId(Team.YELLOW, robot.id) for robot in frame.opponents]
+    @property
+    def ended(self) -> bool:
+        """Whether the log is over; from then on only the time changes."""
+        return self._waiting is None
 
     def _rewind(self) -> None:
         self._records: Iterator[LogRecord] = read_log(self.path)
-        self._filter = VisionFilter(self.field, self._settings)
+        self._filter = VisionFilter(self.field)
         self._referee = RefereeFollower()
         self._refereed = False
         self._tracked: tuple[str, Frame] | None = None
-        self.ended = False
-        self._waiting: LogRecord | None = None
         self._ticks = 0
-        self._advance()
+        self._waiting = next(self._records, None)
         self._clock = 0 if self._waiting is None else self._waiting.time
 
-    def _advance(self) -> None:
-        self._waiting = next(self._records, None)
-        self.ended = self._waiting is None
-
-    def _next(self) -> bool:
-        """Take in the next record; False when there is none."""
-        record = self._waiting
-        if record is None:
-            return False
+    def _use(self, record: LogRecord) -> None:
         self._clock = max(self._clock, record.time)
-        if record.kind in _VISION:
+        if record.kind in (LogKind.VISION, LogKind.VISION_2010):
             seen = read_vision(record.data, self.counts)
             if seen is not None and seen.field is not None:
                 self.field = self._filter.field = seen.field
@@ -139,14 +112,10 @@ class LogWorld(World):
             self._refereed = self._referee.read(record.data) or self._refereed
         elif record.kind == LogKind.TRACKER:
             tracked = read_tracked(record.data, self.field, self.counts)
-            # Several trackers may speak in one log; the first is followed.
+            # A log may hold several trackers; the first is followed.
             if tracked is not None and (self._tracked is None or self._tracked[0] == tracked[0]):
                 self._tracked = tracked
-        self._advance()
-        return True
-
-    def _known(self) -> bool:
-        return bool(self._filter.robots() or (self._tracked and _robots_of(self._tracked[1])))
+        self._waiting = next(self._records, None)
 
     def _frame(self) -> Frame:
         captured = self._filter.captured
@@ -157,44 +126,35 @@ class LogWorld(World):
             frame.field = self.field
         else:
             frame = Frame(0.0, self.field, BallState(0.0, 0.0))
-        frame.game = self._game(frame)
+        frame.game = self._referee.watch(frame) if self._refereed else OPEN_PLAY
         return frame
 
-    def _game(self, frame: Frame) -> GameState:
-        return self._referee.watch(frame) if self._refereed else OPEN_PLAY
 
-
-class LogFactory:
-    """Makes the world of a match from a log; the scenario's robots watch it.
-
-    Args:
-        path: the log.
-    """
-
-    def __init__(self, path: str | Path) -> None:
-        self._path = Path(path)
-
-    def __call__(self, scenario: Scenario) -> LogWorld:
-        """The log from its start, in the scenario's period."""
-        return LogWorld(self._path, scenario.field, period=scenario.period)
+def log_factory(path: str | Path) -> Callable[[Scenario], LogWorld]:
+    """Return a factory of worlds in which a scenario's robots watch a log."""
+    return lambda scenario: LogWorld(path, scenario.field, scenario.period)
 
 
 def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path:
-    """Make a log a recording, which ``robobt replay`` makes a page.
+    """Convert a log to a recording, which ``robobt replay`` turns into a page.
 
     Args:
+        log: the log.
         out: file to write, named as recordings are.
-        period: from one frame of it to the next [s].
+        period: from one frame of the recording to the next [s].
+
+    Returns:
+        The path of the recording.
 
     Raises:
-        LogError: the log is none, or holds no robot.
+        LogError: the file is not a log, or holds no robot.
         OSError: a file cannot be read or written.
     """
     world = LogWorld(log, period=period)
     world.reset(Placement(), 0)
     robots: set[RobotId] = set()
     while not world.ended:
-        robots.update(world.robots())
+        robots.update(world.truth().robots())
         world.act({})
     header = RecordingHeader(
         scenario=Path(log).name[:80],
@@ -209,7 +169,3 @@ def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path
             world.act({})
         recorder.tick(world.truth())
     return Path(out)
-
-
-def _robots_of(frame: Frame) -> int:
-    return len(frame.own) + len(frame.opponents)

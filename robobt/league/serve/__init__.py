@@ -1,1 +1,1 @@
-"""The simulator served to other teams' programs."""
+"""The simulator, served to other teams' programs."""

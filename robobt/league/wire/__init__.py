@@ -1,1 +1,1 @@
-"""The league's packets: messages, sockets, addresses."""
+"""The league's packets: messages, sockets, addresses, links to simulators."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ipaddress import IPv4Address
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 VISION_GROUP = "224.5.23.2"
 REFEREE_GROUP = "224.5.23.1"
@@ -21,31 +21,11 @@ class Endpoint(NamedTuple):
         return f"{self.address}:{self.port}"
 
 
-class Endpoints(BaseModel):
-    """Who is reached where. The defaults are those of the league's simulators.
-
-    The ports of grSim and the simulation protocol are those of one host; port 0
-    takes a free one where something is served.
-    """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    vision: Endpoint = Field(Endpoint(VISION_GROUP, 10020), description="SSL-Vision; 10006 on a real field")
-    tracker: Endpoint = Field(Endpoint(VISION_GROUP, 10010), description="tracked frames")
-    referee: Endpoint = Field(Endpoint(REFEREE_GROUP, 10003), description="game controller")
-    grsim: int = Field(20011, ge=0, le=65535, description="grSim's commands and replacements")
-    blue_status: int = Field(30011, ge=0, le=65535, description="grSim's status of blue robots")
-    yellow_status: int = Field(30012, ge=0, le=65535, description="grSim's status of yellow robots")
-    control: int = Field(10300, ge=0, le=65535, description="teleport and configuration")
-    blue: int = Field(10301, ge=0, le=65535, description="control of blue robots")
-    yellow: int = Field(10302, ge=0, le=65535, description="control of yellow robots")
-
-
 def parse_endpoint(text: str) -> Endpoint:
-    """An address like ``224.5.23.2:10006``.
+    """Parse an address like ``224.5.23.2:10006``.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text has another form.
     """
     host, colon, port = text.rpartition(":")
     try:
@@ -54,5 +34,33 @@ def parse_endpoint(text: str) -> Endpoint:
     except ValueError:
         number = -1
     if not colon or not 0 <= number <= 65535:
-        raise ValueError(f"{text!r} is no address like 224.5.23.2:10006")
+        raise ValueError(f"{text!r} is not an address like 224.5.23.2:10006")
     return Endpoint(address, number)
+
+
+def _endpoint(value: object) -> object:
+    return parse_endpoint(value) if isinstance(value, str) else value
+
+
+_Address = Annotated[Endpoint, BeforeValidator(_endpoint)]
+_Port = Annotated[int, Field(ge=0, le=65535)]
+
+
+class Endpoints(BaseModel):
+    """Addresses and ports of a field's programs. The defaults are those of the league's simulators.
+
+    Multicast addresses may be given as text, "224.5.23.2:10006". The ports of grSim
+    and the simulation protocol belong to one host; a server picks a free port for 0.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    vision: _Address = Field(Endpoint(VISION_GROUP, 10020), description="SSL-Vision; 10006 on a real field")
+    tracker: _Address = Field(Endpoint(VISION_GROUP, 10010), description="tracked frames")
+    referee: _Address = Field(Endpoint(REFEREE_GROUP, 10003), description="game controller")
+    grsim: _Port = Field(20011, description="grSim's commands and replacements")
+    blue_status: _Port = Field(30011, description="grSim's status of blue robots")
+    yellow_status: _Port = Field(30012, description="grSim's status of yellow robots")
+    control: _Port = Field(10300, description="teleports and configuration")
+    blue: _Port = Field(10301, description="control of blue robots")
+    yellow: _Port = Field(10302, description="control of yellow robots")

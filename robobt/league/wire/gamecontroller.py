@@ -1,4 +1,4 @@
-"""The game controller's messages: followed into a game state, and published from one.
+"""The game controller's messages: converted to a game state, and published from one.
 
 Source of the states: RoboCup SSL rules, chapter "Referee commands".
 """
@@ -9,23 +9,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from robobt.league.wire.messages import Referee as RefereeMessage
-from robobt.league.wire.sockets import PacketCounts, decode
+from robobt.league.wire.packets import PacketCounts, on_field, read
+from robobt.league.wire.tracker import SOURCE
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import IN_PLAY_DISTANCE
 from robobt.world.state import Frame
 
 _MM = 1000.0
 
-_FAR = 30.0
-"""No place on a field lies further from its centre [m]."""
-
-_IN_PLAY_DISTANCE = 0.05
-"""The ball is in play after moving this far [m]."""
-
 _KICK_TIMEOUT = 10.0
-"""A restart that is not taken by then is over [s]."""
+"""A restart that has not been taken by then is over [s]."""
 
-# What the league no longer sends, but logs still hold.
+# No longer sent, but found in old logs.
 _OUTDATED = {
     10: RefereeCommand.DIRECT_FREE_YELLOW,
     11: RefereeCommand.DIRECT_FREE_BLUE,
@@ -45,16 +41,16 @@ _RESTARTS: Mapping[RefereeCommand, tuple[Restart, Team]] = {
 }
 
 _AT_ONCE = frozenset({Restart.FREE_KICK, Restart.BALL_PLACEMENT})
-"""Restarts that may be taken without a NORMAL_START."""
+"""Restarts that may be taken without NORMAL_START."""
 
 
 class RefereeFollower:
-    """Follows a game controller: its packets say the command, the ball when play goes on.
+    """Follows a game controller: its packets give the command, the ball shows when play resumes.
 
     Attributes:
-        game: the state as of now, in the coordinates of the packets. HALT before the first.
-        blue_on_positive_half: which side the packets say blue defends; None while they do not.
-        counts: what became of the packets.
+        game: the current state, in the coordinates of the packets; HALT before the first.
+        blue_on_positive_half: whether blue defends +x; None until a packet says so.
+        counts: what happened to the packets.
     """
 
     def __init__(self) -> None:
@@ -68,28 +64,23 @@ class RefereeFollower:
         self._since: float | None = None
 
     def read(self, data: bytes) -> bool:
-        """Take in a packet; False, counted, for one that is none or cannot be true."""
-        message = decode(RefereeMessage, data, self.counts)
-        if message is None:
-            return False
+        """Update the state from a packet; return False (counted) when it is malformed or implausible."""
+        return read(RefereeMessage, data, self.counts, self._update) is not None
+
+    def _update(self, message: RefereeMessage) -> bool | None:
         placement: Point | None = None
         if message.HasField("designated_position"):
             spot = message.designated_position
             placement = (spot.x / _MM, spot.y / _MM)
-            # Not finite compares as false.
-            if not (abs(placement[0]) <= _FAR and abs(placement[1]) <= _FAR):
-                self.counts.implausible += 1
-                return False
-        self.counts.accepted += 1
-        number = int(message.command)
-        command = _OUTDATED.get(number) or RefereeCommand(number)
+            if not on_field(*placement):
+                return None
+        command = _command(message.command)
         if message.HasField("blue_team_on_positive_half"):
             self.blue_on_positive_half = message.blue_team_on_positive_half
         upcoming = RefereeCommand.HALT
         if message.HasField("next_command"):
-            following = int(message.next_command)
-            upcoming = _OUTDATED.get(following) or RefereeCommand(following)
-        # A controller that was started anew counts from 0 again, but not at the same moment.
+            upcoming = _command(message.next_command)
+        # A restarted controller counts from 0 again, but with another timestamp.
         counter = (message.command_counter, message.command_timestamp)
         if counter != self._counter:
             self._counter = counter
@@ -105,10 +96,10 @@ class RefereeFollower:
         return True
 
     def watch(self, frame: Frame) -> GameState:
-        """Look at the ball: a restart is over when it has moved, or has lain too long.
+        """Return the state in view of the ball: a restart ends when the ball moves, or times out.
 
         Args:
-            frame: what is on the field, in the coordinates of the packets.
+            frame: the field, in the coordinates of the packets.
         """
         game = self.game
         if game.restart is None or game.restart is Restart.BALL_PLACEMENT or not game.may_touch:
@@ -118,10 +109,10 @@ class RefereeFollower:
             if game.placement is None:
                 self.game = game = replace(game, placement=frame.ball.position)
         assert self._ball_from is not None
-        moved = distance(frame.ball.position, self._ball_from) > _IN_PLAY_DISTANCE
-        # A penalty kick is its kicker's until the controller ends it.
-        patience = game.restart is not Restart.PENALTY and frame.time - self._since > _KICK_TIMEOUT
-        if moved or patience:
+        moved = distance(frame.ball.position, self._ball_from) > IN_PLAY_DISTANCE
+        # A penalty kick has no timeout here: the controller ends it.
+        timeout = game.restart is not Restart.PENALTY and frame.time - self._since > _KICK_TIMEOUT
+        if moved or timeout:
             self.game = replace(game, restart=None, restart_team=None, placement=None)
         return self.game
 
@@ -131,7 +122,7 @@ class RefereeFollower:
         restart, team = _RESTARTS.get(command, (None, None))
         may_touch = restart in _AT_ONCE
         if command is RefereeCommand.NORMAL_START and not before.may_touch:
-            # The kick that was prepared may be taken now.
+            # The kick that was prepared may now be taken.
             restart, team, placement = before.restart, before.restart_team, before.placement
             may_touch = True
         elif command in (RefereeCommand.FORCE_START, RefereeCommand.NORMAL_START):
@@ -152,42 +143,38 @@ class RefereeFollower:
         )
 
 
+def _command(number: int) -> RefereeCommand:
+    return _OUTDATED.get(int(number)) or RefereeCommand(int(number))
+
+
 class RefereePublisher:
-    """Says a game state in the game controller's message.
+    """Encodes game states as the game controller's messages.
 
     Args:
-        names: of the teams.
-        keepers: numbers of their goalkeepers.
-        source: who speaks.
+        keepers: numbers of the goalkeepers.
     """
 
-    def __init__(
-        self,
-        names: Mapping[Team, str] | None = None,
-        keepers: Mapping[Team, int] | None = None,
-        source: str = "robobt",
-    ) -> None:
-        self._names = names or {team: team.value for team in Team}
+    def __init__(self, keepers: Mapping[Team, int] | None = None) -> None:
         self._keepers = keepers or {}
-        self._source = source
-        self._said: tuple[RefereeCommand, Restart | None, Team | None] | None = None
+        self._last: tuple[RefereeCommand, Restart | None, Team | None] | None = None
         self._counter = 0
         self._command_time = 0
 
     def write(self, game: GameState, time: float) -> bytes:
-        """The packet for a state in world coordinates (blue defends -x).
+        """Return the packet for a state in world coordinates (blue defends -x).
 
         Args:
-            time: of the state, Unix time or the simulation's [s].
+            game: the state.
+            time: timestamp of the state, Unix time or simulated [s].
         """
         now = max(0, round(time * 1e6))
-        said = (game.command, game.restart if game.stopped else None, game.restart_team)
-        if self._said is None or said[0] is not self._said[0] or (game.stopped and said != self._said):
-            self._counter += self._said is not None
+        last, current = self._last, (game.command, game.restart if game.stopped else None, game.restart_team)
+        if last is None or current[0] is not last[0] or (game.stopped and current != last):
+            self._counter += last is not None
             self._command_time = now
-        self._said = said
+        self._last = current
         message = RefereeMessage(
-            source_identifier=self._source,
+            source_identifier=SOURCE,
             packet_timestamp=now,
             stage=game.stage.name,
             command=game.command.name,
@@ -199,7 +186,7 @@ class RefereePublisher:
             (Team.YELLOW, message.yellow, game.yellow_score),
             (Team.BLUE, message.blue, game.blue_score),
         ):
-            info.name = self._names[team]
+            info.name = team.value
             info.score = score
             info.red_cards = info.yellow_cards = info.timeouts = info.timeout_time = 0
             info.goalkeeper = self._keepers.get(team, 0)

@@ -1,24 +1,17 @@
-"""How robots of a simulator are commanded: over grSim's packets or the simulation protocol."""
+"""Links that command the robots of a simulator: grSim's packets or the simulation protocol."""
 
 from __future__ import annotations
 
 import logging
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Protocol
 
-from robobt.league.wire.commands import (
-    BallTeleport,
-    Teleport,
-    read_feedback,
-    read_status,
-    write_control,
-    write_grsim,
-    write_grsim_placement,
-    write_teleport,
-)
+from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
-from robobt.league.wire.sockets import LOOPBACK, PacketCounts, Receiver, Sender
+from robobt.league.wire.grsim import read_status, write_grsim, write_grsim_replacement
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.simulation import read_feedback, write_control, write_teleport
+from robobt.league.wire.sockets import LOOPBACK, Receiver, Sender
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import RobotId
@@ -26,168 +19,149 @@ from robobt.world.state import RobotId
 _log = logging.getLogger(__name__)
 
 _KEEP_ALIVE = 0.25
-"""How often grSim's control ports get an empty message; it stops robots after a second without [s]."""
+"""Interval of the empty messages to grSim's control ports, which stops robots after a second without [s]."""
 
 
-class Link(Protocol):
-    """A way to command robots.
+class Link:
+    """A way to command robots; this one commands nobody, for a world that only observes.
 
     Attributes:
-        places: whether robots and ball can be put somewhere.
+        active: whether robots can be commanded, and robots and ball be placed.
+        counts: what happened to the packets that came back, by port.
     """
 
-    places: bool
+    active = False
+
+    def __init__(self) -> None:
+        self.counts: dict[str, PacketCounts] = {}
 
     def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
         """Send the robots their commands."""
 
     def place(self, robots: Iterable[Teleport], ball: BallTeleport | None) -> None:
-        """Put robots and ball somewhere."""
+        """Teleport robots and ball."""
 
     def feedback(self) -> Iterator[tuple[RobotId, bool]]:
-        """What robots have told since the last call: whether the ball lies in the mouth."""
-
-    def counts(self) -> dict[str, PacketCounts]:
-        """What became of the packets that came back, by port."""
+        """Yield what the robots' break-beam sensors have reported since the last call."""
+        yield from ()
 
     def close(self) -> None:
-        """Free all ports."""
+        """Release all ports."""
 
 
-class GrSimLink:
-    """Commands and replacements to grSim's own port, and what keeps its robots moving.
+class _SimulatorLink(Link):
+    """The control ports that every simulator has, one for each team."""
 
-    grSim zeroes the blue robots after every frame unless something arrives on
-    its yellow control port each second, and the yellow ones likewise; commands
-    on its own port do not count. Both ports therefore get empty messages.
+    active = True
+
+    def __init__(self, host: str, endpoints: Endpoints) -> None:
+        super().__init__()
+        self._teams = {
+            Team.BLUE: Sender(host, endpoints.blue),
+            Team.YELLOW: Sender(host, endpoints.yellow),
+        }
+        self._sockets: list[Sender | Receiver] = list(self._teams.values())
+        self._alive_at = -math.inf
+
+    def close(self) -> None:
+        """Release all ports."""
+        for socket in self._sockets:
+            socket.close()
+
+    def _sender(self, host: str, port: int) -> Sender:
+        sender = Sender(host, port)
+        self._sockets.append(sender)
+        return sender
+
+    def _keep_alive(self, time: float) -> bool:
+        """Return whether teams without commands are due for an empty message."""
+        due = not time - self._alive_at < _KEEP_ALIVE
+        if due:
+            self._alive_at = time
+        return due
+
+
+class GrSimLink(_SimulatorLink):
+    """Commands and replacements to grSim's own port, with keep-alives to the control ports.
+
+    grSim stops the blue robots after every frame unless something arrives on its
+    yellow control port every second, and the yellow robots likewise; commands on
+    its own port do not count.
     """
 
-    places = True
-
     def __init__(self, host: str, endpoints: Endpoints, interface: str | None) -> None:
-        own = LOOPBACK if interface is None else interface
-        self._commands = Sender(host, endpoints.grsim)
-        self._alive = [Sender(host, endpoints.blue), Sender(host, endpoints.yellow)]
-        self._alive_at = -math.inf
+        super().__init__(host, endpoints)
+        self._commands = self._sender(host, endpoints.grsim)
         self._status: dict[Team, Receiver] = {}
         ports = {Team.BLUE: endpoints.blue_status, Team.YELLOW: endpoints.yellow_status}
         for team, port in ports.items():
             try:
-                self._status[team] = Receiver(own, port, interface)
+                receiver = Receiver(interface or LOOPBACK, port, interface)
             except OSError as error:
-                # Another program has it: who has the ball is then told from what is seen.
-                _log.warning("%s", error)
+                # Another program has the port: ball contact is then inferred from the vision.
+                _log.warning("%s; ball contact of %s robots is estimated", error, team.value)
+                continue
+            self._status[team] = receiver
+            self._sockets.append(receiver)
+            self.counts[f"{team.value}_status"] = receiver.counts
 
     def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
-        """See :class:`Link`."""
-        for team, of_team in by_team(commands).items():
+        """Send the robots their commands."""
+        for team, of_team in _by_team(commands).items():
             self._commands.send(write_grsim(team, of_team, time))
-        if not time - self._alive_at < _KEEP_ALIVE:
-            self._alive_at = time
-            empty = write_control({})
-            for sender in self._alive:
-                sender.send(empty)
+        if self._keep_alive(time):
+            for sender in self._teams.values():
+                sender.send(write_control({}))
 
     def place(self, robots: Iterable[Teleport], ball: BallTeleport | None) -> None:
-        """See :class:`Link`."""
-        self._commands.send(write_grsim_placement(robots, ball))
+        """Teleport robots and ball."""
+        self._commands.send(write_grsim_replacement(robots, ball))
 
     def feedback(self) -> Iterator[tuple[RobotId, bool]]:
-        """See :class:`Link`."""
-        for sender in self._alive:
+        """Yield what the robots' break-beam sensors have reported since the last call."""
+        for sender in self._teams.values():
             for _ in sender.answers():
-                pass
+                pass  # answers to the keep-alives
         for team, receiver in self._status.items():
             for packet in receiver.receive():
                 for number, contact in read_status(packet.data, receiver.counts).items():
                     yield RobotId(team, number), contact
 
-    def counts(self) -> dict[str, PacketCounts]:
-        """See :class:`Link`."""
-        return {f"{team.value}_status": receiver.counts for team, receiver in self._status.items()}
 
-    def close(self) -> None:
-        """See :class:`Link`."""
-        sockets: list[Sender | Receiver] = [self._commands, *self._alive, *self._status.values()]
-        for socket in sockets:
-            socket.close()
+class ProtocolLink(_SimulatorLink):
+    """The simulation protocol: a control port for each team, and one for teleports.
 
-
-class ProtocolLink:
-    """The simulation protocol: a control port a team, and one for teleports.
-
-    A team without commands gets empty messages, for grSim's sake; see :class:`GrSimLink`.
+    A team without commands gets keep-alives, for grSim's sake; see :class:`GrSimLink`.
     """
 
-    places = True
-
     def __init__(self, host: str, endpoints: Endpoints) -> None:
-        self._control = Sender(host, endpoints.control)
-        self._teams = {
-            Team.BLUE: Sender(host, endpoints.blue),
-            Team.YELLOW: Sender(host, endpoints.yellow),
-        }
-        self._counts = {team: PacketCounts() for team in Team}
-        self._alive_at = -math.inf
+        super().__init__(host, endpoints)
+        self._control = self._sender(host, endpoints.control)
+        self.counts = {f"{team.value}_feedback": PacketCounts() for team in Team}
 
     def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
-        """See :class:`Link`."""
-        teams = by_team(commands)
-        silent = not time - self._alive_at < _KEEP_ALIVE
-        if silent:
-            self._alive_at = time
+        """Send the robots their commands."""
+        teams, keep_alive = _by_team(commands), self._keep_alive(time)
         for team, sender in self._teams.items():
-            if team in teams or silent:
+            if team in teams or keep_alive:
                 sender.send(write_control(teams.get(team, {})))
 
     def place(self, robots: Iterable[Teleport], ball: BallTeleport | None) -> None:
-        """See :class:`Link`."""
+        """Teleport robots and ball."""
         self._control.send(write_teleport(robots, ball))
 
     def feedback(self) -> Iterator[tuple[RobotId, bool]]:
-        """See :class:`Link`."""
+        """Yield what the robots' break-beam sensors have reported since the last call."""
         for _ in self._control.answers():
-            pass
+            pass  # answers to teleports
         for team, sender in self._teams.items():
             for data in sender.answers():
-                for number, contact in read_feedback(data, self._counts[team]).items():
+                for number, contact in read_feedback(data, self.counts[f"{team.value}_feedback"]).items():
                     yield RobotId(team, number), contact
 
-    def counts(self) -> dict[str, PacketCounts]:
-        """See :class:`Link`."""
-        return {f"{team.value}_feedback": counts for team, counts in self._counts.items()}
 
-    def close(self) -> None:
-        """See :class:`Link`."""
-        for socket in (self._control, *self._teams.values()):
-            socket.close()
-
-
-class NoLink:
-    """Nobody is commanded: for whoever only watches."""
-
-    places = False
-
-    def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
-        """See :class:`Link`; nothing is sent."""
-
-    def place(self, robots: Iterable[Teleport], ball: BallTeleport | None) -> None:
-        """See :class:`Link`; nothing is sent."""
-
-    def feedback(self) -> Iterator[tuple[RobotId, bool]]:
-        """See :class:`Link`; nothing is told."""
-        yield from ()
-
-    def counts(self) -> dict[str, PacketCounts]:
-        """See :class:`Link`."""
-        return {}
-
-    def close(self) -> None:
-        """See :class:`Link`."""
-
-
-def by_team(commands: Mapping[RobotId, RobotCommand]) -> dict[Team, dict[int, RobotCommand]]:
-    """The commands by team and number, without teams that have none."""
+def _by_team(commands: Mapping[RobotId, RobotCommand]) -> dict[Team, dict[int, RobotCommand]]:
+    """Return the commands by team and number, without teams that have none."""
     teams: dict[Team, dict[int, RobotCommand]] = {}
     for robot, command in commands.items():
         teams.setdefault(robot.team, {})[robot.number] = command

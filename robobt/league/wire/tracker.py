@@ -1,45 +1,49 @@
-"""Tracked frames: positions and velocities that somebody's filter has found, in SI units."""
+"""Tracked frames: positions and velocities from a vision filter, in SI units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from robobt.league.wire.messages import TrackerWrapperPacket
-from robobt.league.wire.sockets import PacketCounts, decode
-from robobt.league.wire.vision import LATEST, MOST_NUMBER
+from robobt.league.wire.messages import TrackedRobot, TrackerWrapperPacket
+from robobt.league.wire.packets import (
+    MAX_OBJECTS,
+    MAX_ROBOT_NUMBER,
+    MAX_TIME,
+    PacketCounts,
+    on_field,
+    read,
+)
+from robobt.league.wire.simulation import TEAMS
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
 from robobt.world.state import BallState, Frame, RobotState
 
-_FAR = 30.0
-"""No object of a field lies further from its centre [m]."""
+_MAX_SPEED = 30.0
+"""Nothing on a field is faster [m/s]."""
 
-_FASTEST = 30.0
-"""Nothing on a field is faster [m/s, rad/s / 10]."""
+_MAX_TURN = 300.0
+"""No robot turns faster, and no sender lets headings grow larger [rad/s, rad]."""
 
-_MOST_OBJECTS = 64
-_YELLOW, _BLUE = 1, 2
+SOURCE = "robobt"
+"""The name under which robobt publishes."""
 
 
-def write_tracked(frame: Frame, number: int, time: float, uuid: str, source: str = "robobt") -> bytes:
-    """A tracker's packet.
+def write_tracked(frame: Frame, number: int, time: float, uuid: str) -> bytes:
+    """Return a tracker packet.
 
     Args:
-        frame: what is known, seen from blue's side.
-        number: counts the frames.
-        time: of the frame, Unix time or the simulation's [s].
+        frame: the state to publish, seen from blue's side.
+        number: of the frame.
+        time: timestamp of the frame, Unix time or simulated [s].
         uuid: tells this source from others while it runs.
-        source: its name.
     """
-    packet = TrackerWrapperPacket(uuid=uuid, source_name=source)
+    packet = TrackerWrapperPacket(uuid=uuid, source_name=SOURCE)
     tracked = packet.tracked_frame
     tracked.frame_number, tracked.timestamp = number % 2**32, time
     ball = frame.ball
     tracked.balls.add(
         pos={"x": ball.x, "y": ball.y, "z": 0.0}, vel={"x": ball.vx, "y": ball.vy, "z": 0.0}, visibility=1.0
     )
-    for team, robots in ((_BLUE, frame.own), (_YELLOW, frame.opponents)):
+    for team, robots in ((2, frame.own), (1, frame.opponents)):
         for robot in robots:
             tracked.robots.add(
                 robot_id={"id": robot.id, "team": team},
@@ -53,55 +57,53 @@ def write_tracked(frame: Frame, number: int, time: float, uuid: str, source: str
 
 
 def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tuple[str, Frame] | None:
-    """Source and frame of a tracker's packet; None, counted, when it is none or cannot be true.
+    """Return source and frame of a tracker packet.
 
-    The frame's time is that of the packet. Of several balls it holds the first,
-    without any one at rest in the centre.
+    The frame has the packet's timestamp and the first of several balls; without
+    any, a ball at rest in the centre.
 
     Args:
-        field: dimensions, which a tracker's packet does not say.
+        data: the packet.
+        field: dimensions, which a tracker packet does not hold.
+        counts: updated with the outcome.
+
+    Returns:
+        None (counted) for a packet that is malformed or implausible.
     """
-    message = decode(TrackerWrapperPacket, data, counts)
-    if message is None:
-        return None
-    tracked = message.tracked_frame
-    crowded = max(len(tracked.balls), len(tracked.robots)) > _MOST_OBJECTS
-    if not message.HasField("tracked_frame") or not abs(tracked.timestamp) <= LATEST or crowded:
-        counts.implausible += 1
-        return None
-    ball = BallState(0.0, 0.0)
-    for seen in tracked.balls:
-        values = (seen.pos.x, seen.pos.y, seen.vel.x, seen.vel.y)
-        if _plausible(values):
-            ball = BallState(*values)
-            break
-    teams: dict[int, list[RobotState]] = {_BLUE: [], _YELLOW: []}
-    for robot in tracked.robots:
-        team = int(robot.robot_id.team)
-        values = (robot.pos.x, robot.pos.y, robot.vel.x, robot.vel.y)
-        turning = (robot.orientation, robot.vel_angular)
-        if team not in teams or robot.robot_id.id > MOST_NUMBER or not _plausible(values):
-            continue
-        if not all(abs(value) <= 10.0 * _FASTEST for value in turning):
-            continue
-        x, y, vx, vy = values
-        teams[team].append(
-            RobotState(robot.robot_id.id, x, y, wrap_angle(robot.orientation), vx, vy, robot.vel_angular)
+
+    def convert(message: TrackerWrapperPacket) -> tuple[str, Frame] | None:
+        tracked = message.tracked_frame
+        crowded = max(len(tracked.balls), len(tracked.robots)) > MAX_OBJECTS
+        if not message.HasField("tracked_frame") or not abs(tracked.timestamp) <= MAX_TIME or crowded:
+            return None
+        balls = [(seen.pos.x, seen.pos.y, seen.vel.x, seen.vel.y) for seen in tracked.balls]
+        ball = next((BallState(*values) for values in balls if _plausible(*values)), BallState(0.0, 0.0))
+        teams: dict[Team, dict[int, RobotState]] = {team: {} for team in Team}
+        for robot in tracked.robots:
+            team, state = TEAMS.get(int(robot.robot_id.team)), _robot(robot)
+            if team is not None and state is not None:
+                teams[team][state.id] = state
+        own, opponents = (
+            tuple(robots[number] for number in sorted(robots))
+            for robots in (teams[Team.BLUE], teams[Team.YELLOW])
         )
-    counts.accepted += 1
-    frame = Frame(
-        tracked.timestamp, field, ball, _in_order(teams[_BLUE]), _in_order(teams[_YELLOW]), Team.BLUE
-    )
-    return message.source_name or message.uuid, frame
+        return message.source_name or message.uuid, Frame(tracked.timestamp, field, ball, own, opponents)
+
+    return read(TrackerWrapperPacket, data, counts, convert)
 
 
-def _plausible(values: tuple[float, float, float, float]) -> bool:
-    # Not finite compares as false.
-    return all(
-        abs(value) <= most for value, most in zip(values, (_FAR, _FAR, _FASTEST, _FASTEST), strict=True)
-    )
+def _robot(robot: TrackedRobot) -> RobotState | None:
+    number = robot.robot_id.id
+    x, y, vx, vy = robot.pos.x, robot.pos.y, robot.vel.x, robot.vel.y
+    heading, omega = robot.orientation, robot.vel_angular
+    if number > MAX_ROBOT_NUMBER or not _plausible(x, y, vx, vy):
+        return None
+    # NaN compares as false.
+    if not (abs(heading) <= _MAX_TURN and abs(omega) <= _MAX_TURN):
+        return None
+    return RobotState(number, x, y, wrap_angle(heading), vx, vy, omega)
 
 
-def _in_order(robots: Iterable[RobotState]) -> tuple[RobotState, ...]:
-    numbers = {robot.id: robot for robot in robots}
-    return tuple(numbers[number] for number in sorted(numbers))
+def _plausible(x: float, y: float, vx: float, vy: float) -> bool:
+    # NaN compares as false.
+    return on_field(x, y) and abs(vx) <= _MAX_SPEED and abs(vy) <= _MAX_SPEED

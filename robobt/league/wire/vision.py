@@ -1,11 +1,10 @@
-"""SSL-Vision packets: read into detections and a field in SI units, and written from them.
+"""SSL-Vision packets, converted to and from detections and a field in SI units.
 
 Source of the fields: ssl-vision's detection and geometry messages (millimetres there).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import isfinite, pi
 
@@ -17,7 +16,14 @@ from robobt.league.wire.messages import (
     SSL_GeometryFieldSize,
     SSL_WrapperPacket,
 )
-from robobt.league.wire.sockets import PacketCounts, decode
+from robobt.league.wire.packets import (
+    MAX_OBJECTS,
+    MAX_ROBOT_NUMBER,
+    MAX_TIME,
+    PacketCounts,
+    on_field,
+    read,
+)
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -25,30 +31,24 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 
 _MM = 1000.0
 
-_FAR = 30.0
-"""No object of a field lies further from its centre [m]."""
+_MAX_CAMERAS = 64
 
-_MOST_OBJECTS = 64
-"""Most objects of a kind in a packet; a camera that reports more is not to be trusted."""
-
-_MOST_CAMERAS = 64
-
-LATEST = 1e10
-"""No clock shows more [s]: beyond it two frames' times can no longer be told apart."""
-
-_LONGEST_DELAY = 1.0
-"""A capture longer ago than this when it was sent, or later than that, is a slip of the sender [s]."""
-
-MOST_NUMBER = 31
-"""Largest number of a robot."""
+_MAX_LATENCY = 1.0
+"""Longest plausible time from capture to sending [s]; beyond it the frame counts as sent when captured."""
 
 _LINE_THICKNESS = 0.01
 """Width of the field's lines [m]. Source: RoboCup SSL rules."""
 
+_BALL_AREA = 80
+"""Typical size of a ball in a camera's image [pixels]."""
+
+_PATTERN_HEIGHT = 0.15
+"""Height of a robot's pattern above the ground [m]."""
+
 
 @dataclass(slots=True)
 class BallDetection:
-    """A ball a camera has seen [m]."""
+    """A detected ball [m]."""
 
     x: float
     y: float
@@ -57,7 +57,7 @@ class BallDetection:
 
 @dataclass(slots=True)
 class RobotDetection:
-    """A robot a camera has seen [m, rad]; ``heading`` is None for a pattern without direction."""
+    """A detected robot [m, rad]; ``heading`` is None for a pattern without orientation."""
 
     robot: RobotId
     x: float
@@ -68,14 +68,14 @@ class RobotDetection:
 
 @dataclass(slots=True)
 class CameraFrame:
-    """What one camera saw at one instant.
+    """The detections of one camera at one instant.
 
     Attributes:
-        camera: its number.
-        number: the frame's number.
-        captured: when it was taken, in the sender's clock [s].
-        sent: when it was sent, in the sender's clock [s].
-        balls, robots: what was seen.
+        camera: number of the camera.
+        number: number of the frame.
+        captured: timestamp of the capture, on the sender's clock [s].
+        sent: timestamp of sending, on the sender's clock [s].
+        balls, robots: the detections.
     """
 
     camera: int
@@ -88,82 +88,75 @@ class CameraFrame:
 
 @dataclass(slots=True)
 class VisionPacket:
-    """What a packet of the vision holds; either part may be missing."""
+    """The contents of a vision packet; either part may be missing."""
 
     frame: CameraFrame | None
     field: FieldGeometry | None
 
 
 def read_vision(data: bytes, counts: PacketCounts) -> VisionPacket | None:
-    """What a packet of the vision says; None, counted, when it is none or cannot be true."""
-    message = decode(SSL_WrapperPacket, data, counts)
-    if message is None:
-        return None
-    frame = read_frame(message.detection) if message.HasField("detection") else None
+    """Return the contents of a packet, or None (counted) when it is malformed or implausible."""
+    return read(SSL_WrapperPacket, data, counts, _read_packet)
+
+
+def _read_packet(message: SSL_WrapperPacket) -> VisionPacket | None:
+    frame = _read_frame(message.detection) if message.HasField("detection") else None
     geometry = read_field(message.geometry.field) if message.HasField("geometry") else None
-    if frame is None and geometry is None:
-        counts.implausible += 1
-        return None
-    counts.accepted += 1
-    return VisionPacket(frame, geometry)
+    return None if frame is None and geometry is None else VisionPacket(frame, geometry)
 
 
-def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
-    """The detections of a frame that make sense; None for a frame that does not.
+def _read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
+    """Return the plausible detections of a frame; None when the frame itself is implausible.
 
-    Detections that are not finite, lie far outside any field or carry an
+    Detections that are not finite, lie far outside any field or have an
     impossible number are left out.
     """
     captured, sent = message.t_capture, message.t_sent
-    # Not finite compares as false.
-    if not (abs(captured) <= LATEST and abs(sent) <= LATEST and message.camera_id < _MOST_CAMERAS):
+    # NaN compares as false.
+    if not (abs(captured) <= MAX_TIME and abs(sent) <= MAX_TIME and message.camera_id < _MAX_CAMERAS):
         return None
-    if max(len(message.balls), len(message.robots_blue), len(message.robots_yellow)) > _MOST_OBJECTS:
+    if max(len(message.balls), len(message.robots_blue), len(message.robots_yellow)) > MAX_OBJECTS:
         return None
-    if not 0.0 <= sent - captured <= _LONGEST_DELAY:
+    if not 0.0 <= sent - captured <= _MAX_LATENCY:
         sent = captured
     frame = CameraFrame(message.camera_id, message.frame_number, captured, sent)
     for ball in message.balls:
         x, y, confidence = ball.x / _MM, ball.y / _MM, ball.confidence
-        if _near(x, y) and isfinite(confidence):
+        if on_field(x, y) and isfinite(confidence):
             frame.balls.append(BallDetection(x, y, confidence))
     for team, robots in ((Team.BLUE, message.robots_blue), (Team.YELLOW, message.robots_yellow)):
         for robot in robots:
             x, y, confidence = robot.x / _MM, robot.y / _MM, robot.confidence
-            if not robot.HasField("robot_id") or robot.robot_id > MOST_NUMBER:
+            if not robot.HasField("robot_id") or robot.robot_id > MAX_ROBOT_NUMBER:
                 continue
-            if not (_near(x, y) and isfinite(confidence)):
+            if not (on_field(x, y) and isfinite(confidence)):
                 continue
             heading = None
             if robot.HasField("orientation") and abs(robot.orientation) <= 4 * pi:
                 heading = wrap_angle(robot.orientation)
-            number = RobotId(team, robot.robot_id)
-            frame.robots.append(RobotDetection(number, x, y, heading, confidence))
+            frame.robots.append(RobotDetection(RobotId(team, robot.robot_id), x, y, heading, confidence))
     return frame
 
 
 def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
-    """The field of a geometry packet; None when there cannot be such a field.
+    """Return the field of a geometry packet; None when no such field can exist.
 
-    The defence areas' sizes are optional in the packet: without them they are
-    taken from the field's lines, or from the division whose length is nearest.
+    Sizes that the packet leaves out are taken from the field's lines and arcs, or
+    else from the division whose length is nearest.
     """
     length, width = message.field_length / _MM, message.field_width / _MM
-    usual = min((DIVISION_A, DIVISION_B), key=lambda division: abs(division.length - length))
+    division = min((DIVISION_A, DIVISION_B), key=lambda division: abs(division.length - length))
     depth, across = message.penalty_area_depth / _MM, message.penalty_area_width / _MM
-    lines = {line.name: line for line in message.field_lines}
+    front = next((line for line in message.field_lines if line.name == "LeftPenaltyStretch"), None)
     if not message.HasField("penalty_area_depth"):
-        front = lines.get("LeftPenaltyStretch")
-        depth = usual.defense_depth if front is None else length / 2 - abs(front.p1.x) / _MM
+        depth = division.defense_depth if front is None else length / 2 - abs(front.p1.x) / _MM
     if not message.HasField("penalty_area_width"):
-        front = lines.get("LeftPenaltyStretch")
-        across = usual.defense_width if front is None else abs(front.p1.y - front.p2.y) / _MM
+        across = division.defense_width if front is None else abs(front.p1.y - front.p2.y) / _MM
     radius = message.center_circle_radius / _MM
     if not message.HasField("center_circle_radius"):
         circles = [arc.radius / _MM for arc in message.field_arcs if arc.name == "CenterCircle"]
-        radius = circles[0] if circles else usual.center_radius
-    goal_depth = message.goal_depth / _MM or usual.goal_depth
-    margin = max(message.boundary_width / _MM, goal_depth, 0.2)
+        radius = circles[0] if circles else division.center_radius
+    goal_depth = message.goal_depth / _MM or division.goal_depth
     try:
         return FieldGeometry(
             length=length,
@@ -173,14 +166,14 @@ def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
             defense_width=across,
             defense_depth=depth,
             center_radius=radius,
-            margin=margin,
+            margin=max(message.boundary_width / _MM, goal_depth, 0.2),
         )
     except ValidationError:
         return None
 
 
 def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
-    """The message of a camera's frame, with every field that strict readers require."""
+    """Return the message of a camera's frame, with every field that strict readers require."""
     message = SSL_DetectionFrame(
         frame_number=frame.number % 2**32,
         t_capture=frame.captured,
@@ -206,7 +199,7 @@ def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
             y=robot.y * _MM,
             pixel_x=0.0,
             pixel_y=0.0,
-            height=_ROBOT_HEIGHT * _MM,
+            height=_PATTERN_HEIGHT * _MM,
         )
         if robot.heading is not None:
             added.orientation = robot.heading
@@ -214,7 +207,7 @@ def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
 
 
 def write_field(geometry: FieldGeometry) -> SSL_GeometryData:
-    """The geometry message of a field, with its lines and arcs as the league names them."""
+    """Return the geometry message of a field, with its lines and arcs named as the league does."""
     message = SSL_GeometryData()
     size = message.field
     size.field_length = _mm(geometry.length)
@@ -249,34 +242,21 @@ def write_field(geometry: FieldGeometry) -> SSL_GeometryData:
 
 
 def write_vision(frame: CameraFrame | None, geometry: SSL_GeometryData | None = None) -> bytes:
-    """A packet of the vision."""
+    """Return a packet with a frame, a geometry, or both."""
     message = SSL_WrapperPacket(source="SSL_SOURCE_OTHER")
     if frame is not None:
         message.detection.CopyFrom(write_frame(frame))
     if geometry is not None:
         message.geometry.CopyFrom(geometry)
-    data: bytes = message.SerializeToString()
-    return data
-
-
-_BALL_AREA = 80
-"""Pixels of a ball in a camera's picture, roughly."""
-
-_ROBOT_HEIGHT = 0.15
-"""Height of a robot's pattern [m]."""
-
-
-def _near(x: float, y: float) -> bool:
-    # Not finite compares as false.
-    return abs(x) <= _FAR and abs(y) <= _FAR
+    return bytes(message.SerializeToString())
 
 
 def _mm(metres: float) -> int:
     return round(metres * _MM)
 
 
-def _lines(f: FieldGeometry) -> Iterable[tuple[str, float, float, float, float]]:
-    """Name and ends of every line, in the order of the league's numbers for them from 2 on."""
+def _lines(f: FieldGeometry) -> tuple[tuple[str, float, float, float, float], ...]:
+    """Return name and ends of every line, in the order of the league's line types from 2 on."""
     x, y, edge, half = f.half_length, f.half_width, f.half_length - f.defense_depth, f.defense_width / 2
     return (
         ("TopTouchLine", -x, y, x, y),

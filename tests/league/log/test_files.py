@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.league.log.files import LogError, LogKind, LogRecord, LogWriter, is_log, read_log
-from robobt.league.log.world import LogFactory, LogWorld, record_log
+from robobt.league.log.world import LogWorld, record_log
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.gamecontroller import RefereePublisher
-from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match import Match, load_scenario
@@ -114,14 +114,14 @@ def test_a_log_that_is_cut_off_ends_with_its_last_whole_record(
 def test_what_is_no_log_is_one_plain_error(tmp_path: Path, data: bytes) -> None:
     for path in (tmp_path / "game.log", tmp_path / "game.log.gz"):
         path.write_bytes(data)
-        with pytest.raises(LogError, match=f"^{path}: is no log: "):
+        with pytest.raises(LogError, match=f"^{path}: is not a log: "):
             list(read_log(path))
 
 
 def test_another_version_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "game.log"
     path.write_bytes(b"SSL_LOG_FILE" + struct.pack(">i", 2))
-    with pytest.raises(LogError, match="version 2 of the format is unknown"):
+    with pytest.raises(LogError, match="has version 2 of the format; only 1 can be read"):
         list(read_log(path))
 
 
@@ -131,7 +131,7 @@ def test_an_impossible_size_is_refused_without_reading_it(tmp_path: Path, size: 
     path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, 4, size))
     records = read_log(path)
     assert [next(records) for _ in RECORDS] == RECORDS
-    with pytest.raises(LogError, match=f"record 3: {size} bytes is no size"):
+    with pytest.raises(LogError, match=f"record 3: impossible size of {size} bytes"):
         next(records)
 
 
@@ -224,8 +224,8 @@ def test_a_log_becomes_a_recording(tmp_path: Path, played: Path) -> None:
 
 def test_a_scenarios_robots_watch_a_log(played: Path) -> None:
     factory = world_from(str(played))
-    assert isinstance(factory, LogFactory)
     match = Match(load_scenario("striker_vs_goalie").lasting(1.0), 0, factory)
+    assert isinstance(match.world, LogWorld)
     result = match.play()
     assert result.ticks == 41
     assert match.game.command is RefereeCommand.STOP or match.game.in_play

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from robobt.league.serve.publishing import PublishedWorld, PublishingFactory
 from robobt.league.wire.gamecontroller import RefereeFollower
-from robobt.league.wire.sockets import PacketCounts, Receiver
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match import Match, load_scenario
@@ -18,7 +21,7 @@ from tests.league.served import free_endpoints
 def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
     endpoints = free_endpoints()
     scenario = load_scenario("three_v_three").lasting(0.8)
-    factory = PublishingFactory(sim_world, endpoints, speed=10.0)
+    factory = PublishingFactory(sim_world, endpoints)
     follower = RefereeFollower()
     with (
         Receiver(*endpoints.vision) as vision,
@@ -42,7 +45,7 @@ def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
     assert result.trace == Match(scenario, 1, sim_world).play().trace
 
 
-def test_it_waits_for_the_clock_and_no_longer() -> None:
+def test_it_waits_for_the_clock_and_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = load_scenario("striker_vs_goalie").lasting(0.5)
     now = [0.0]
     naps: list[float] = []
@@ -51,13 +54,11 @@ def test_it_waits_for_the_clock_and_no_longer() -> None:
         naps.append(seconds)
         now[0] += seconds
 
+    clock = SimpleNamespace(monotonic=lambda: now[0], sleep=nap)
+    monkeypatch.setattr("robobt.league.serve.publishing.time", clock)
+
     def world(scenario: object) -> PublishedWorld:
-        return PublishedWorld(
-            sim_world(scenario),
-            free_endpoints(),
-            clock=lambda: now[0],
-            sleep=nap,  # type: ignore[arg-type]
-        )
+        return PublishedWorld(sim_world(scenario), endpoints=free_endpoints())  # type: ignore[arg-type]
 
     match = Match(scenario, 1, world)
     assert isinstance(match.world, World)

@@ -14,6 +14,7 @@ from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
+from tests.league.served import poses
 
 ME, HER, ABSENT = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5), RobotId(Team.BLUE, 9)
 
@@ -42,9 +43,9 @@ def test_teams_line_up_apart_in_their_own_halves(geometry: FieldGeometry, robots
     placement = line_up(geometry, robots)
     field = ServedField(geometry, placement)
     field.step()
-    poses = field.poses()
-    assert len(poses) == 2 * robots
-    for robot, (x, y, _) in poses.items():
+    standing = poses(field)
+    assert len(standing) == 2 * robots
+    for robot, (x, y, _) in standing.items():
         assert (x < 0.0) == (robot.team is Team.BLUE)
         assert geometry.contains(x, y)
         # Nobody was pushed by anybody.
@@ -65,7 +66,7 @@ def test_robots_that_are_not_there_obey_nobody(field: ServedField) -> None:
     assert not field.command(ABSENT, RobotCommand(1.0))
     assert not field.command(RobotId(Team.BLUE, 4_000_000_000), RobotCommand(1.0))
     assert not field.command(ME, RobotCommand(nan))
-    assert set(field.poses()) == {ME, HER}
+    assert set(poses(field)) == {ME, HER}
 
 
 def test_commands_are_bounded_by_the_robots_limits(field: ServedField) -> None:
@@ -75,35 +76,35 @@ def test_commands_are_bounded_by_the_robots_limits(field: ServedField) -> None:
 
 def test_a_robot_is_teleported_with_its_velocity(field: ServedField) -> None:
     assert field.teleport(Teleport(ME, -1.0, 2.0, 1.0, vx=0.5)) is None
-    assert field.poses()[ME] == (-1.0, 2.0, 1.0)
+    assert poses(field)[ME] == (-1.0, 2.0, 1.0)
     assert speed(field) == 0.5
-    assert field.poses()[HER][:2] == (2.0, 1.0)
+    assert poses(field)[HER][:2] == (2.0, 1.0)
 
 
 def test_what_a_teleport_leaves_out_stays(field: ServedField) -> None:
     assert field.teleport(Teleport(ME, x=-1.0)) is None
-    assert field.poses()[ME] == (-1.0, 0.0, 0.0)
+    assert poses(field)[ME] == (-1.0, 0.0, 0.0)
     assert field.teleport_ball(BallTeleport(y=0.5)) is None
-    assert field.ball() == (1.0, 0.5)
+    assert field.truth().ball.position == (1.0, 0.5)
 
 
 def test_a_robot_leaves_the_field_and_comes_back(field: ServedField) -> None:
     assert field.teleport(Teleport(HER, present=False)) is None
-    assert set(field.poses()) == {ME}
+    assert set(poses(field)) == {ME}
     assert field.truth().opponents == ()
     problem = field.teleport(Teleport(HER, present=True))
     assert problem is not None
     assert "full pose" in problem
     assert field.teleport(Teleport(HER, 1.0, 1.0, 0.0, present=True)) is None
-    assert field.poses()[HER] == (1.0, 1.0, 0.0)
+    assert poses(field)[HER] == (1.0, 1.0, 0.0)
 
 
 @pytest.mark.parametrize(("x", "y"), [(99.0, 0.0), (0.0, -99.0), (1e300, 0.0)])
 def test_nothing_is_put_beyond_the_walls(field: ServedField, x: float, y: float) -> None:
     assert field.teleport(Teleport(ME, x, y, 0.0)) is not None
     assert field.teleport_ball(BallTeleport(x, y)) is not None
-    assert field.poses()[ME] == (0.0, 0.0, 0.0)
-    assert field.ball() == (1.0, 0.0)
+    assert poses(field)[ME] == (0.0, 0.0, 0.0)
+    assert field.truth().ball.position == (1.0, 0.0)
 
 
 def test_a_ball_that_rolls_keeps_more_of_its_speed_than_one_that_slides(field: ServedField) -> None:
@@ -111,7 +112,7 @@ def test_a_ball_that_rolls_keeps_more_of_its_speed_than_one_that_slides(field: S
     for rolls in (True, False):
         field.teleport_ball(BallTeleport(0.0, -1.0, 2.0, 0.0, rolls=rolls))
         drive(field, 0.5)
-        ways.append(field.ball()[0])
+        ways.append(field.truth().ball.position[0])
     assert ways[0] > ways[1] + 0.1
 
 

@@ -13,18 +13,11 @@ import pytest
 
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import RefereeDesk, served_line_up
-from robobt.league.wire.commands import (
-    BallTeleport,
-    Teleport,
-    read_grsim,
-    write_control,
-    write_grsim,
-    write_grsim_placement,
-    write_teleport,
-)
+from robobt.league.serve.serving import served_line_up
+from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints, parse_endpoint
 from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.grsim import read_grsim, write_grsim, write_grsim_replacement
 from robobt.league.wire.messages import (
     RealismConfigErForce,
     RobotControlResponse,
@@ -32,9 +25,12 @@ from robobt.league.wire.messages import (
     SimulatorCommand,
     SimulatorResponse,
 )
-from robobt.league.wire.sockets import PacketCounts, Receiver, Sender
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.simulation import write_control, write_teleport
+from robobt.league.wire.sockets import Receiver, Sender
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
+from robobt.match.referee.settings import RefereeSettings
 from robobt.sim.settings import REALISM, SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
@@ -42,7 +38,7 @@ from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 from tests.conftest import StartPython
-from tests.league.served import free_endpoints
+from tests.league.served import free_endpoints, poses
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5)
 Answer = TypeVar("Answer")
@@ -111,7 +107,7 @@ def test_vision_and_tracker_go_out_with_every_step(server: SimServer, endpoints:
     assert seen.frame.captured == pytest.approx(server.field.time)
     assert tracked is not None
     assert [robot.id for robot in tracked[1].own] == [ME.number]
-    assert tracked[1].ball.position == pytest.approx(server.field.ball(), abs=1e-6)
+    assert tracked[1].ball.position == pytest.approx(server.field.truth().ball.position, abs=1e-6)
 
 
 def test_the_visions_delay_keeps_frames_back() -> None:
@@ -172,10 +168,10 @@ def test_grsims_status_comes_when_something_changes_and_only_then(
 
 def test_grsims_replacement_puts_robots_and_ball(server: SimServer) -> None:
     robots = [Teleport(ME, -1.0, 2.0, 0.5), Teleport(HER, 0.0, 0.0, 0.0, present=False)]
-    data = write_grsim_placement(robots, BallTeleport(1.0, -1.0, 0.0, 0.0))
+    data = write_grsim_replacement(robots, BallTeleport(1.0, -1.0, 0.0, 0.0))
     send(server, server.endpoints.grsim, data, server.counts["grsim"])
-    assert server.field.poses() == {ME: (-1.0, 2.0, pytest.approx(0.5))}
-    assert server.field.ball() == (1.0, -1.0)
+    assert poses(server.field) == {ME: (-1.0, 2.0, pytest.approx(0.5))}
+    assert server.field.truth().ball.position == (1.0, -1.0)
 
 
 def test_a_teleport_that_cannot_be_is_answered_with_an_error(server: SimServer) -> None:
@@ -251,20 +247,19 @@ def test_what_makes_no_sense_is_counted_at_every_port(server: SimServer) -> None
         assert server.counts[name].dropped == 3
 
 
-def test_the_referee_desk_says_what_its_referee_decides(endpoints: Endpoints) -> None:
+def test_the_servers_referee_publishes_what_it_decides(endpoints: Endpoints) -> None:
     field = served_line_up(DIVISION_B, 2, "default")
-    desk = RefereeDesk(DIVISION_B, to=endpoints.referee)
     follower = RefereeFollower()
-    with Receiver(*endpoints.referee) as controller:
+    server = SimServer(field, endpoints, referee=RefereeSettings())
+    with server, Receiver(*endpoints.referee) as controller:
+        assert server.referee is not None
         for _ in range(300):
-            field.step()
-            desk(field)
+            server.step()
             for packet in controller.receive():
                 assert follower.read(packet.data)
         eventually(lambda: list(controller.receive()) or True)
-        assert follower.game.command is desk.referee.game.command
-        assert follower.game.restart is desk.referee.game.restart
-    desk.close()
+        assert follower.game.command is server.referee.referee.game.command
+        assert follower.game.restart is server.referee.referee.game.restart
 
 
 def test_a_server_whose_port_is_taken_says_so_and_frees_the_others(
@@ -279,7 +274,7 @@ def test_a_server_whose_port_is_taken_says_so_and_frees_the_others(
 
 @pytest.mark.parametrize("text", ["here", "224.5.23.2", "224.5.23.2:", "224.5.23.2:70000", "localhost:1"])
 def test_an_endpoint_that_is_none_is_one_plain_error(text: str) -> None:
-    with pytest.raises(ValueError, match=r"is no address like 224\.5\.23\.2:10006"):
+    with pytest.raises(ValueError, match=r"is not an address like 224\.5\.23\.2:10006"):
         parse_endpoint(text)
 
 

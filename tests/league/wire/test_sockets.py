@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from robobt.league.wire.messages import SSL_WrapperPacket
-from robobt.league.wire.sockets import MAX_PACKET, Packet, PacketCounts, Receiver, Sender, decode
+from robobt.league.wire.packets import MAX_PACKET
+from robobt.league.wire.sockets import Packet, Receiver, Sender
 
 GROUP = "224.5.23.2"
 
@@ -102,17 +102,3 @@ def test_an_unknown_interface_is_one_plain_error() -> None:
 def test_a_taken_port_is_one_plain_error(receiver: Receiver) -> None:
     with pytest.raises(OSError, match=rf"cannot receive at 127\.0\.0\.1:{receiver.port}: "):
         Receiver("127.0.0.1", receiver.port)
-
-
-def test_what_is_no_message_is_counted() -> None:
-    counts = PacketCounts()
-    assert decode(SSL_WrapperPacket, b"\xff\xff\xff", counts) is None
-    assert decode(SSL_WrapperPacket, b"\x0a\x01", counts) is None
-    assert counts.unreadable == 2
-
-
-def test_a_message_without_a_required_field_is_counted() -> None:
-    counts = PacketCounts()
-    assert decode(SSL_WrapperPacket, b"\x0a\x00", counts) is None
-    assert counts.incomplete == 1
-    assert counts.dropped == 1

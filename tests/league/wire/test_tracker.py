@@ -7,7 +7,7 @@ from math import nan
 import pytest
 
 from robobt.league.wire.messages import TrackerWrapperPacket
-from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import read_tracked, write_tracked
 from robobt.world.field import DIVISION_B
 from robobt.world.state import BallState, Frame, RobotState

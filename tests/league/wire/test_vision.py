@@ -7,7 +7,7 @@ from math import inf, nan, pi
 import pytest
 
 from robobt.league.wire.messages import SSL_GeometryFieldSize, SSL_WrapperPacket
-from robobt.league.wire.sockets import PacketCounts
+from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import (
     BallDetection,
     CameraFrame,

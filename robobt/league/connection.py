@@ -1,0 +1,54 @@
+"""How a field of the league is reached."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robobt.config.errors import RobobtError
+from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.links import GrSimLink, Link, ProtocolLink
+from robobt.league.wire.sockets import LOOPBACK
+from robobt.world.game import Team
+
+
+class LeagueError(RobobtError, RuntimeError):
+    """The field does not respond as it should; the message is one line."""
+
+
+class Connection(BaseModel):
+    """How a field of the league is reached. Nothing leaves this machine unless a host is named."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    simulator: Literal["grsim", "protocol", "observer"] = Field(
+        "grsim", description="grSim's packets, the simulation protocol, or no commands at all"
+    )
+    host: str = Field(LOOPBACK, description="where the robots are commanded (IPv4 address)")
+    interface: str | None = Field(
+        None, description="own address of the interface to listen on; none: this machine's packets only"
+    )
+    endpoints: Endpoints = Endpoints()
+    source: Literal["vision", "tracker"] = Field("vision", description="cameras, or a vision filter's frames")
+    teams: tuple[Team, ...] = Field(
+        (Team.BLUE, Team.YELLOW), description="teams whose robots are commanded, whatever the trees decide"
+    )
+    blue_on_positive_half: bool | None = Field(
+        None, description="whether blue defends +x there; none: as the game controller says, else no"
+    )
+    follow_referee: bool = Field(False, description="whether to follow a game controller")
+    latency: float = Field(
+        0.0, ge=0, le=0.5, description="latency of the vision beyond what its timestamps show [s]"
+    )
+    speed: float = Field(1.0, ge=0.05, le=20, description="simulated time over real time")
+
+    def link(self) -> Link:
+        """Return a new link that commands the robots.
+
+        Raises:
+            OSError: a port is taken, or no interface has the address.
+        """
+        if self.simulator == "grsim":
+            return GrSimLink(self.host, self.endpoints, self.interface)
+        return ProtocolLink(self.host, self.endpoints) if self.simulator == "protocol" else Link()

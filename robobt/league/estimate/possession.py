@@ -1,0 +1,121 @@
+"""Who touches, has or carries the ball, judged by positions and break-beam sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, hypot, sin
+
+from robobt.league.estimate.ball_track import BallMotion
+from robobt.league.estimate.robot_track import RobotMotion
+from robobt.sim.settings import BodySettings
+from robobt.world.geometry import to_robot_frame
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
+
+_MOUTH_SLACK = 0.004
+"""Added to the depth in which the ball counts as in the mouth, for the estimate's own error [m]."""
+
+_HOLD_SLACK, _HOLD_SPEED = 0.012, 0.5
+"""A ball this close to the mouth and this slow relative to it is carried [m, m/s]."""
+
+_TOUCH_GAP = 0.006
+"""Gap between hull and ball that counts as a touch [m]."""
+
+_PUSH_GAP = 0.05
+"""Gap between hull and ball within which the robot may change the ball's motion [m]."""
+
+_FEEDBACK_REACH = 0.05
+"""A robot's break-beam sensor is trusted while the ball is seen this close to its mouth [m]."""
+
+
+@dataclass(slots=True)
+class Hold:
+    """The robot that carries the ball, and the ball's place in that robot's frame [m]."""
+
+    robot: RobotId
+    ahead: float
+    aside: float
+
+    def ball(self, m: RobotMotion) -> BallMotion:
+        """Return the motion of the carried ball, given that of the robot."""
+        c, s = cos(m.heading), sin(m.heading)
+        dx, dy = c * self.ahead - s * self.aside, s * self.ahead + c * self.aside
+        return BallMotion(m.x + dx, m.y + dy, m.vx - m.omega * dy, m.vy + m.omega * dx)
+
+
+class Possession:
+    """Decides who has the ball.
+
+    Args:
+        body: shape of the robots.
+
+    Attributes:
+        hold: who carries the ball, None when nobody does.
+        last_touch: who touched it last, None before the first touch.
+        feedback: last report of each robot's break-beam sensor.
+    """
+
+    def __init__(self, body: BodySettings) -> None:
+        self._body = body
+        self.hold: Hold | None = None
+        self.last_touch: RobotId | None = None
+        self.feedback: dict[RobotId, bool] = {}
+
+    def update(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> None:
+        """Judge anew from the estimates at the ball's last detection."""
+        self.hold = None
+        reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
+        for robot, m in motions.items():
+            if hypot(ball.x - m.x, ball.y - m.y) > reach:
+                continue
+            self.last_touch = robot
+            ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
+            # The mouth's own velocity where the ball lies.
+            vx, vy = m.vx - m.omega * (ball.y - m.y), m.vy + m.omega * (ball.x - m.x)
+            slow = hypot(ball.vx - vx, ball.vy - vy) < _HOLD_SPEED
+            if slow and self._in_mouth(ahead, aside, _HOLD_SLACK):
+                self.hold = Hold(robot, ahead, aside)
+
+    def has_ball(self, robot: RobotId, m: RobotMotion, ball: BallMotion) -> bool:
+        """Return whether a robot has the ball, by its sensor where that is plausible."""
+        ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
+        reported = self.feedback.get(robot)
+        if reported is not None and self._in_mouth(ahead, aside, _FEEDBACK_REACH):
+            return reported
+        return self._in_mouth(ahead, aside, _MOUTH_SLACK)
+
+    def _in_mouth(self, ahead: float, aside: float, slack: float) -> bool:
+        body = self._body
+        depth = body.face + BALL_RADIUS + body.sensor_depth + slack
+        return 0.0 < ahead <= depth and abs(aside) <= body.mouth_width / 2
+
+
+def near_robot(ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> bool:
+    """Return whether a robot is close enough to push or kick the ball."""
+    reach = ROBOT_RADIUS + BALL_RADIUS + _PUSH_GAP
+    return any(hypot(ball.x - m.x, ball.y - m.y) < reach for m in motions.values())
+
+
+def stop_at_robots(
+    before: BallMotion, after: BallMotion, motions: Mapping[RobotId, RobotMotion]
+) -> BallMotion:
+    """Return a predicted ball, stopped at the first robot in its way."""
+    reach = ROBOT_RADIUS + BALL_RADIUS
+    dx, dy = after.x - before.x, after.y - before.y
+    way = dx * dx + dy * dy
+    if way < 1e-8:
+        return after
+    first, met = 1.0, None
+    for m in motions.values():
+        ox, oy = before.x - m.x, before.y - m.y
+        outside = ox * ox + oy * oy - reach * reach
+        along = ox * dx + oy * dy
+        root = along * along - way * outside
+        if outside <= 0.0 or along >= 0.0 or root < 0.0:
+            continue
+        share = (-along - root**0.5) / way
+        if share < first:
+            first, met = share, m
+    if met is None:
+        return after
+    return BallMotion(before.x + dx * first, before.y + dy * first, met.vx, met.vy)

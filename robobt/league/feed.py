@@ -1,0 +1,213 @@
+"""What is received from a field: vision or tracked frames, and the game controller's messages."""
+
+from __future__ import annotations
+
+import select
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from math import pi
+
+from robobt.league.connection import Connection
+from robobt.league.estimate.clocks import CameraClocks, VisionClock
+from robobt.league.estimate.filter import VisionFilter
+from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.sockets import Receiver
+from robobt.league.wire.tracker import read_tracked
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
+from robobt.sim.settings import SimSettings
+from robobt.world.field import FieldGeometry
+from robobt.world.game import OPEN_PLAY, GameState
+from robobt.world.geometry import wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.state import Frame, RobotId
+
+ALL_CAMERAS = 0.002
+"""How long a frame waits for those of the other cameras [s]."""
+
+_HORIZON = 0.25
+"""Longest prediction beyond the last capture [s]."""
+
+_MAX_READING = 0.004
+"""How long useless packets are read at a time: a flood must not delay the commands [s]."""
+
+
+class Feed:
+    """Receives from a field and estimates its state.
+
+    Args:
+        connection: how the field is reached.
+        field: dimensions until the vision reports others.
+        settings: physics to expect there.
+        limits: of individual robots, where they differ.
+        clock: monotonic seconds.
+
+    Attributes:
+        filter: the estimate, in world coordinates.
+        frames: how many camera frames were used.
+        fresh: whether one was used since this was last set to False.
+        arrived: when the newest of them arrived [s].
+        heard: when a frame was last used [s].
+        referee: the game controller's state, None without one.
+
+    Raises:
+        OSError: a port is taken, or no interface has the address.
+    """
+
+    def __init__(
+        self,
+        connection: Connection,
+        field: FieldGeometry,
+        settings: SimSettings,
+        limits: Mapping[RobotId, RobotLimits],
+        clock: Callable[[], float],
+    ) -> None:
+        self.connection = connection
+        self.filter = VisionFilter(field, settings, limits)
+        self.frames = 0
+        self.fresh = False
+        self.arrived = self.heard = -1e9
+        self.referee = RefereeFollower() if connection.follow_referee else None
+        self._clock = clock
+        self._cameras: dict[int, float] = {}
+        self._vision_clock, self._camera_clocks = VisionClock(), CameraClocks()
+        self._restarts = 0
+        self._tracker: str | None = None
+        endpoints, interface = connection.endpoints, connection.interface
+        self._source = endpoints.vision if connection.source == "vision" else endpoints.tracker
+        with ExitStack() as opened:
+            self._vision = opened.enter_context(Receiver(*self._source, interface))
+            self._sources = [self._vision]
+            if self.referee is not None:
+                self._sources.append(opened.enter_context(Receiver(*endpoints.referee, interface)))
+            self._opened = opened.pop_all()
+
+    def close(self) -> None:
+        """Release all ports."""
+        self._opened.close()
+
+    def counts(self) -> dict[str, PacketCounts]:
+        """Return what happened to the packets, by port."""
+        counts: dict[str, PacketCounts] = {self.connection.source: self._vision.counts}
+        if self.referee is not None:
+            counts |= {"referee_port": self._sources[1].counts, "referee": self.referee.counts}
+        return counts
+
+    def now(self) -> float:
+        """Return this machine's clock at the field's speed [s]."""
+        return self._clock() * self.connection.speed
+
+    def vision_now(self) -> float:
+        """Return the present time on the vision's clock [s]."""
+        captured, offset = self.filter.captured, self._vision_clock.offset()
+        if captured is None or offset is None:
+            return self.now()
+        there = self.now() - offset + self.connection.latency
+        return min(max(there, captured), captured + _HORIZON)
+
+    def sign(self) -> float:
+        """Return -1 where blue defends +x, and coordinates have to be turned by 180 degrees; else 1."""
+        positive = self.connection.blue_on_positive_half
+        if positive is None and self.referee is not None:
+            positive = self.referee.blue_on_positive_half
+        return -1.0 if positive else 1.0
+
+    def frame_at(self, time: float) -> Frame:
+        """Return the field at a time on the vision's clock, seen from blue's side."""
+        captured = self.filter.captured
+        frame = self.filter.frame_at(time if captured is None else min(time, captured + _HORIZON))
+        frame.game = self._game(frame)
+        return frame
+
+    def complete(self, period: float) -> bool:
+        """Return whether every camera's frame of this instant has arrived, or is overdue."""
+        captured = self.filter.captured
+        if not self.fresh or captured is None:
+            return False
+        recent = [time for time in self._cameras.values() if time > captured - 0.5]
+        if all(time > captured - period / 2 for time in recent):
+            return True
+        return self.now() - self.arrived >= ALL_CAMERAS * self.connection.speed
+
+    def no_frames(self, seconds: float) -> str:
+        """Return the error message for a field that was silent for so long."""
+        dropped = self._vision.counts.dropped
+        heard = f" ({dropped} packets were dropped)" if dropped else ""
+        return f"no {self.connection.source} at {self._source} for {seconds:g} s{heard}: start the simulator"
+
+    def receive(self, wait: float) -> None:
+        """Wait up to ``wait`` seconds of this machine's clock for packets, and process them."""
+        if not select.select(self._sources, [], [], max(0.0, wait))[0]:
+            return
+        arrived = self.now()
+        end = self._clock() + _MAX_READING
+        for packet in self._vision.receive():
+            seen = self._read(packet.data)
+            if seen is None:
+                if self._clock() > end:
+                    break
+                continue
+            if seen.field is not None and seen.field != self.filter.field:
+                self.filter.field = seen.field
+            if seen.frame is not None:
+                self.add(seen.frame, arrived)
+        if self.referee is not None:
+            for packet in self._sources[1].receive():
+                self.referee.read(packet.data)
+
+    def add(self, frame: CameraFrame, arrived: float) -> None:
+        """Use a camera's frame that arrived at a time of this machine's clock [s]."""
+        captured = self.filter.captured
+        apart = self._camera_clocks.shift(frame.camera, arrived, frame.sent)
+        frame.captured += apart
+        frame.sent += apart
+        if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame)):
+            return
+        self.frames += 1
+        self.heard = arrived
+        if self.filter.restarts != self._restarts:
+            self._restarts = self.filter.restarts
+            self._vision_clock.clear()
+            self._camera_clocks.clear()
+            self._cameras.clear()
+        self._vision_clock.update(arrived, frame.sent)
+        if captured is None or frame.captured > captured or not self.fresh:
+            self.arrived = arrived
+        self.fresh = True
+        self._cameras[frame.camera] = frame.captured
+
+    def _read(self, data: bytes) -> VisionPacket | None:
+        if self.connection.source == "vision":
+            return read_vision(data, self._vision.counts)
+        tracked = read_tracked(data, self.filter.field, self._vision.counts)
+        # Several trackers may send; the first is followed.
+        if tracked is None or tracked[0] != (self._tracker or tracked[0]):
+            return None
+        self._tracker = tracked[0]
+        return VisionPacket(_detections(tracked[1]), None)
+
+    def _game(self, frame: Frame) -> GameState:
+        if self.referee is None:
+            return OPEN_PLAY
+        if self.sign() > 0.0:
+            return self.referee.watch(frame)
+        return self.referee.watch(frame.mirrored()).mirrored()
+
+
+def _turned(frame: CameraFrame) -> CameraFrame:
+    """Return a frame in coordinates turned by 180 degrees."""
+    balls = [BallDetection(-ball.x, -ball.y, ball.confidence) for ball in frame.balls]
+    robots = []
+    for robot in frame.robots:
+        heading = None if robot.heading is None else wrap_angle(robot.heading + pi)
+        robots.append(RobotDetection(robot.robot, -robot.x, -robot.y, heading, robot.confidence))
+    return CameraFrame(frame.camera, frame.number, frame.captured, frame.sent, balls, robots)
+
+
+def _detections(frame: Frame) -> CameraFrame:
+    """Return a tracked frame as the detections of a single camera that sees everything."""
+    robots = [
+        RobotDetection(robot, state.x, state.y, state.heading) for robot, state in frame.robots().items()
+    ]
+    balls = [BallDetection(frame.ball.x, frame.ball.y)]
+    return CameraFrame(0, 0, frame.time, frame.time, balls, robots)

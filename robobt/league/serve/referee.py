@@ -1,0 +1,36 @@
+"""The referee of a served field."""
+
+from __future__ import annotations
+
+from robobt.league.serve.served_field import ServedField
+from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.match.referee.referee import Referee
+from robobt.match.referee.settings import RefereeSettings
+from robobt.world.game import Team
+
+_REPEAT = 6
+"""Frames from one referee message to the next while nothing changes."""
+
+
+class ServedReferee:
+    """Referees a served field and puts the ball down for restarts.
+
+    Attributes:
+        referee: the match's referee.
+    """
+
+    def __init__(self, field: ServedField, settings: RefereeSettings) -> None:
+        self.referee = Referee(field.field, settings)
+        self._field = field
+        self._publisher = RefereePublisher({team: settings.keeper(team).number for team in Team})
+        self._frames = 0
+
+    def judge(self, timestamp: float) -> bytes | None:
+        """Judge the field after a step; return the message if one is due."""
+        before = self.referee.game
+        decision = self.referee.update(self._field.truth())
+        if decision.place_ball is not None:
+            self._field.place_ball(*decision.place_ball)
+        due = decision.game != before or self._frames % _REPEAT == 0
+        self._frames += 1
+        return self._publisher.write(decision.game, timestamp) if due else None
