@@ -16,8 +16,8 @@ from py_trees.decorators import Inverter
 from py_trees.trees import BehaviourTree
 from py_trees.visitors import SnapshotVisitor
 
-from robobt.tree import bind, engine
-from robobt.tree.engine import FastTree, compile_tree
+from robobt.tree import bind
+from robobt.tree.engine import FastTree, compile_tree, composites, dispatch, leaves, plan
 from robobt.tree.nodes import CommittingSelector, Cooldown, Gate, ParallelCount, SequenceWithMemory, Switch
 from tests.tree.random_trees import Log, Told, random_tree
 
@@ -94,40 +94,70 @@ def test_random_trees_live_the_same_life(block: int) -> None:
         assert difference is None, difference
 
 
+MODULES = (leaves, plan, composites)
+
 FAULTS = {
     "a restarted sequence does not reset its children": (
-        "_sequence",
-        "step.stop(_I)\n                    else",
+        "sequence_closures",
+        "step.stop(INVALID)\n                    else",
         "pass\n                    else",
     ),
-    "a restarted sequence does not reset its bare leaves": ("_sequence", "child.status = _I", "pass"),
-    "a bare leaf keeps its old status": ("_sequence", "child.status = status", "pass"),
-    "a bare leaf of a selector keeps its old status": ("_selector", "child.status = status", "pass"),
+    "a restarted sequence does not reset its bare leaves": (
+        "sequence_closures",
+        "child.status = INVALID",
+        "pass",
+    ),
+    "a bare leaf keeps its old status": ("sequence_closures", "child.status = status", "pass"),
+    "a bare leaf of a selector keeps its old status": (
+        "selector_closures",
+        "child.status = status",
+        "pass",
+    ),
     "a reactive sequence leaves later siblings running": (
-        "_sequence",
+        "sequence_closures",
         "if not node.memory and",
         "if False and",
     ),
-    "a selector does not interrupt lower priorities": ("_selector", "if previous is not child:", "if False:"),
-    "a selector forgets its place": ("_selector", "if node.memory and children:", "if False:"),
-    "a parallel leaves children running": ("_parallel", "if step.child.status is _R:", "if False:"),
+    "a selector does not interrupt lower priorities": (
+        "selector_closures",
+        "if previous is not child:",
+        "if False:",
+    ),
+    "a selector forgets its place": (
+        "selector_closures",
+        "if node.memory and children:",
+        "if False:",
+    ),
+    "a parallel leaves children running": (
+        "_parallel",
+        "if step.child.status is RUNNING:",
+        "if False:",
+    ),
     "a parallel ignores synchronise": (
         "_parallel",
-        "if not (synchronise and step.child.status is _S):",
+        "if not (synchronise and step.child.status is SUCCESS):",
         "if True:",
     ),
-    "a decorator does not stop its child": ("_decorator", "if decorated.status is _R:", "if False:"),
-    "a leaf is not terminated": ("_leaf", "if terminate is not None and status is not _R:", "if False:"),
+    "a decorator does not stop its child": (
+        "decorator_closures",
+        "if decorated.status is RUNNING:",
+        "if False:",
+    ),
+    "a leaf is not terminated": (
+        "leaf_closures",
+        "if terminate is not None and status is not RUNNING:",
+        "if False:",
+    ),
     "a leaf is initialised at every tick": (
-        "_leaf",
-        "if initialise is not None and node.status is not _R:",
+        "leaf_closures",
+        "if initialise is not None and node.status is not RUNNING:",
         "if initialise is not None:",
     ),
-    "a leaf's start is forgotten": ("_lifecycle", '_inherits(node, "on_start")', "True"),
-    "a leaf's end is forgotten": ("_lifecycle", 'and _inherits(node, "on_done")', ""),
-    "a leaf's interruption is forgotten": ("_lifecycle", 'and _inherits(node, "on_interrupt")', ""),
-    "a leaf's own initialise is forgotten": ("_lifecycle", '_inherits(node, "initialise")', "True"),
-    "a leaf's own terminate is forgotten": ("_lifecycle", '_inherits(node, "terminate") and', ""),
+    "a leaf's start is forgotten": ("lifecycle", '_inherits(node, "on_start")', "True"),
+    "a leaf's end is forgotten": ("lifecycle", 'and _inherits(node, "on_done")', ""),
+    "a leaf's interruption is forgotten": ("lifecycle", 'and _inherits(node, "on_interrupt")', ""),
+    "a leaf's own initialise is forgotten": ("lifecycle", '_inherits(node, "initialise")', "True"),
+    "a leaf's own terminate is forgotten": ("lifecycle", '_inherits(node, "terminate") and', ""),
     "a guard is not checked": ("_eternal_guard", "if result:", "if True:"),
     "a generator is ticked to its end": ("_until", "child.status in ends", "False"),
     "an unseen child counts by its status": ("_until", "return otherwise", "return child.status"),
@@ -137,17 +167,18 @@ FAULTS = {
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     function, old, new = FAULTS[fault]
-    source = inspect.getsource(getattr(engine, function))
+    module = next(module for module in MODULES if hasattr(module, function))
+    sound = getattr(module, function)
+    source = inspect.getsource(sound)
     assert source.count(old) >= 1
-    scope = dict(vars(engine))
+    scope = dict(vars(module))
     exec(source.replace(old, new), scope)
-    known = [
-        (tick, stop, scope[function] if make.__name__ == function else make)
-        for tick, stop, make in engine._KNOWN
-    ]
-    monkeypatch.setattr(engine, "_KNOWN", known)
-    if function in ("_decorator", "_lifecycle", "_until"):
-        monkeypatch.setattr(engine, function, scope[function])
+    faulty = scope[function]
+    known = [known._replace(make=faulty) if known.make is sound else known for known in dispatch._KNOWN]
+    monkeypatch.setattr(dispatch, "_KNOWN", known)
+    for user in MODULES:
+        if hasattr(user, function):
+            monkeypatch.setattr(user, function, faulty)
     assert any(first_difference(seed, 25) is not None for seed in range(1000))
 
 

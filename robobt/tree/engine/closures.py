@@ -1,0 +1,119 @@
+"""Closures that tick and stop a node, and what all makers of them share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Protocol, TypeAlias
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from robobt.tree.leaf import Leaf, no_status
+
+Tick: TypeAlias = Callable[[], Status]
+Stop: TypeAlias = Callable[[Status], None]
+Visit: TypeAlias = Callable[[Behaviour], None]
+Hook: TypeAlias = Callable[..., None]
+"""A node's ``initialise`` or ``terminate``."""
+
+SUCCESS, FAILURE, RUNNING, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
+
+
+class BringsClosures(Protocol):
+    """A class with a ``tick`` of its own that offers closures in place of its generator."""
+
+    def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
+        """Return functions that do to this node what its ``tick`` and its ``stop`` do.
+
+        Children are compiled by :func:`~robobt.tree.engine.dispatch.compile_node`. A subclass that
+        overrides ``tick`` or ``stop`` without ``closures`` is ticked through its generator.
+
+        Args:
+            visit: called with this node whenever it has been ticked; the closures of its
+                children do the same for them.
+        """
+
+
+class Marks:
+    """A :data:`Visit` that need only be told of some nodes, so that all others lose no time over it.
+
+    Which nodes a tick reaches and what they have afterwards follows from what the leaves
+    return, as long as every node on the way is of a known kind. So a tick at which each
+    leaf returned what it did when it was ticked last has left the tree as it was, but for
+    what nodes say.
+
+    Args:
+        nodes: the nodes that are asked for.
+
+    Attributes:
+        nodes: those.
+        seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among
+            them; for its owner to clear.
+        changed: whether statuses, words or the nodes that are ticked may be other than after
+            the tick before; for its owner to set to False after a tick.
+        words: unless ``changed``, the nodes that said something else than at the tick before,
+            which is all that is new; for its owner to clear.
+    """
+
+    def __init__(self, nodes: Iterable[Behaviour]) -> None:
+        self.nodes = list(nodes)
+        self._asked = {id(node) for node in self.nodes}
+        self.seen: list[Behaviour] = []
+        self._note = self.seen.append
+        self.changed = True
+        self.words: list[Behaviour] = []
+
+    def __call__(self, node: Behaviour) -> None:
+        """Note that ``node`` has been ticked."""
+        self._note(node)
+
+    def of(self, node: Behaviour) -> Visit | None:
+        """Return what to call with this node; None when it is not asked for."""
+        return self._note if id(node) in self._asked else None
+
+    def whenever(self, tick: Tick) -> Tick:
+        """Return a tick that marks the tree as changed, for nodes that are not followed."""
+
+        def changing() -> Status:
+            self.changed = True
+            return tick()
+
+        return changing
+
+
+def marks_of(visit: Visit | None) -> Marks | None:
+    """Return the marks among the visits, None where others are asked for."""
+    return visit if isinstance(visit, Marks) else None
+
+
+def shown(node: Behaviour, visit: Visit | None) -> Visit | None:
+    """Return what to call when this node has been ticked, None for nothing."""
+    return visit.of(node) if isinstance(visit, Marks) else visit
+
+
+def own_method(node: Behaviour, method: str) -> Hook | None:
+    """Return the node's bound method, None where it is py_trees' own that does nothing."""
+    if has_method_of(Behaviour, node, method):
+        return None
+    own: Hook = getattr(node, method)
+    return own
+
+
+def has_method_of(cls: type, node: Behaviour, method: str) -> bool:
+    """Return whether this method of the node is the class's, not one of a subclass or its own."""
+    # Not looked up in the node's __dict__: asking for that makes CPython 3.11 build it, and
+    # every attribute of the node is slower to reach from then on.
+    found = getattr(node, method)
+    return getattr(found, "__self__", None) is node and found.__func__ is getattr(cls, method)
+
+
+def not_a_status(node: Behaviour, status: object) -> Status:
+    """Return INVALID, after py_trees' complaint that ``update`` returned something else.
+
+    Raises:
+        TypeError: the node is a :class:`Leaf`, which has to return a status.
+    """
+    if isinstance(node, Leaf):
+        raise no_status(status)
+    node.logger.error(f"A behaviour returned an invalid status, setting to INVALID [{status}][{node.name}]")
+    return INVALID

@@ -1,0 +1,86 @@
+"""A py_trees ``BehaviourTree`` that is ticked by compiled closures."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+from py_trees.trees import BehaviourTree
+
+from robobt.tree.engine.closures import INVALID, RUNNING, Tick
+from robobt.tree.engine.dispatch import compile_tree
+
+_log = logging.getLogger(__name__)
+
+
+class FastTree(BehaviourTree):
+    """A py_trees ``BehaviourTree`` ticked by :func:`compile_tree`; visitors and handlers as ever.
+
+    When a node raises, the tree is abandoned and the visitors are finalised before the
+    exception goes on.
+    """
+
+    def __init__(self, root: Behaviour) -> None:
+        super().__init__(root)
+        self._compiled: Tick | None = None
+        self._compiled_for: tuple[Behaviour, bool] | None = None
+
+    def tick(
+        self,
+        pre_tick_handler: Callable[[BehaviourTree], None] | None = None,
+        post_tick_handler: Callable[[BehaviourTree], None] | None = None,
+    ) -> None:
+        """Tick once, as :meth:`py_trees.trees.BehaviourTree.tick`."""
+        if pre_tick_handler is not None:
+            pre_tick_handler(self)
+        for handler in self.pre_tick_handlers:
+            handler(self)
+        for visitor in self.visitors:
+            visitor.initialise()
+        wanted = (self.root, any(not visitor.full for visitor in self.visitors))
+        if self._compiled is None or self._compiled_for != wanted:
+            self._compiled = compile_tree(self.root, self._visit if wanted[1] else None)
+            self._compiled_for = wanted
+        try:
+            self._compiled()
+        except BaseException:
+            # Ctrl-C as well: whoever goes on after it finds a tree at rest.
+            abandon(self.root)
+            for visitor in self.visitors:
+                visitor.finalise()
+            raise
+        full = [visitor for visitor in self.visitors if visitor.full]
+        if full:
+            for node in self.root.iterate():
+                for visitor in full:
+                    node.visit(visitor)
+        for visitor in self.visitors:
+            visitor.finalise()
+        for handler in self.post_tick_handlers:
+            handler(self)
+        if post_tick_handler is not None:
+            post_tick_handler(self)
+        self.count += 1
+
+    def _visit(self, node: Behaviour) -> None:
+        for visitor in self.visitors:
+            if not visitor.full:
+                node.visit(visitor)
+
+
+def abandon(root: Behaviour) -> None:
+    """Bring a tree that an exception left half-ticked to rest: every node is INVALID afterwards.
+
+    Nodes that were running are stopped, so they hear of their interruption; what
+    they raise then is logged and keeps no other node from being stopped.
+    """
+    # Children first, as composites stop; each is asked for itself, for a half-ticked
+    # parent does not know that its child runs.
+    for node in root.iterate():
+        if node.status is RUNNING:
+            try:
+                node.stop(INVALID)
+            except (Exception, SystemExit):
+                _log.warning("%r raised again while its tree was being stopped", node.name, exc_info=True)
+        node.status = INVALID

@@ -1,0 +1,108 @@
+"""The children of a composite as its closures know them."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Composite, Selector, Sequence
+
+from robobt.tree.engine.closures import (
+    FAILURE,
+    INVALID,
+    RUNNING,
+    SUCCESS,
+    Marks,
+    Stop,
+    Tick,
+    Visit,
+    own_method,
+    shown,
+)
+from robobt.tree.engine.dispatch import AS_IT_IS, compile_node, known_as
+from robobt.tree.engine.leaves import leaf_closures, lifecycle
+
+
+class Step:
+    """One child in a composite's plan.
+
+    Attributes:
+        child: the child.
+        tick, stop: its closures.
+        update: set for a leaf of which nothing else is to be called, so that a
+            composite may spare itself the closures.
+        status, said: what that leaf returned and said last, as far as anybody asks for it.
+    """
+
+    __slots__ = ("child", "said", "status", "stop", "tick", "update")
+
+    def __init__(self, child: Behaviour, visit: Visit | None, parent: Behaviour) -> None:
+        self.child = child
+        self.tick, self.stop = compile_node(child, visit)
+        if type(parent).tick in _LEAVES_AT and known_as(child) is AS_IT_IS:
+            tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
+            self.tick = visit.whenever(tick) if isinstance(visit, Marks) else tick
+        self.update: Tick | None = None
+        self.status: Status | None = None
+        self.said: str | None = None
+        if shown(child, visit) is None and known_as(child).make is leaf_closures:
+            initialise, update, terminate = lifecycle(child)
+            self.update = update if initialise is terminate is None else None
+
+
+Plan: TypeAlias = list[Step]
+
+
+def _until(child: Behaviour, visit: Visit | None, ends: tuple[Status, ...], otherwise: Status) -> Tick:
+    """Return the tick of a child with a ``tick`` of its own, left as py_trees' composites leave it.
+
+    They look at the child each time it yields itself. What its generator does after
+    they have seen enough does not happen, and one that never shows a status they
+    wait for has let them pass.
+    """
+
+    def tick() -> Status:
+        for ticked in child.tick():
+            if visit is not None:
+                visit(ticked)
+            if ticked is child and child.status in ends:
+                return child.status
+        return otherwise
+
+    return tick
+
+
+_LEAVES_AT: dict[object, tuple[tuple[Status, ...], Status]] = {
+    Sequence.tick: ((FAILURE, RUNNING, INVALID), SUCCESS),
+    Selector.tick: ((SUCCESS, RUNNING), FAILURE),
+}
+"""The statuses of a child upon which a composite goes no further, and what counts when none of them comes."""
+
+
+def composite_stop(node: Composite, visit: Visit | None, children: list[Behaviour], plan: Plan) -> Stop:
+    """Return what ``Composite.stop`` does; ``children`` and ``plan`` are those that :func:`replan` keeps."""
+    terminate = own_method(node, "terminate")
+
+    def stop(status: Status) -> None:
+        if status is INVALID:
+            node.current_child = None
+            if node.children != children:
+                replan(node, visit, children, plan)
+            for step in plan:
+                if step.child.status is not INVALID:
+                    step.stop(INVALID)
+        if terminate is not None:
+            terminate(status)
+        node.status = status
+
+    return stop
+
+
+def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
+    """Bring a composite's closures up to its children; in place, for the closures share them."""
+    known = {step.child.id: step for step in plan}
+    if isinstance(visit, Marks):
+        visit.changed = True
+    children[:] = node.children
+    plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]
