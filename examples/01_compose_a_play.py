@@ -3,14 +3,12 @@
 python examples/01_compose_a_play.py
 """
 
-from robobt.match import Scenario, play_match
-from robobt.plays import PLAYS
+import robobt
 from robobt.skills import GoToBall, HasBall, KickToTarget, PickUpBall, SelectShot
 from robobt.tree import Behaviour, Selector, Sequence, tree_text
-from robobt.worlds import sim_world
 
 
-@PLAYS.register("my_striker")
+@robobt.PLAYS.register("my_striker")
 def my_striker() -> Behaviour:
     """With the ball: choose a shot and take it. Without: go and get it.
 
@@ -22,7 +20,7 @@ def my_striker() -> Behaviour:
     return Selector("my striker", memory=False, children=[score, win])
 
 
-SCENARIO = Scenario.model_validate(
+SCENARIO = robobt.Scenario.model_validate(
     {
         "name": "first_play",
         "robots": {"blue": [{"number": 1, "play": "my_striker", "start": {"position": (-2.0, 0.5)}}]},
@@ -34,7 +32,7 @@ SCENARIO = Scenario.model_validate(
 
 def main() -> None:
     print(tree_text(my_striker()))
-    result = play_match(SCENARIO, seed=1, world_factory=sim_world, record="out/first_play.robobt.jsonl")
+    result = robobt.play_match(SCENARIO, seed=1, record="out/first_play.robobt.jsonl")
     print(f"\n{result.outcome} after {result.time:.2f} s")
     print("robobt replay out/first_play.robobt.jsonl --html out/first_play.html   makes a page of it")
 

@@ -8,20 +8,16 @@ Plays the bundled scenario with each shot rater and prints goals with their
 
 import sys
 
-from robobt.match import load_scenario, run_trials, summarise
+import robobt
 from robobt.skills.aim.raters import RATERS
-from robobt.worlds import sim_world
 
 
 def main(trials: int = 40) -> None:
-    scenario = load_scenario("striker_vs_goalie")
+    scenario = robobt.load_scenario("striker_vs_goalie")
     print(f"{scenario.name}, {trials} trials a rater, seed {scenario.seed}")
     for rater in RATERS:
-        striker = scenario.robots.blue[0].model_copy(update={"params": {"rater": rater}})
-        robots = scenario.robots.model_copy(update={"blue": (striker,)})
-        changed = scenario.model_copy(update={"robots": robots})
-        run = run_trials(changed, sim_world, trials)
-        goals = summarise(run.results, changed.seed).goals["blue"].trials
+        run = robobt.run_trials(scenario.with_robot("blue 0", rater=rater), trials)
+        goals = run.summary().goals["blue"].trials
         print(f"  {rater:18} {goals.count:3d} scored   {goals.low:.0%} to {goals.high:.0%}")
 
 

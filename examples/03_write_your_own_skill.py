@@ -9,15 +9,13 @@ A skill takes its parameters in the constructor, names in ``reads`` and
 
 from math import atan2, cos, pi, sin
 
-from robobt.match import Scenario, play_match
+import robobt
 from robobt.motion.pilot import drive
-from robobt.plays import PLAYS
 from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Store
 from robobt.tree import Behaviour, Sequence, Status, TreeRunner
-from robobt.world import DIVISION_B, BallState, Frame, RobotState
-from robobt.worlds import sim_world
+from robobt.world import DIVISION_B
 
 
 @skill
@@ -48,7 +46,7 @@ class CircleBall(Skill):
         return self.run(f"towards ({target[0]:.2f}, {target[1]:.2f})")
 
 
-@PLAYS.register("tease_and_shoot")
+@robobt.PLAYS.register("tease_and_shoot")
 def tease_and_shoot() -> Behaviour:
     """Once around the ball, then get it and shoot; ``memory=True`` goes on where it was."""
     steps = [CircleBall(seconds=4.0), GoToBall(), PickUpBall(), SelectShot(), KickToTarget()]
@@ -57,8 +55,8 @@ def tease_and_shoot() -> Behaviour:
 
 def tick_it_alone() -> None:
     """One skill, one frame made by hand, one tick: how a skill is tested."""
-    me = RobotState(id=1, x=-0.6, y=0.0)
-    frame = Frame(time=0.0, field=DIVISION_B, ball=BallState(0.0, 0.0), own=(me,))
+    me = robobt.RobotState(id=1, x=-0.6, y=0.0)
+    frame = robobt.Frame(time=0.0, field=DIVISION_B, ball=robobt.BallState(0.0, 0.0), own=(me,))
     store = Store(frame, me)
     runner = TreeRunner(CircleBall(), store)
     print(f"alone: {runner.tick().value}, {runner.root.feedback_message}")
@@ -66,7 +64,7 @@ def tick_it_alone() -> None:
 
 
 def play_it() -> None:
-    scenario = Scenario.model_validate(
+    scenario = robobt.Scenario.model_validate(
         {
             "name": "own_skill",
             "robots": {
@@ -75,7 +73,7 @@ def play_it() -> None:
             "ends": {"time_limit": 20.0},
         }
     )
-    result = play_match(scenario, seed=1, world_factory=sim_world)
+    result = robobt.play_match(scenario, seed=1)
     print(f"in a match: {result.outcome} after {result.time:.2f} s")
 
 

@@ -8,15 +8,12 @@ happens, and records the match.
 
 import sys
 
-from robobt.match import Match, load_scenario
-from robobt.worlds import sim_world
+import robobt
 
 
 def main(seconds: float = 60.0) -> None:
-    scenario = load_scenario("six_v_six")
-    ends = scenario.ends.model_copy(update={"time_limit": seconds})
-    scenario = scenario.model_copy(update={"ends": ends})
-    match = Match(scenario, seed=1, world_factory=sim_world, record="out/six_v_six.robobt.jsonl.gz")
+    scenario = robobt.load_scenario("six_v_six").lasting(seconds)
+    match = robobt.Match(scenario, 1, robobt.sim_world, record="out/six_v_six.robobt.jsonl.gz")
     command = None
     with match:  # closes the recording
         while match.tick():

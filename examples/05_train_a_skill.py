@@ -11,11 +11,10 @@ import shutil
 import sys
 from pathlib import Path
 
+import robobt
 from robobt.learning.training.export_run import export_run
 from robobt.learning.training.settings import load_settings
 from robobt.learning.training.train import train
-from robobt.match import load_scenario, run_trials, summarise
-from robobt.worlds import sim_world
 
 
 def main(steps: int = 160_000) -> None:
@@ -26,12 +25,9 @@ def main(steps: int = 160_000) -> None:
     (model,) = export_run(Path("runs/example"), "example", Path("out/models"))
     print(f"written: {model}")
 
-    scenario = load_scenario("table4_trial1_own")
+    scenario = robobt.load_scenario("table4_trial1_own")
     for policy in ("geometric", str(model)):
-        robot = scenario.robots.blue[0].model_copy(update={"params": {"policy": policy}})
-        robots = scenario.robots.model_copy(update={"blue": (robot,)})
-        run = run_trials(scenario.model_copy(update={"robots": robots}), sim_world, 5)
-        figures = summarise(run.results, scenario.seed)
+        figures = robobt.run_trials(scenario.with_robot("blue 0", policy=policy), 5).summary()
         print(f"{policy}: {figures.goals['blue'].trials.count} goals of 5, {figures.time.mean:.2f} s a trial")
 
 

@@ -9,12 +9,11 @@ asks the shipped predictor beside one that does not.
 
 import sys
 
-from robobt.match import load_scenario, run_trials, summarise
+import robobt
 from robobt.shots.collect import CollectionSettings, collect_shots
 from robobt.shots.data import goals, read_shots, shot_inputs
 from robobt.shots.predict import best_predictor
 from robobt.statistics import wilson_interval
-from robobt.worlds import sim_world
 
 
 def main(shots: int = 600, trials: int = 20) -> None:
@@ -28,12 +27,10 @@ def main(shots: int = 600, trials: int = 20) -> None:
     print(f"{len(scored)} shots, {scored.mean():.0%} scored")
     print(f"right about {right} of {len(scored) - train} unseen shots ({low:.0%} to {high:.0%})")
 
-    scenario = load_scenario("deployed_half")
+    scenario = robobt.load_scenario("deployed_half")
     for play in ("attack_main", "attack_nn", "attack_expected"):
-        attacker = scenario.robots.blue[0].model_copy(update={"play": play})
-        robots = scenario.robots.model_copy(update={"blue": (attacker,)})
-        run = run_trials(scenario.model_copy(update={"robots": robots}), sim_world, trials)
-        rate = summarise(run.results, scenario.seed).goals["blue"].trials
+        run = robobt.run_trials(scenario.with_robot("blue 0", play=play), trials)
+        rate = run.summary().goals["blue"].trials
         print(f"  {play:15} {rate.count:3d} of {trials} scored   {rate.low:.0%} to {rate.high:.0%}")
 
 

@@ -11,8 +11,7 @@ import socket
 import subprocess
 import sys
 
-from robobt.match import load_scenario, run_trials, summarise
-from robobt.worlds import world_from
+import robobt
 
 
 def free_ports(count: int) -> list[int]:
@@ -40,11 +39,11 @@ def main(trials: int = 3) -> None:
         assert server.stdout is not None
         print(server.stdout.readline(), end="")  # says that it serves
         address = "league://grsim?" + "&".join(f"{name}={port}" for name, port in ports.items())
-        run = run_trials(load_scenario("striker_vs_goalie"), world_from(address), trials)
+        run = robobt.run_trials(robobt.load_scenario("striker_vs_goalie"), trials, world=address)
     finally:
         server.terminate()
         server.communicate()
-    scored = summarise(run.results, 1).goals["blue"].trials
+    scored = run.summary().goals["blue"].trials
     print(f"{scored.count} of {trials} scored over the network")
 
 

@@ -1,15 +1,21 @@
-"""World factories: from a scenario to the world it is played in.
+"""World factories: from a scenario to the world it is played in, and matches played there.
 
 Above ``match``, which knows no world, and ``sim``, which knows no scenario.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
 from pydantic import ValidationError
 
 from robobt.config.errors import message_of
 from robobt.config.validation import first_problem
+from robobt.match import loop, runner
 from robobt.match.loop import WorldFactory
+from robobt.match.results.results import MatchResult
+from robobt.match.runner import Run
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld
@@ -17,7 +23,7 @@ from robobt.world.protocol import World
 
 
 def sim_world(scenario: Scenario) -> World:
-    """Return the scenario's field and robots in the built-in simulator.
+    """Make the built-in simulator with the scenario's field and robots.
 
     Where its vision or commands are late and the scenario does not say otherwise, the
     frames are predicted to the present (:class:`~robobt.world.prediction.PredictedWorld`).
@@ -56,13 +62,15 @@ SIM = "sim"
 
 
 def world_from(address: str) -> WorldFactory:
-    """Return the factory of an address: "sim", one of the league like ``league://grsim``, or a league log.
+    """Return the factory for the worlds of an address.
 
-    For the league's options see :func:`robobt.league.factory.parse_address`.
-    A log (``*.log``, ``*.log.gz``) is only observed.
+    Args:
+        address: "sim", a field of the league like ``league://grsim`` (options as for
+            :func:`robobt.league.factory.parse_address`), or a league log (``*.log``,
+            ``*.log.gz``), which is only observed.
 
     Raises:
-        robobt.league.factory.AddressError: the address names none of them.
+        robobt.league.factory.AddressError: the address is none of them.
     """
     if address == SIM:
         return sim_world
@@ -74,3 +82,57 @@ def world_from(address: str) -> WorldFactory:
     from robobt.league.factory import LeagueFactory
 
     return LeagueFactory(address, scenario_settings)
+
+
+def play_match(
+    scenario: Scenario,
+    seed: int | None = None,
+    *,
+    world: str | WorldFactory = SIM,
+    record: str | Path | None = None,
+) -> MatchResult:
+    """Play one match to its end.
+
+    Args:
+        scenario: what is played.
+        seed: fixes placement, world and trees; the scenario's by default.
+        world: an address as for :func:`world_from`, or a factory.
+        record: file to record the match to.
+
+    Raises:
+        ScenarioError: the scenario does not fit the world, or its objects find no place.
+        OSError: the recording cannot be written.
+    """
+    return loop.play_match(scenario, scenario.seed if seed is None else seed, _factory(world), record)
+
+
+def run_trials(
+    scenario: Scenario,
+    trials: int | None = None,
+    *,
+    world: str | WorldFactory = SIM,
+    seed: int | None = None,
+    workers: int = 1,
+    out: str | Path | None = None,
+    record: Mapping[int, str | Path] | None = None,
+    on_result: Callable[[MatchResult], None] | None = None,
+) -> Run:
+    """Play a scenario many times.
+
+    Arguments and errors are those of :func:`robobt.match.runner.run_trials`, but for the world.
+
+    Args:
+        scenario: what is played.
+        trials: number of trials; the scenario's by default.
+        world: an address as for :func:`world_from`, or a factory.
+        seed: seed from which the trials' seeds follow; the scenario's by default.
+        workers: number of processes; one is this process itself.
+        out: file to append each result to; trials it holds already are not played again.
+        record: files to record trials to, by trial number.
+        on_result: called with each result as it finishes.
+    """
+    return runner.run_trials(scenario, _factory(world), trials, workers, seed, out, record, on_result)
+
+
+def _factory(world: str | WorldFactory) -> WorldFactory:
+    return world_from(world) if isinstance(world, str) else world

@@ -53,11 +53,12 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path) -> None:
     assert (tmp_path / "six.html").stat().st_size > 100_000
 
 
-def test_the_play_in_it_can_be_built() -> None:
-    (source,) = [block for kind, block in BLOCKS if kind == "python"]
+def test_the_python_in_it_runs_and_plays(capsys: pytest.CaptureFixture[str]) -> None:
+    blocks = [block for kind, block in BLOCKS if kind == "python"]
     scope: dict[str, object] = {}
-    exec(source.replace('"my_striker"', '"readme_striker"'), scope)
+    exec("".join(blocks).replace('"my_striker"', '"readme_striker"'), scope)
     assert scope["my_striker"]().name == "my striker"  # type: ignore[operator]
+    assert "rate=" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)]+)\)", README))))

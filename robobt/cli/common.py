@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ParamSpec
+from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 
 import typer
 from rich.console import Console
@@ -60,10 +60,11 @@ MAX_SEED = 2**53 - 1
 
 log = logging.getLogger("robobt")
 _P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 
 def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
-    """Turns whatever goes wrong in a command into one line on stderr and exit code 1."""
+    """Turn whatever goes wrong in a command into one line on stderr and exit code 1."""
 
     @wraps(command)
     def guarded(*args: _P.args, **kwargs: _P.kwargs) -> None:
@@ -113,18 +114,18 @@ def factory_of(world: str) -> WorldFactory:
     return factory
 
 
-def unknown(name: str, registry: Registry[Any]) -> typer.BadParameter:
+def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:
     """The usage error for a name that is none: the names there are, or why another package's is not."""
     problem = registry.problem_with(name)
     there = f"no {registry.kind} is called {name!r}; there are {', '.join(registry)}"
     return typer.BadParameter(there if problem is None else problem)
 
 
-def parse_assignments(texts: Iterable[str], option: str) -> dict[str, Any]:
+def parse_assignments(texts: Iterable[str], option: str) -> dict[str, object]:
     """What ``name=value`` texts say, the values read as YAML; ``option`` is named in the usage error."""
     from robobt.config.yaml import parse_marked
 
-    given: dict[str, Any] = {}
+    given: dict[str, object] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name:
@@ -151,7 +152,7 @@ def warn(text: str) -> None:
     errors.print(f"[yellow]robobt:[/yellow] {escape(text)}", soft_wrap=True)
 
 
-def print_json(data: Mapping[str, Any]) -> None:
+def print_json(data: Mapping[str, object]) -> None:
     """Print one JSON object, and nothing that JSON has not (NaN, infinity: ValueError)."""
     sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
 

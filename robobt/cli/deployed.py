@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,7 +23,7 @@ from robobt.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from robobt.experiments.deployed import Deployed
 
 
 class Style(StrEnum):
@@ -95,7 +95,7 @@ def deployed(
         say(f"The judged goal line: {picture}")
 
 
-def _print(result: Mapping[str, Any]) -> None:
+def _print(result: Deployed) -> None:
     for speed, plays in result["speeds"].items():
         listed = table(
             f"goalkeeper at {speed} speed",

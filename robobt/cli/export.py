@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -11,6 +11,8 @@ from rich.markup import escape
 from robobt.cli.common import Json, console, errors, one_line_errors, print_json, say, table, warn
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from robobt.models.file import ModelFile
 
 
@@ -105,7 +107,7 @@ def models(
         raise typer.Exit(1)
 
 
-def _data(file: ModelFile) -> dict[str, Any]:
+def _data(file: ModelFile) -> dict[str, object]:
     from robobt.models.file import read_manifest
 
     return {
@@ -177,5 +179,5 @@ def _figure(value: float, unit: str) -> str:
     return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
 
 
-def _assignments(settings: dict[str, Any]) -> str:
+def _assignments(settings: Mapping[str, object]) -> str:
     return ", ".join([f"{name} {value}" for name, value in settings.items()])

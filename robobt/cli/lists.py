@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 from rich.markup import escape
@@ -15,8 +15,12 @@ from robobt.cli.common import Imports, Json, console, import_files, one_line_err
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from robobt.skills.aim.raters import ShotRater
+    from robobt.skills.base import Skill
     from robobt.tree.parameters import Parameter
     from robobt.tree.registry import Registry
+
+_T = TypeVar("_T")
 
 
 def add_to(app: typer.Typer) -> None:
@@ -63,7 +67,7 @@ def skills(
 
     import_files(imports)
 
-    def listed(cls: Any) -> _Listed:
+    def listed(cls: type[Skill]) -> _Listed:
         own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
         return _Listed(_doc(cls), own, {"reads": list(cls.reads), "writes": list(cls.writes)})
 
@@ -88,7 +92,7 @@ def raters(
 
     import_files(imports)
 
-    def listed(cls: Any) -> _Listed:
+    def listed(cls: type[ShotRater]) -> _Listed:
         fields = cls.model_fields.items()
         own = [
             Parameter(
@@ -134,7 +138,7 @@ class _Listed:
 
 
 def _list(
-    kind: str, registry: Registry[Any], name: str | None, as_json: bool, listed: Callable[[Any], _Listed]
+    kind: str, registry: Registry[_T], name: str | None, as_json: bool, listed: Callable[[_T], _Listed]
 ) -> None:
     if name is not None and name not in registry:
         raise unknown(name, registry)
@@ -149,7 +153,7 @@ def _list(
         warn(problem)
 
 
-def _data(name: str, listed: _Listed, package: str | None) -> dict[str, Any]:
+def _data(name: str, listed: _Listed, package: str | None) -> dict[str, object]:
     parameters = [
         {
             "name": parameter.name,
@@ -188,9 +192,10 @@ def _doc(thing: object) -> str:
     return inspect.getdoc(thing) or ""
 
 
-def _plain(value: object) -> Any:
-    """A default as JSON has it."""
+def _plain(value: object) -> object:
+    """Convert a default to what JSON has."""
     try:
-        return json.loads(json.dumps(value))
+        plain: object = json.loads(json.dumps(value))
+        return plain
     except (TypeError, ValueError):
         return str(value)

@@ -6,7 +6,7 @@ import re
 import tempfile
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -32,6 +32,7 @@ from robobt.cli.common import (
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
+    from robobt.match.results.results import Spread
 
 
 class OnError(StrEnum):
@@ -145,7 +146,7 @@ def match(
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
     """
-    from robobt.match import load_scenario, run_trials, summarise
+    from robobt.match import load_scenario, run_trials
     from robobt.worlds import SIM, sim_world, world_from
 
     import_files(imports)
@@ -201,7 +202,7 @@ def match(
             from robobt.match.recording.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
-    summary = summarise(run.results, loaded.seed if seed is None else seed)
+    summary = run.summary()
     if as_json:
         extra = {
             "requested": count,
@@ -280,7 +281,7 @@ def _times(summary: Summary) -> Table:
         if robot.go_to_ball.n:
             spreads = [robot.go_to_ball, robot.shoot, robot.total]
             kicks = robot.kicks.mean or 0.0
-            listed.add_row(name, *[_say_spread(spread) for spread in spreads], f"{kicks:.1f}")
+            listed.add_row(name, *[_spread_text(spread) for spread in spreads], f"{kicks:.1f}")
     return listed
 
 
@@ -294,7 +295,7 @@ def _goals(summary: Summary) -> Table:
     return listed
 
 
-def _say_spread(spread: Any) -> str:
+def _spread_text(spread: Spread) -> str:
     if spread.mean is None:
         return "-"
     return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (var. {spread.variance:.4f})")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -68,7 +68,7 @@ def _print_scenario(scenario: Scenario) -> None:
     say(f"Control every {scenario.period:g} s, {referee}, simulator {scenario.simulator}")
 
 
-def _scenario_data(scenario: Scenario) -> dict[str, Any]:
+def _scenario_data(scenario: Scenario) -> dict[str, object]:
     return {
         "name": scenario.name,
         "description": " ".join(scenario.description.split()),

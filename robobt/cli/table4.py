@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,7 +21,9 @@ from robobt.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
+
+    from robobt.experiments.table4 import Spread, Trial
 
 
 @one_line_errors
@@ -109,13 +111,18 @@ def _check(given: Iterable[str], known: Iterable[str], option: str) -> None:
             raise typer.BadParameter(f"must be one of {there}, not {name!r}", param_hint=option)
 
 
-def _print_trial(trial: str, found: Mapping[str, Any], runs: int) -> None:
+def _print_trial(trial: str, found: Trial, runs: int) -> None:
     times = table(f"trial {trial}, seconds", "to the ball", "shoot", "total", "goals")
-    for name, row in found["paper"].items():
-        figures = [_seconds(row[part], row[f"{part}_s2"]) for part in ("to_ball", "shoot", "total")]
-        times.add_row(f"paper: {name}", *figures, f"{row['goals']:.0f} of 25")
+    for name, paper in found["paper"].items():
+        times.add_row(
+            f"paper: {name}",
+            _seconds(paper["to_ball"], paper["to_ball_s2"]),
+            _seconds(paper["shoot"], paper["shoot_s2"]),
+            _seconds(paper["total"], paper["total_s2"]),
+            f"{paper['goals']:.0f} of 25",
+        )
     for name, row in found["rows"].items():
-        figures = [_spread(row[part]) for part in ("to_ball", "shoot", "total")]
+        figures = [_spread(part) for part in (row["to_ball"], row["shoot"], row["total"])]
         times.add_row(name, *figures, f"{row['goals']['count']} of {runs}")
     console.print(times)
     parts = table(f"trial {trial}, seconds", "approach", "x best", "pick-up", "reached", "goals, %")
@@ -139,7 +146,7 @@ def _print_trial(trial: str, found: Mapping[str, Any], runs: int) -> None:
         )
 
 
-def _spread(part: Mapping[str, Any]) -> str:
+def _spread(part: Spread) -> str:
     return _seconds(part["mean"], part["variance"])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -84,10 +84,11 @@ def tree(
     import_files(imports)
     root = _build(play, param or [])
     written = _write(root, Path(play).stem, [svg, dot, yaml, xml], quiet=as_json)
-    data: dict[str, Any] = {"play": play}
+    data: dict[str, object] = {"play": play}
     wiring = _wiring(root)
+    findings = _findings(root) if lint else []
     if lint:
-        data.update(findings=_findings(root), wiring=wiring)
+        data.update(findings=findings, wiring=wiring)
     else:
         for problem in wiring:
             warn(problem)
@@ -96,7 +97,7 @@ def tree(
     if as_json:
         print_json({**data, "nodes": _nodes(root)})
     elif lint:
-        _print_findings(data)
+        _print_findings(wiring, findings)
     elif statistics is None and not written:
         from robobt.tree.drawing import tree_text
 
@@ -141,7 +142,7 @@ def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool)
     return any(path is not None for path in paths)
 
 
-def _nodes(root: Behaviour) -> list[dict[str, Any]]:
+def _nodes(root: Behaviour) -> list[dict[str, object]]:
     from robobt.tree import node_path, preorder
 
     depths = {root: 0}
@@ -171,16 +172,16 @@ def _findings(root: Behaviour) -> list[dict[str, str]]:
     return [{"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)]
 
 
-def _print_findings(data: dict[str, Any]) -> None:
-    for problem in data["wiring"]:
+def _print_findings(wiring: list[str], findings: list[dict[str, str]]) -> None:
+    for problem in wiring:
         say(problem)
-    for found in data["findings"]:
+    for found in findings:
         say(f"{found['path']}: {found['message']} [{found['rule']}]")
-    if not data["wiring"] and not data["findings"]:
+    if not wiring and not findings:
         say("Nothing found.")
 
 
-def _statistics(play: str, source: str, seed: int | None, *, quiet: bool) -> dict[str, Any]:
+def _statistics(play: str, source: str, seed: int | None, *, quiet: bool) -> dict[str, object]:
     from robobt.match import load_scenario
     from robobt.match.node_statistics import node_statistics
     from robobt.worlds import sim_world

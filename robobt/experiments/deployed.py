@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from statistics import fmean
-from typing import Any
+from typing import TypedDict
 
 from robobt.experiments.goal_map import draw_goal_line
 from robobt.match.loop import Match, WorldFactory
@@ -34,6 +34,53 @@ SEED = 2026
 _SHOOTER, _GOAL = "blue 0", "goal_blue"
 
 
+class Against(TypedDict):
+    """McNemar's test against the first play: trials that only one of them scored in, and two-sided p."""
+
+    only_this: int
+    only_first_play: int
+    p: float
+
+
+class Published(TypedDict):
+    """The paper's goals and shots."""
+
+    goals: int
+    shots: int
+
+
+class Attacker(TypedDict):
+    """One attacker's figures.
+
+    The rate has its 95 % Wilson interval (``low``, ``high``) and the exact one. ``attempts`` are
+    the trials in which it shot, ``time_to_shot`` the mean time from the start to the kick [s],
+    ``waiting`` the mean of what that takes longer than the first play's from the same start [s].
+    """
+
+    goals: int
+    rate: float
+    low: float
+    high: float
+    exact_low: float
+    exact_high: float
+    attempts: int
+    outcomes: dict[str, int]
+    time_to_shot: float | None
+    waiting: float | None
+    errors: int
+    mcnemar: Against | None
+    paper: Published | None
+
+
+class Deployed(TypedDict):
+    """All attackers, by the goalkeeper's speed and then by play."""
+
+    shots: int
+    seed: int
+    goalkeeper: str
+    speeds: dict[str, dict[str, Attacker]]
+
+
 def deployed(
     shots: int = 100,
     seed: int = SEED,
@@ -44,29 +91,21 @@ def deployed(
     goalkeeper: str = "default",
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
-) -> dict[str, Any]:
+) -> Deployed:
     """Play every attacker against the goalkeeper at every speed.
 
     Trial n of every play starts from the same places with the same seed.
 
     Args:
-        shots: trials of each.
-        seed: what they follow from.
-        workers: processes.
-        speeds: of the goalkeeper, "half" and "full"; scenarios ``deployed_half`` and ``deployed_full``.
+        shots: number of trials of each.
+        seed: seed of the trials.
+        workers: number of processes.
+        speeds: speeds of the goalkeeper, "half" and "full" (scenarios ``deployed_half``, ``deployed_full``).
         plays: names of plays that take ``max_distance`` and ``shot_speed``.
         goalkeeper: its style: "default" moves as fast as its robot can and covers the
             angle; "robobulls" with the paper's own pilot.
         progress: called after every trial.
         world: where it is played; one of the league takes one worker.
-
-    Returns:
-        Plain data: ``shots``, ``seed``, ``goalkeeper``, and ``speeds``, by speed and play:
-        ``goals``, ``rate`` with its 95 % Wilson interval ``low`` and ``high`` and the exact one
-        ``exact_low`` and ``exact_high``; ``attempts``, the trials in which it shot;
-        ``outcomes``; ``time_to_shot``, mean time from the start to the kick, and
-        ``waiting``, the mean of what that takes longer than the first play's from the
-        same start [s]; ``mcnemar`` against the first play; ``paper`` (goals, shots).
 
     Raises:
         ScenarioError: a play does not take those parameters.
@@ -75,7 +114,7 @@ def deployed(
     def played(_: MatchResult) -> None:
         progress()
 
-    found: dict[str, Any] = {}
+    found: dict[str, dict[str, Attacker]] = {}
     for speed in speeds:
         first: list[MatchResult] | None = None
         found[speed] = {}
@@ -88,19 +127,14 @@ def deployed(
 
 
 def deployed_scenario(speed: str, play: str, goalkeeper: str = "default") -> Scenario:
-    """The shipped scenario with another attacker and, if asked for, the other goalkeeper's style."""
+    """Return the shipped scenario with another attacker and goalkeeper's style."""
     scenario = load_scenario(f"deployed_{speed}")
-    blue, yellow = scenario.robots.blue[0], scenario.robots.yellow[0]
-    yellow = yellow.model_copy(update={"params": {**yellow.params, "style": goalkeeper}})
-    robots = scenario.robots.model_copy(
-        update={"blue": (blue.model_copy(update={"play": play}),), "yellow": (yellow,)}
-    )
-    return scenario.model_copy(update={"robots": robots})
+    return scenario.with_robot("yellow 0", style=goalkeeper).with_robot(_SHOOTER, play=play)
 
 
 def _figures(
     results: list[MatchResult], baseline: list[MatchResult], paper: tuple[int, int] | None
-) -> dict[str, Any]:
+) -> Attacker:
     goals = [result.outcome == _GOAL for result in results]
     interval = wilson_interval(sum(goals), len(goals))
     exact = clopper_pearson_interval(sum(goals), len(goals))
@@ -110,7 +144,7 @@ def _figures(
         for time, before in zip(times, [one.robots[_SHOOTER].total for one in baseline], strict=True)
         if time is not None and before is not None
     ]
-    against = None
+    against: Against | None = None
     if results is not baseline:
         test = mcnemar(goals, [result.outcome == _GOAL for result in baseline])
         against = {"only_this": test.only_first, "only_first_play": test.only_second, "p": test.p}

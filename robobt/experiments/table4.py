@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot
 from statistics import fmean
-from typing import Any
+from typing import TypedDict, cast
 
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.match.loop import Match, WorldFactory
@@ -20,14 +20,24 @@ from robobt.worlds import sim_world
 TRIALS = ("1", "2")
 """The ball in the centre, and at (0, 1.5) m."""
 
-_FIGURES = ("to_ball", "to_ball_s2", "shoot", "shoot_s2", "total", "total_s2", "goals")
+
+class PaperRow(TypedDict):
+    """A printed row: means [s], variances [s^2] and goals of 25."""
+
+    to_ball: float
+    to_ball_s2: float
+    shoot: float
+    shoot_s2: float
+    total: float
+    total_s2: float
+    goals: float
 
 
-def _row(*figures: float) -> dict[str, float]:
-    return dict(zip(_FIGURES, figures, strict=True))
+def _row(*figures: float) -> PaperRow:
+    return cast(PaperRow, dict(zip(PaperRow.__annotations__, figures, strict=True)))
 
 
-PAPER: dict[str, dict[str, dict[str, float]]] = {
+PAPER: dict[str, dict[str, PaperRow]] = {
     "1": {
         "ddpg": _row(2.9217, 0.0008, 0.2604, 0.0027, 3.1821, 0.0048, 23),
         "baseline": _row(3.4998, 0.0040, 0.2665, 0.0006, 3.7662, 0.0044, 25),
@@ -39,9 +49,81 @@ PAPER: dict[str, dict[str, dict[str, float]]] = {
         "human": _row(3.1691, 0.3725, 1.1236, 0.3481, 4.2927, 1.1300, 14),
     },
 }
-"""The printed rows: means [s], variances [s^2] and goals of 25."""
+"""The paper's rows by trial."""
 
-COMBINATIONS: dict[str, dict[str, Any]] = {
+
+class Spread(TypedDict):
+    """A time over the runs [s]: ``low`` and ``high`` are the 95 % interval of the mean."""
+
+    n: int
+    mean: float | None
+    variance: float | None
+    low: float | None
+    high: float | None
+
+
+class Share(TypedDict):
+    """How many runs did it, with the 95 % Wilson interval of the rate."""
+
+    count: int
+    rate: float
+    low: float
+    high: float
+
+
+class Row(TypedDict):
+    """A combination's figures.
+
+    ``optimum`` is the straight line's time for the approach at the speed and acceleration
+    that it may use [s], ``optimum_ratio`` the mean approach over that.
+    """
+
+    approach: Spread
+    pick_up: Spread
+    to_ball: Spread
+    shoot: Spread
+    total: Spread
+    goals: Share
+    reached: Share
+    shots: Share
+    optimum: float
+    optimum_ratio: float | None
+
+
+class Comparison(TypedDict):
+    """A paired t-test of ``n`` differences [s]."""
+
+    mean: float
+    variance: float
+    t: float
+    degrees: int
+    p: float
+    n: int
+
+
+class Trial(TypedDict):
+    """The table of one trial.
+
+    ``best_hand_written`` is the hand-written combination that is first at the ball, and
+    ``test`` compares the learned one's time to the ball with it.
+    """
+
+    paper: dict[str, PaperRow]
+    rows: dict[str, Row]
+    best_hand_written: str | None
+    test: Comparison | None
+
+
+class Table4(TypedDict):
+    """All of Table 4, by trial."""
+
+    runs: int
+    preset: str
+    realism: str | None
+    trials: dict[str, Trial]
+
+
+COMBINATIONS: dict[str, dict[str, str | None]] = {
     "robobulls": {"style": "robobulls"},
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
     "geometric, kick, quick": {
@@ -111,40 +193,29 @@ def table4(
     trials: Sequence[str] = TRIALS,
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
-) -> dict[str, Any]:
+) -> Table4:
     """Play both trials with every combination.
 
     Run n of every combination has the same seed, so that differences are paired.
 
     Args:
-        runs: of each.
-        seed: what they follow from; by default the scenarios' own.
-        preset: of the simulator.
+        runs: number of runs of each.
+        seed: seed of all runs; the scenarios' own by default.
+        preset: preset of the simulator.
         realism: level of noise, losses and delays; by default the scenarios' own little noise.
         combinations: some of :data:`COMBINATIONS`.
         trials: some of :data:`TRIALS`.
         progress: called after every run.
         world: where it is played.
 
-    Returns:
-        Plain data: ``runs``, ``preset``, ``realism`` and ``trials``, by trial: ``paper``
-        (its rows) and ``rows``, by combination: ``approach``, ``pick_up``, ``to_ball``,
-        ``shoot`` and ``total``, each with ``n``, ``mean``, ``variance`` and the 95 % interval
-        of the mean ``low``, ``high`` [s]; ``goals``, ``reached`` and ``shots``, each with
-        ``count``, ``rate`` and its Wilson interval ``low``, ``high``; ``optimum``, the
-        straight line's time for the approach at the speed and acceleration that it may
-        use, ``optimum_ratio``, the mean approach over that. ``best_hand_written`` is the
-        hand-written combination that is first at the ball, and ``test`` the paired t-test
-        of the learned one's time to the ball against it (difference, variance, t, p, n).
-
     Raises:
         KeyError: no such preset, realism level or combination.
         ScenarioError: a play cannot be made, as where a model is missing.
     """
-    found: dict[str, Any] = {}
+    found: dict[str, Trial] = {}
     for trial in trials:
         attempts: dict[str, list[Attempt]] = {}
-        rows: dict[str, Any] = {}
+        rows: dict[str, Row] = {}
         for name in combinations:
             scenario = table4_scenario(trial, COMBINATIONS[name], preset, realism)
             first = scenario.seed if seed is None else seed
@@ -152,22 +223,21 @@ def table4(
             for run in range(runs):
                 attempts[name].append(play_attempt(scenario, trial_seed(first, run), world))
                 progress()
-            rows[name] = _figures(attempts[name]) | _optimum(scenario, name, attempts[name])
-        found[trial] = {"paper": PAPER[trial], "rows": rows} | _compared(attempts)
+            rows[name] = _row_of(attempts[name], _optimum(scenario, name))
+        best, test = _compared(attempts)
+        found[trial] = {"paper": PAPER[trial], "rows": rows, "best_hand_written": best, "test": test}
     return {"runs": runs, "preset": preset, "realism": realism, "trials": found}
 
 
 def table4_scenario(
-    trial: str, params: Mapping[str, Any], preset: str = "robobulls", realism: str | None = None
+    trial: str, params: Mapping[str, object], preset: str = "robobulls", realism: str | None = None
 ) -> Scenario:
-    """The bundled scenario of a trial with another play's parameters, simulator or noise."""
+    """Return a trial's bundled scenario with another play's parameters, simulator or noise."""
     scenario = load_scenario(f"table4_trial{trial}")
-    shooter = scenario.robots.blue[0].model_copy(update={"params": dict(params)})
     simulator = {**scenario.simulator, "preset": preset}
     if realism is not None:
         simulator["realism"] = realism
-    robots = scenario.robots.model_copy(update={"blue": (shooter,)})
-    return scenario.model_copy(update={"robots": robots, "simulator": simulator})
+    return scenario.model_copy(update={"simulator": simulator}).with_robot(_SHOOTER, params=dict(params))
 
 
 def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world) -> Attempt:
@@ -195,22 +265,28 @@ def _gap(frame: Frame) -> float:
     return hypot(ball.x - robot.x, ball.y - robot.y)
 
 
-def _figures(attempts: Sequence[Attempt]) -> dict[str, Any]:
-    figures: dict[str, Any] = {
-        name: _spread([getattr(attempt, name) for attempt in attempts])
-        for name in ("approach", "pick_up", "to_ball", "shoot", "total")
-    }
-    for name, count in (
-        ("goals", sum(attempt.goal for attempt in attempts)),
-        ("reached", sum(attempt.to_ball is not None for attempt in attempts)),
-        ("shots", sum(attempt.shoot is not None for attempt in attempts)),
-    ):
-        low, high = wilson_interval(count, len(attempts))
-        figures[name] = {"count": count, "rate": count / len(attempts), "low": low, "high": high}
-    return figures
+def _row_of(attempts: Sequence[Attempt], optimum: float) -> Row:
+    approach = _spread(attempt.approach for attempt in attempts)
+    return Row(
+        approach=approach,
+        pick_up=_spread(attempt.pick_up for attempt in attempts),
+        to_ball=_spread(attempt.to_ball for attempt in attempts),
+        shoot=_spread(attempt.shoot for attempt in attempts),
+        total=_spread(attempt.total for attempt in attempts),
+        goals=_share([attempt.goal for attempt in attempts]),
+        reached=_share([attempt.to_ball is not None for attempt in attempts]),
+        shots=_share([attempt.shoot is not None for attempt in attempts]),
+        optimum=optimum,
+        optimum_ratio=None if approach["mean"] is None else approach["mean"] / optimum,
+    )
 
 
-def _spread(given: Iterable[float | None]) -> dict[str, Any]:
+def _share(happened: Sequence[bool]) -> Share:
+    low, high = wilson_interval(sum(happened), len(happened))
+    return {"count": sum(happened), "rate": sum(happened) / len(happened), "low": low, "high": high}
+
+
+def _spread(given: Iterable[float | None]) -> Spread:
     values = [value for value in given if value is not None]
     mean = fmean(values) if values else None
     low, high = mean_interval(values) if len(values) > 1 else (None, None)
@@ -220,8 +296,8 @@ def _spread(given: Iterable[float | None]) -> dict[str, Any]:
     return {"n": len(values), "mean": mean, "variance": variance, "low": low, "high": high}
 
 
-def _optimum(scenario: Scenario, name: str, attempts: Sequence[Attempt]) -> dict[str, Any]:
-    """The straight line's time for what the approach may use; a model's own top speed is on its card."""
+def _optimum(scenario: Scenario, name: str) -> float:
+    """Return the straight line's time at what the approach may use; a model's top speed is on its card."""
     frame = sim_world(scenario)
     with Match(scenario, 0, lambda _: frame) as match:
         start = match.world.truth()
@@ -234,10 +310,7 @@ def _optimum(scenario: Scenario, name: str, attempts: Sequence[Attempt]) -> dict
 
         limits, fastest = ROBOBULLS_LIMITS, ROBOBULLS_LIMITS.max_speed
     strongest = max(limits.acceleration, limits.lateral_acceleration)
-    optimum = float(straight_line_time(_gap(start) - HANDOVER_DISTANCE, fastest, strongest))
-    approaches = [attempt.approach for attempt in attempts if attempt.approach is not None]
-    ratio = fmean(approaches) / optimum if approaches else None
-    return {"optimum": optimum, "optimum_ratio": ratio}
+    return float(straight_line_time(_gap(start) - HANDOVER_DISTANCE, fastest, strongest))
 
 
 def _model_speed() -> float:
@@ -249,11 +322,9 @@ def _model_speed() -> float:
     return action.max_speed
 
 
-def _compared(attempts: Mapping[str, Sequence[Attempt]]) -> dict[str, Any]:
-    """The learned combination against the hand-written one that is first at the ball."""
-    times: dict[str, list[float | None]] = {
-        name: [attempt.to_ball for attempt in played] for name, played in attempts.items()
-    }
+def _compared(attempts: Mapping[str, Sequence[Attempt]]) -> tuple[str | None, Comparison | None]:
+    """Test the learned combination against the hand-written one that is first at the ball."""
+    times = {name: [attempt.to_ball for attempt in played] for name, played in attempts.items()}
     means = {
         name: fmean([time for time in times[name] if time is not None])
         for name in HAND_WRITTEN
@@ -261,11 +332,11 @@ def _compared(attempts: Mapping[str, Sequence[Attempt]]) -> dict[str, Any]:
     }
     best = min(means, key=lambda name: means[name]) if means else None
     if best is None or LEARNED not in times:
-        return {"best_hand_written": best, "test": None}
+        return best, None
     pairs = zip(times[LEARNED], times[best], strict=True)
     differences = [ours - theirs for ours, theirs in pairs if ours is not None and theirs is not None]
     if len(differences) < 2:
-        return {"best_hand_written": best, "test": None}
+        return best, None
     # A share of 0 to correct for leaves the plain paired t-test.
-    test = corrected_resampled_t_test(differences, 0.0)
-    return {"best_hand_written": best, "test": test._asdict() | {"n": len(differences)}}
+    mean, variance, t, degrees, p = corrected_resampled_t_test(differences, 0.0)
+    return best, Comparison(mean=mean, variance=variance, t=t, degrees=degrees, p=p, n=len(differences))

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
 from robobt.experiments.picture import new_figure, save_figure
+from robobt.experiments.table4 import Table4
 
-_PARTS = (("approach", "approach", "C0"), ("pick_up", "pick-up", "C2"), ("shoot", "shoot", "C1"))
+_PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
+    ("approach", "approach", "C0"),
+    ("pick_up", "pick-up", "C2"),
+    ("shoot", "shoot", "C1"),
+)
 
 
-def draw_table4(result: Mapping[str, Any], path: Path) -> None:
+def draw_table4(result: Table4, path: Path) -> None:
     """Draw the times of every row, one panel a trial.
 
     Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
@@ -29,11 +33,11 @@ def draw_table4(result: Mapping[str, Any], path: Path) -> None:
     for i, (trial, found) in enumerate(trials.items()):
         axes = figure.add_subplot(1, len(trials), i + 1)
         labels: list[str] = []
-        for name, row in found["paper"].items():
-            at = len(labels)
-            axes.barh(at, row["to_ball"], color="0.75", hatch="//", edgecolor="white")
-            axes.barh(at, row["shoot"], left=row["to_ball"], color="C1", alpha=0.5, hatch="//", edgecolor="w")
-            labels.append(f"paper: {name}\n{row['goals']:.0f} of 25 goals")
+        for name, printed in found["paper"].items():
+            at, left = len(labels), printed["to_ball"]
+            axes.barh(at, left, color="0.75", hatch="//", edgecolor="white")
+            axes.barh(at, printed["shoot"], left=left, color="C1", alpha=0.5, hatch="//", edgecolor="w")
+            labels.append(f"paper: {name}\n{printed['goals']:.0f} of 25 goals")
         for name, row in found["rows"].items():
             at, left = len(labels), 0.0
             for part, _, color in _PARTS:
@@ -42,9 +46,9 @@ def draw_table4(result: Mapping[str, Any], path: Path) -> None:
                     axes.barh(at, mean, left=left, color=color)
                     left += mean
             total = row["total"]
-            if total["low"] is not None:
-                span = [[total["mean"] - total["low"]], [total["high"] - total["mean"]]]
-                axes.errorbar(total["mean"], at, xerr=span, color="black", capsize=3)
+            mean, low, high = total["mean"], total["low"], total["high"]
+            if mean is not None and low is not None and high is not None:
+                axes.errorbar(mean, at, xerr=[[mean - low], [high - mean]], color="black", capsize=3)
             labels.append(f"{name}\n{row['goals']['count']} of {result['runs']} goals")
         axes.set_yticks(range(len(labels)), labels, fontsize=8)
         axes.invert_yaxis()

@@ -2,44 +2,29 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Self
 
 import numpy as np
 
-from robobt.config.errors import one_line, short_repr
 from robobt.match.ends import EndJudge, Outcome
+from robobt.match.players import Player, make_players
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult, RobotResult
 from robobt.match.scenario.scenario import Scenario
-from robobt.skills.store import Store, TeamStore
-from robobt.tree import TreeError, TreeRunner, node_path
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
-from robobt.world.state import Frame, RobotId, RobotState
-
-_log = logging.getLogger(__name__)
+from robobt.world.state import Frame, RobotId
 
 WorldFactory = Callable[[Scenario], World]
 """Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
-
-
-@dataclass(slots=True)
-class Player:
-    """One robot on the field: its tree and its store."""
-
-    robot: RobotId
-    runner: TreeRunner
-    store: Store
 
 
 class Match:
@@ -77,7 +62,7 @@ class Match:
         placement_seed, world_seed, tree_seeds = np.random.SeedSequence(seed).spawn(3)
         placement = scenario.place(np.random.default_rng(placement_seed))
         self.world.reset(placement, int(world_seed.generate_state(1)[0]))
-        self.players = self._make_players(tree_seeds)
+        self.players = make_players(scenario, self.world.observe(), tree_seeds)
         self.measures = Measures({player.robot: None for player in self.players})
         self.game: GameState = OPEN_PLAY
         self.outcome: Outcome | None = None
@@ -184,20 +169,6 @@ class Match:
             wall_time=wall_time,
         )
 
-    def _make_players(self, seeds: np.random.SeedSequence) -> list[Player]:
-        teams = {team: TeamStore() for team in Team}
-        start = self.world.observe()
-        players = []
-        for robot, setup in self.scenario.robots:
-            # The robot is part of its seed, so one more robot changes nobody else's random numbers.
-            entropy = (*seeds.spawn_key, list(Team).index(robot.team), robot.number)
-            rng = np.random.default_rng(np.random.SeedSequence(seeds.entropy, spawn_key=entropy))
-            store = Store(start, RobotState(robot.number, 0.0, 0.0), rng=rng, team=teams[robot.team])
-            players.append(
-                Player(robot, TreeRunner(setup.build_tree(), store, self.scenario.on_error), store)
-            )
-        return players
-
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
         """Tick every tree once on this frame and return each robot's command, the world left alone.
 
@@ -210,34 +181,19 @@ class Match:
             for me in view.own:
                 player = players.get(me.id)
                 if player is not None:
-                    commands[player.robot] = self._decide_for(player, view, me)
+                    command = player.decide(view, me)
+                    if command is None:
+                        self._note_failure(player)
+                        command = RobotCommand()
+                    commands[player.robot] = command
         return commands
 
-    def _decide_for(self, player: Player, view: Frame, me: RobotState) -> RobotCommand:
-        store, runner = player.store, player.runner
-        store.frame, store.me, store.command = view, me, RobotCommand()
-        try:
-            runner.tick()
-        except TreeError as error:
-            raise TreeError(f"{player.robot}: {error}") from error.__cause__
-        if runner.error is None:
-            fault = _fault_of(store.command)
-            if fault is None:
-                return store.command
-            tip = runner.root.tip() or runner.root
-            problem = f"{node_path(tip)}: {fault}"
-            _log.warning("tree stopped: %s", problem)
-            runner.stop()
-            if self.scenario.on_error == "raise":
-                raise TreeError(f"{player.robot}: {problem}")
-        else:
-            problem = runner.error
+    def _note_failure(self, player: Player) -> None:
         figures = self.measures.robots[player.robot]
         figures.errors += 1
         if figures.first_error is None:
-            figures.first_error = problem
+            figures.first_error = player.problem
         self._trace.event(f"error {player.robot}")
-        return RobotCommand()
 
     def _follow_referee(self, truth: Frame) -> None:
         assert self._referee is not None
@@ -298,16 +254,6 @@ def play_match(
 ) -> MatchResult:
     """Play one match to its end; the arguments are those of :class:`Match`."""
     return Match(scenario, seed, world_factory, record, trial).play()
-
-
-def _fault_of(command: object) -> str | None:
-    """Return why a robot cannot be sent what its tree decided, None when it can."""
-    if not isinstance(command, RobotCommand):
-        return f"command is no RobotCommand: {short_repr(command)}"
-    try:
-        return None if command.finite() else f"command is not finite: {command}"
-    except (TypeError, ValueError, OverflowError):
-        return one_line(f"command is not made of numbers: {command}")
 
 
 def _referee_of(scenario: Scenario) -> Referee | None:

@@ -1,4 +1,4 @@
-"""What the nodes of a play do in a match."""
+"""Counts of what the nodes of a play do in a match."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def node_statistics(
     """Play a scenario's first trial and count what the nodes of its robots' trees do.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         world_factory: makes the world.
-        play: of the robots that play this; a file may be named by another path. None for all robots.
-        seed: as of :func:`~robobt.match.runner.run_trials`.
+        play: count for robots with this play only; a file may be named by another path. None for all robots.
+        seed: seed of the run; the scenario's by default.
 
     Raises:
         ScenarioError: no robot plays it, or the scenario does not fit the world.

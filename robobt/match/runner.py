@@ -12,7 +12,7 @@ import numpy as np
 from robobt.config.errors import RobobtError
 from robobt.match.loop import WorldFactory, play_match
 from robobt.match.results.file import ResultsFile
-from robobt.match.results.results import MatchResult
+from robobt.match.results.results import MatchResult, Summary, summarise
 from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
@@ -26,19 +26,29 @@ class RunError(RobobtError, RuntimeError):
 
 @dataclass(slots=True)
 class Run:
-    """What a run has come to.
+    """The trials that a run has played.
 
     Attributes:
-        results: the trials played, in the order of their numbers.
+        results: one a trial, in the order of their numbers.
+        seed: seed of the run, from which the trials' seeds follow.
         interrupted: whether it was stopped (Ctrl-C) before the last trial.
     """
 
     results: list[MatchResult]
+    seed: int
     interrupted: bool
+
+    def summary(self) -> Summary:
+        """Summarise the trials.
+
+        Raises:
+            ValueError: no trial was finished.
+        """
+        return summarise(self.results, self.seed)
 
 
 def trial_seed(seed: int, trial: int) -> int:
-    """The seed of one trial; it depends on nothing but the run's seed and the trial's number."""
+    """Return the seed of one trial, which depends only on the run's seed and the trial's number."""
     return int(np.random.SeedSequence([seed, trial]).generate_state(1, np.uint64)[0] >> np.uint64(11))
 
 
@@ -58,12 +68,12 @@ def run_trials(
     is played. Ctrl-C ends the run; what is finished is kept.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         world_factory: makes the world of each trial; with several workers a function of a module,
             because it is sent to them by name.
-        trials: how often; by default what the scenario says.
-        workers: processes; one is this process itself.
-        seed: what the trials' seeds follow from; by default what the scenario says.
+        trials: number of trials; the scenario's by default.
+        workers: number of processes; one is this process itself.
+        seed: seed from which the trials' seeds follow; the scenario's by default.
         out: file to append each result to as it finishes; trials it holds already are not played again.
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes, and with those of ``out`` first.
@@ -117,8 +127,8 @@ def run_trials(
         interrupted = True
     finally:
         if file is not None:
-            file.__exit__(None, None, None)
-    return Run([results[trial] for trial in sorted(results)], interrupted)
+            file.close()
+    return Run([results[trial] for trial in sorted(results)], seed, interrupted)
 
 
 @dataclass(slots=True, frozen=True)

@@ -1,9 +1,9 @@
-"""What a model file says about itself: enough to know what it may be used for, and to trust it."""
+"""The model card inside every model file: what the model may be used for, and how it was made."""
 
 from __future__ import annotations
 
 import json
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
@@ -20,7 +20,7 @@ MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
 """What a model may be called, as a regular expression."""
 
 MAX_CARD_SIZE = 64 * 1024
-"""A card longer than this is none [bytes]."""
+"""Longest card that is read [bytes]."""
 
 Kind = Literal["policy", "shot_predictor"]
 
@@ -47,7 +47,7 @@ class ObservationCard(_Part):
 
     @classmethod
     def of(cls, spec: ObservationSpec) -> ObservationCard:
-        """The observation as it is defined now."""
+        """Return the card of an observation as it is defined now."""
         entries = tuple([f"{name} [{unit}]" for name, unit in spec.entries])
         return cls(name=spec.name, version=spec.version, size=spec.size, features=entries)
 
@@ -60,7 +60,7 @@ class ObservationCard(_Part):
         return self
 
     def problem(self) -> str | None:
-        """Why this is not the observation of that name as it is defined now; None if it is.
+        """Return why this is not the observation of that name as it is defined now; None if it is.
 
         A name that :data:`~robobt.world.features.OBSERVATIONS` does not have is
         somebody else's to check.
@@ -114,8 +114,8 @@ class ModelCard(_Part):
     action: ActionScaling | None = Field(None, description="how a policy's output becomes a command")
     period: float | None = Field(None, gt=0, le=1, description="control period in training [s]")
     limits: RobotLimits | None = Field(None, description="limits of the robot it was trained on")
-    environment: dict[str, Any] = Field({}, description="settings of the environment, or of the data")
-    training: dict[str, Any] = Field({}, description="settings of the learner")
+    environment: dict[str, object] = Field({}, description="settings of the environment, or of the data")
+    training: dict[str, object] = Field({}, description="settings of the learner")
     seed: int | None = Field(None, description="what training's randomness followed from")
     held_out: dict[str, Measured] = Field({}, description="results that training never saw, by name")
     code_version: str = Field("", max_length=128, description="version of the code that trained it")
@@ -128,7 +128,7 @@ class ModelCard(_Part):
 
     @field_validator("environment", "training")
     @classmethod
-    def _plain(cls, value: dict[str, Any]) -> dict[str, Any]:
+    def _plain(cls, value: dict[str, object]) -> dict[str, object]:
         try:
             plain = json.loads(json.dumps(value, allow_nan=False))
         except (TypeError, ValueError, RecursionError) as error:
@@ -145,24 +145,24 @@ class ModelCard(_Part):
                 raise ValueError("a policy needs period, the control period it was trained with")
             names = tuple([entry.name for entry in self.outputs])
             if names != self.action.entries:
-                wanted = ", ".join(self.action.entries)
-                raise ValueError(f"outputs are {', '.join(names)}; a {self.action.kind} action is {wanted}")
+                needed = ", ".join(self.action.entries)
+                raise ValueError(f"outputs are {', '.join(names)}; a {self.action.kind} action is {needed}")
         elif self.action is not None:
             raise ValueError("only a policy has an action")
         return self
 
     @property
     def output_range(self) -> tuple[float, float]:
-        """Least and most that the model may answer: [-1, 1] for a policy, [0, 1] for a probability."""
+        """Return the least and greatest output: -1 and 1 for a policy, 0 and 1 for a probability."""
         return (-1.0, 1.0) if self.kind == "policy" else (0.0, 1.0)
 
     def to_json(self) -> str:
-        """The card as it is put into files: the same text for the same card."""
+        """Return the card as it is put into files: the same text for the same card."""
         return json.dumps(self.model_dump(mode="json"), indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def action_outputs(action: ActionScaling) -> tuple[OutputEntry, ...]:
-    """The outputs of a policy with that action, with their units and scales."""
+    """Return the outputs of a policy with an action, with their units and scales."""
     scales = {
         "vx": ("m/s", action.max_speed),
         "vy": ("m/s", action.max_speed),
@@ -175,10 +175,10 @@ def action_outputs(action: ActionScaling) -> tuple[OutputEntry, ...]:
 
 
 def read_card(text: str | bytes) -> ModelCard:
-    """A card from the text in a file.
+    """Read a card from the text in a file.
 
     Raises:
-        ModelCardError: it is none; the message names the field.
+        ModelCardError: the text is not a card; the message names the field.
     """
     if len(text) > MAX_CARD_SIZE:
         raise ModelCardError("its card", f"is longer than {MAX_CARD_SIZE} bytes")

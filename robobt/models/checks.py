@@ -6,9 +6,9 @@ import ast
 import pickle
 import pickletools
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from io import BytesIO, StringIO
-from typing import Any
+from typing import Protocol, TypeAlias
 
 from robobt.models.file import Format, ModelError
 
@@ -36,7 +36,24 @@ OPERATIONS: Mapping[Format, frozenset[str]] = {
 """What a model may do: the operations of feed-forward networks, by the formats' own names."""
 
 
-def check_operations(graph: Any, also: Set[str] = frozenset()) -> None:
+class Node(Protocol):
+    """A node of a TorchScript graph."""
+
+    def kind(self) -> str:
+        """Return the operation's name."""
+
+    def blocks(self) -> Iterable[Graph]:
+        """Return the blocks inside it."""
+
+
+class Graph(Protocol):
+    """A TorchScript graph, or a block of one."""
+
+    def nodes(self) -> Iterable[Node]:
+        """Return its nodes."""
+
+
+def check_operations(graph: Graph, also: Set[str] = frozenset()) -> None:
     """Check that a TorchScript graph consists of nothing but :data:`OPERATIONS` and those in ``also``.
 
     Raises:
@@ -47,7 +64,7 @@ def check_operations(graph: Any, also: Set[str] = frozenset()) -> None:
         raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign))}")
 
 
-def _kinds(block: Any) -> set[str]:
+def _kinds(block: Graph) -> set[str]:
     kinds: set[str] = set()
     for node in block.nodes():
         kinds.add(node.kind())
@@ -107,17 +124,21 @@ class _Reader(pickle.Unpickler):
         self._folder = folder
         self._members = members
 
-    def find_class(self, module: str, name: str) -> Any:
+    def find_class(self, module: str, name: str) -> type[_Thing]:
         if not _NAMES.fullmatch(f"{module} {name}"):
             raise ModelError(f"names {module} {name} in it, which no network needs")
         return type(name, (_Thing,), {})
 
-    def persistent_load(self, pid: Any) -> object:
+    def persistent_load(self, pid: _Storage) -> object:
         kind, storage, key, _, count = pid
         size = _ITEM_SIZES[storage.__name__] * count
         if kind != "storage" or len(self._members[f"{self._folder}/{key}"]) != size:
             raise ModelError(f"{self._folder}/{key} in it is cut short")
         return _Thing()
+
+
+_Storage: TypeAlias = tuple[str, type, str, str, int]
+"""What torch writes in place of a tensor's storage: "storage", its class, key, device and count."""
 
 
 class _Thing:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 import stat
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from io import BytesIO
@@ -22,7 +22,8 @@ from typing import Literal
 
 from robobt.config.errors import RobobtError
 from robobt.config.resources import models_folder
-from robobt.models.card import ModelCard, ModelCardError, read_card
+from robobt.models.card import ModelCard, read_card
+from robobt.models.protobuf import field, fields
 
 Format = Literal["torchscript", "onnx"]
 
@@ -40,7 +41,6 @@ CARD = "card.json"
 
 _SEAL = 64
 _MAX_MEMBERS = 1000
-_MAX_FIELDS = 10_000
 _ZIP = b"PK\x03\x04"
 _CARD_MEMBER = f"extra/{CARD}"
 _METADATA = 14
@@ -48,11 +48,11 @@ _METADATA = 14
 
 
 class ModelError(RobobtError, ValueError):
-    """A model that cannot be used: one line that names the file."""
+    """A model that cannot be used; the message is one line that names the file."""
 
 
 class UnknownModelError(ModelError):
-    """No shipped model has that name."""
+    """A name that no shipped model has."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,13 @@ class ModelFile:
     """A model file whose card and checksums are in order.
 
     Attributes:
-        path: where it was read.
-        format: what can run it.
-        sha256: of the whole file.
-        size: of the whole file [bytes].
-        card: what it says about itself.
-        content: without the card: what torch or onnxruntime is given. A TorchScript archive is
-            packed anew from what has been checked, so that nothing else of the file gets there.
+        path: the file.
+        format: format of the network.
+        sha256: checksum of the whole file.
+        size: size of the whole file [bytes].
+        card: the model's card.
+        content: the network without the card, as torch or onnxruntime is given it. A TorchScript archive
+            is packed anew from what has been checked, so that nothing else of the file gets there.
     """
 
     path: Path
@@ -110,13 +110,16 @@ def read_model_file(path: str | Path) -> ModelFile:
             raise ModelError("has been altered since it was exported")
         if sealed and card.payload != digest:
             raise ModelError("its content is not what its card was written for")
-    except (ModelError, ModelCardError) as error:
+    except ValueError as error:
         raise ModelError(f"{path}: {error}") from error
     return ModelFile(path, kind, checksum, len(data), card, content)
 
 
 def find_model(name_or_path: str | Path) -> Path:
-    """The file of a model: a path, or the name of a shipped one.
+    """Return the file of a model.
+
+    Args:
+        name_or_path: name of a shipped model, or a path.
 
     Raises:
         UnknownModelError: no shipped model has that name.
@@ -134,15 +137,15 @@ def find_model(name_or_path: str | Path) -> Path:
 
 
 def list_models(folder: Path) -> list[Path]:
-    """The model files of a folder, in the order of their names."""
+    """Return the model files of a folder, in the order of their names."""
     return sorted([path for path in folder.glob("*") if path.suffix in _ENDINGS and path.is_file()])
 
 
 def read_manifest(folder: Path) -> dict[str, str]:
-    """SHA-256 by file name, as listed in a folder; empty where there is no manifest.
+    """Return the SHA-256 by file name that a folder's manifest lists; empty where there is none.
 
     Raises:
-        ModelError: a line of it is no checksum with a file's name.
+        ModelError: a line is not a checksum with a file's name.
     """
     path = folder / MANIFEST
     try:
@@ -163,12 +166,12 @@ def read_manifest(folder: Path) -> dict[str, str]:
 
 
 def manifest_text(listed: Mapping[str, str]) -> str:
-    """The manifest that lists these files; ``sha256sum -c manifest`` checks them."""
+    """Return the manifest that lists these files; ``sha256sum -c manifest`` checks them."""
     return "".join([f"{listed[name]}  {name}\n" for name in sorted(listed)])
 
 
 def payload_of(members: Mapping[str, bytes]) -> str:
-    """SHA-256 of an archive's members, whatever their order [hex]."""
+    """Return the SHA-256 of an archive's members, whatever their order [hex]."""
     digest = sha256()
     for name in sorted(members):
         for part in (name.encode(), members[name]):
@@ -178,9 +181,10 @@ def payload_of(members: Mapping[str, bytes]) -> str:
 
 
 def pack_archive(members: Mapping[str, bytes], card: str | None = None) -> bytes:
-    """An archive as torch reads it, the same bytes for the same members.
+    """Pack an archive as torch reads it, the same bytes for the same members.
 
     Args:
+        members: contents by name.
         card: makes it a model file: the card is put in and the whole is sealed.
     """
     buffer = BytesIO()
@@ -195,9 +199,9 @@ def pack_archive(members: Mapping[str, bytes], card: str | None = None) -> bytes
 
 
 def unpack_archive(data: bytes) -> dict[str, bytes]:
-    """The members of an archive that torch wrote, without the folder that holds them.
+    """Return the members of an archive that torch wrote, without the folder that holds them.
 
-    Left out is what only serves debugging: where the network's source lay, for one.
+    What only serves debugging is left out, such as where the network's source lay.
 
     Raises:
         ModelError: it is no such archive, damaged, or unpacks to too much.
@@ -225,7 +229,7 @@ def unpack_archive(data: bytes) -> dict[str, bytes]:
 
 
 def pack_onnx(content: bytes, card: str) -> bytes:
-    """An ONNX file as a model file: card and seal become its last metadata."""
+    """Make an ONNX file a model file: card and seal become its last metadata."""
     carded = content + _metadata(CARD, card.encode())
     unsealed = carded + _metadata("sha256", bytes(_SEAL))[:-_SEAL]
     return unsealed + _seal_of(unsealed)
@@ -253,82 +257,24 @@ def _read(path: Path) -> bytes:
 
 
 def _split_onnx(data: bytes) -> tuple[bytes, bytes | None]:
-    """What precedes the card, and the card, which has only the seal behind it."""
-    last = [(number, begin, inside) for number, begin, inside in _fields(data)][-2:]
+    """Return what precedes the card, and the card, which has only the seal behind it."""
+    last = list(fields(data))[-2:]
     if len(last) < 2 or last[0][0] != _METADATA:
         return data, None
-    entries = [(number, content) for number, _, content in _fields(last[0][2])]
+    entries = [(number, content) for number, _, content in fields(last[0][2])]
     if len(entries) != 2 or entries[0] != (1, CARD.encode()) or entries[1][0] != 2:
         return data, None
     return data[: last[0][1]], entries[1][1]
 
 
-def _fields(data: bytes) -> Iterator[tuple[int, int, bytes]]:
-    """Number, start and content of each field of a Protocol Buffers message.
-
-    Raises:
-        ModelError: it is none.
-    """
-    place = 0
-    for _ in range(_MAX_FIELDS):
-        if place == len(data):
-            return
-        begin = place
-        key, place = _varint(data, place)
-        number, kind = key >> 3, key & 7
-        if kind == 0:
-            _, end = _varint(data, place)
-        elif kind == 1:
-            end = place + 8
-        elif kind == 2:
-            length, place = _varint(data, place)
-            end = place + length
-        elif kind == 5:
-            end = place + 4
-        else:
-            raise ModelError(_FOREIGN)
-        if number == 0 or end > len(data):
-            raise ModelError(_FOREIGN)
-        yield number, begin, data[place:end]
-        place = end
-    raise ModelError("holds more than a model does")
-
-
-def _varint(data: bytes, place: int) -> tuple[int, int]:
-    value = 0
-    for shift in range(0, 70, 7):
-        if place >= len(data):
-            break
-        byte = data[place]
-        place += 1
-        value |= (byte & 0x7F) << shift
-        if byte < 0x80:
-            return value, place
-    raise ModelError(_FOREIGN)
-
-
 def _metadata(key: str, value: bytes) -> bytes:
-    return _field(_METADATA, _field(1, key.encode()) + _field(2, value))
-
-
-def _field(number: int, content: bytes) -> bytes:
-    return _encoded(number << 3 | 2) + _encoded(len(content)) + content
+    return field(_METADATA, field(1, key.encode()) + field(2, value))
 
 
 def _seal_of(data: bytes) -> bytes:
     return sha256(data).hexdigest().encode()
 
 
-def _encoded(value: int) -> bytes:
-    out = bytearray()
-    while value > 0x7F:
-        out.append(value & 0x7F | 0x80)
-        value >>= 7
-    out.append(value)
-    return bytes(out)
-
-
 _UNNEEDED = re.compile(r"(.*\.debug_pkl|\.data/serialization_id|traced_inputs.*)")
 _ENDINGS = tuple(SUFFIXES.values())
-_FOREIGN = "is neither a TorchScript archive nor an ONNX file, or is cut short"
 _LISTED = re.compile(r"([0-9a-f]{64}) [ *]([^/\\\s][^/\\]*)")

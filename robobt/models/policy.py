@@ -1,4 +1,4 @@
-"""Trained models as functions of arrays. Only here a skill meets torch, and only when it loads a model."""
+"""Trained models as functions of arrays; the one place where a skill meets torch."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,9 @@ from robobt.models.file import (
 )
 from robobt.world.features import ObservationSpec
 
+if TYPE_CHECKING:
+    from torch import Tensor
+
 Floats = NDArray[np.float32]
 
 _MOST_LOADED = 100
@@ -35,23 +38,23 @@ _SLACK = 1e-4
 
 
 class Network(Protocol):
-    """What a format's loader returns."""
+    """A loaded network, whatever its format."""
 
     def batch(self, inputs: Floats) -> Floats:
-        """(n, size) -> (n, outputs), in single precision."""
+        """Map (n, size) to (n, outputs), in single precision."""
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
-        """A function of one observation, with memory of its own: not for two threads at once."""
+        """Return a function of one observation; it has memory of its own, so it is not for two threads."""
 
 
 class Policy:
-    """A loaded model: a function of arrays, and the card that says what they mean.
+    """A loaded model: a function of arrays, and the card that describes them.
 
     Attributes:
-        card: what the model says about itself.
+        card: the model's card.
         path: the file it was loaded from.
-        sha256: of that file.
-        network: what runs it.
+        sha256: checksum of that file.
+        network: the network that runs.
     """
 
     def __init__(self, file: ModelFile, network: Network) -> None:
@@ -61,7 +64,7 @@ class Policy:
         self.network = network
 
     def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
-        """What the model answers.
+        """Return the model's outputs.
 
         Args:
             inputs: (size,) or (n, size), in SI units.
@@ -70,7 +73,7 @@ class Policy:
             (outputs,) or (n, outputs).
 
         Raises:
-            ValueError: the inputs have another shape.
+            ValueError: the inputs have the wrong shape.
         """
         given = np.asarray(inputs, dtype=np.float32)
         size = self.card.observation.size
@@ -82,9 +85,9 @@ class Policy:
         return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
-        """A quick function of one observation, for one robot's control loop.
+        """Return a quick function of one observation, for one robot's control loop.
 
-        It does not check what it is given. Each one has memory of its own.
+        It does not check its input, and has memory of its own.
         """
         return self.network.single()
 
@@ -98,11 +101,12 @@ def load_policy(
     but arithmetic (:mod:`~robobt.models.checks`). Then it is tried on zeros and on
     random inputs: it has to answer finite numbers of its card's shape and range, the
     same each time, and for a batch what it answers one by one. The same file is
-    loaded once per process. From then on torch computes on one thread in this process.
+    loaded once per process. Each call runs on one thread; torch's settings stay as they are.
 
     Args:
-        skill: what it shall be used for; None for anything.
-        observation: what it shall be given; None for anything.
+        name_or_path: name of a shipped model, or a file.
+        skill: skill that will use it; None for any.
+        observation: observation that it will be given; None for any.
 
     Raises:
         ModelError: it cannot be used; the message names the file and says why.
@@ -131,7 +135,7 @@ def load_policy(
 
 
 def bare_module(policy: Policy) -> Callable[[], object]:
-    """A call of a policy's frozen module on a tensor of one observation, and nothing else: to measure by.
+    """Return a call of the frozen module on a tensor of one observation, the yardstick of benchmarks.
 
     Raises:
         ModelError: the policy is no TorchScript one.
@@ -153,8 +157,6 @@ class _TorchScript:
 
         members = unpack_archive(file.content)
         check_code(members)
-        if torch.get_num_threads() != 1:
-            torch.set_num_threads(1)
         with _quiet():
             try:
                 loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
@@ -171,11 +173,11 @@ class _TorchScript:
         self._torch = torch
         self._size = file.card.observation.size
         # Without Module.__call__, which looks for hooks that a frozen module cannot have.
-        self._forward: Callable[[Any], Any] = module.forward
+        self._forward: Callable[[Tensor], Tensor] = module.forward
 
     def batch(self, inputs: Floats) -> Floats:
         with self._torch.inference_mode():
-            answer = self._forward(self._torch.from_numpy(inputs))
+            answer = self._on_one_thread(self._torch.from_numpy(inputs))
         if not isinstance(answer, self._torch.Tensor):
             raise ModelError("answers no tensor")
         return np.asarray(answer.numpy(), dtype=np.float32)
@@ -183,7 +185,7 @@ class _TorchScript:
     def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
         tensor = self._torch.from_numpy(buffer)
-        forward, no_gradient = self._forward, self._torch.inference_mode()
+        forward, no_gradient = self._on_one_thread, self._torch.inference_mode()
 
         def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
@@ -191,6 +193,17 @@ class _TorchScript:
                 return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
 
         return infer
+
+    def _on_one_thread(self, inputs: Tensor) -> Tensor:
+        # On networks this small, threads wait for each other. Their number is the process.s: restore it.
+        threads = self._torch.get_num_threads()
+        if threads == 1:
+            return self._forward(inputs)
+        self._torch.set_num_threads(1)
+        try:
+            return self._forward(inputs)
+        finally:
+            self._torch.set_num_threads(threads)
 
     def bare(self) -> Callable[[], object]:
         module, tensor = self.module, self._torch.zeros(1, self._size)
@@ -227,17 +240,17 @@ class _Onnx:
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
-        run, wanted, given = self._session.run, self._output, {self._input: buffer}
+        run, outputs, inputs = self._session.run, self._output, {self._input: buffer}
 
         def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
-            return run(wanted, given)[0].tolist()[0]  # type: ignore[no-any-return]
+            return run(outputs, inputs)[0].tolist()[0]  # type: ignore[no-any-return]
 
         return infer
 
 
 LOADERS: Mapping[Format, Callable[[ModelFile], Network]] = {"torchscript": _TorchScript, "onnx": _Onnx}
-"""What makes a file of each format a function. They raise :class:`ModelError` without the file's name."""
+"""Loaders by format; they raise :class:`ModelError` without the file's name."""
 
 _LOADED: dict[tuple[Path, str], Policy] = {}
 
@@ -275,7 +288,7 @@ def _first_line(error: Exception) -> str:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Whoever plays with a model cannot do anything about TorchScript being deprecated upstream."""
+    """Silence warnings: a player can do nothing about TorchScript's deprecation upstream."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -116,16 +116,35 @@ def test_a_changed_file_is_loaded_anew(tmp_path: Path) -> None:
     assert (first(np.ones(6)) != second(np.ones(6))).any()
 
 
-def test_loading_keeps_torch_to_one_thread_and_takes_no_gradients(files: dict[str, Path]) -> None:
+def test_it_runs_on_one_thread_and_leaves_torchs_number_of_threads_alone(
+    files: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = torch.get_num_threads()
     policy._LOADED.clear()
     try:
         torch.set_num_threads(2)
         loaded = load_policy(files["torchscript"])
-        assert torch.get_num_threads() == 1
+        assert torch.get_num_threads() == 2
+        forward, threads = loaded.network._forward, []  # type: ignore[attr-defined]
+
+        def watched(inputs: torch.Tensor) -> torch.Tensor:
+            threads.append(torch.get_num_threads())
+            assert len(inputs) < 3, "too many"
+            return forward(inputs)  # type: ignore[no-any-return]
+
+        monkeypatch.setattr(loaded.network, "_forward", watched)
+        loaded(np.zeros((2, 6)))
+        loaded.single()(np.zeros(6))
+        with pytest.raises(AssertionError, match="too many"):
+            loaded(np.zeros((3, 6)))
+        assert threads == [1, 1, 1]
+        assert torch.get_num_threads() == 2
     finally:
         torch.set_num_threads(before)
-    frozen = loaded.network.module  # type: ignore[attr-defined]
+
+
+def test_a_loaded_network_takes_no_gradients(files: dict[str, Path]) -> None:
+    frozen = load_policy(files["torchscript"]).network.module  # type: ignore[attr-defined]
     assert not list(frozen.parameters())
     assert not frozen(torch.zeros(1, 6)).requires_grad
 

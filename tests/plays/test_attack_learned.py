@@ -29,9 +29,8 @@ def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
 
 
 def test_without_patience_it_takes_what_there_is():
-    scenario = deployed_scenario("half", "attack_expected")
-    blue_robot = scenario.robots.blue[0]
-    params = {**blue_robot.params, "threshold": 1.0, "patience": 0.5, "last_resort": 0.2}
-    robots = scenario.robots.model_copy(update={"blue": (blue_robot.model_copy(update={"params": params}),)})
-    results = run_trials(scenario.model_copy(update={"robots": robots}), sim_world, 3, seed=4).results
+    impatient = deployed_scenario("half", "attack_expected").with_robot(
+        "blue 0", threshold=1.0, patience=0.5, last_resort=0.2
+    )
+    results = run_trials(impatient, sim_world, 3, seed=4).results
     assert all(result.robots["blue 0"].kicks for result in results)

@@ -28,8 +28,11 @@ def bench_policy(
     skill_to_module_ratio (the same of the model's own skill) and the
     microseconds that they come from. CPU time, medians.
     """
+    import torch
+
     from robobt.skills.bench import bench_policy as measure
 
+    torch.set_num_threads(1)
     with errors.status("measuring policies"):
         figures = measure(model)
     if as_json:

@@ -8,8 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self, TextIO
+from typing import Self, TextIO
 
 from robobt import __version__
 from robobt.config.errors import RobobtError, naming
@@ -46,7 +45,7 @@ class ResultsFile:
     def __init__(self, path: str | Path, scenario: Scenario, seed: int) -> None:
         self.path = Path(path)
         self.done: dict[int, MatchResult] = {}
-        head = {
+        head: dict[str, object] = {
             "format": FORMAT,
             "scenario": scenario.name,
             "digest": _digest(scenario),
@@ -66,15 +65,17 @@ class ResultsFile:
             try:
                 self._write(head)
             except OSError:
-                self.__exit__(None, None, None)
+                self.close()
                 raise
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
         with naming(self.path):
             self._file.close()
 
@@ -82,13 +83,13 @@ class ResultsFile:
         """Append a result; it is on disk when this returns."""
         self._write(result.to_json())
 
-    def _write(self, line: dict[str, Any]) -> None:
+    def _write(self, line: dict[str, object]) -> None:
         with naming(self.path):
             self._file.write(json.dumps(line, separators=(",", ":")) + "\n")
             self._file.flush()
 
-    def _read(self, head: dict[str, Any]) -> int:
-        """Take in what the file holds; the length of it that is sound, in bytes."""
+    def _read(self, head: dict[str, object]) -> int:
+        """Read the results in the file and return how much of it is sound [bytes]."""
         kept = 0
         for number, line in enumerate(self.path.read_bytes().splitlines(keepends=True), start=1):
             try:
@@ -108,7 +109,7 @@ class ResultsFile:
             kept += len(line)
         return kept
 
-    def _check_head(self, found: object, head: dict[str, Any]) -> None:
+    def _check_head(self, found: object, head: dict[str, object]) -> None:
         if not isinstance(found, dict) or found.get("format") != FORMAT:
             raise ResultsFileError(f"{self.path}: not a file of results; give another name")
         for key, value in head.items():
@@ -118,11 +119,11 @@ class ResultsFile:
 
 
 def _digest(scenario: Scenario) -> str:
-    """Equal for scenarios that play the same; how often and with which seed is not part of it."""
+    """Hash what decides a match; trials and seed are not part of it."""
     text = scenario.model_dump_json(exclude={"trials", "seed", "description", "on_error"})
     digest = hashlib.blake2b(text.encode(), digest_size=16)
     for _, setup in scenario.robots:
-        # Their words, not only their names: whoever edits a tree plays another match.
+        # The contents, not only the names: an edited tree is another match.
         if is_play_file(setup.play):
             digest.update(Path(setup.play).read_bytes())
         if isinstance(setup.substitute, str):

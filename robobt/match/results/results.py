@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from statistics import fmean, variance
-from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -77,13 +76,13 @@ class MatchResult:
     trace: str
     wall_time: float = 0.0
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain data; the keys are the attributes' names."""
+    def to_json(self) -> dict[str, object]:
+        """Return plain data; the keys are the attributes' names."""
         return asdict(self)
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> MatchResult:
-        """The result that :meth:`to_json` made the data of.
+    def from_json(cls, data: Mapping[str, object]) -> MatchResult:
+        """Return the result that :meth:`to_json` made the data of.
 
         Raises:
             ValueError: the data is not such a result.
@@ -108,9 +107,10 @@ class Rate:
     """How often something happened.
 
     Attributes:
-        count: in so many trials it did.
+        count: number of trials in which it did.
         rate: share of the trials.
-        low, high: 95 % Wilson interval of the rate.
+        low: lower end of the rate's 95 % Wilson interval.
+        high: upper end of it.
     """
 
     count: int
@@ -120,7 +120,7 @@ class Rate:
 
     @classmethod
     def of(cls, count: int, trials: int) -> Rate:
-        """The rate of ``count`` in ``trials``; 0 when there are none."""
+        """Return the rate of ``count`` in ``trials``; 0 when there are none."""
         low, high = wilson_interval(count, trials)
         return cls(count, count / trials if trials else 0.0, low, high)
 
@@ -130,7 +130,7 @@ class Spread:
     """Mean and variance of a figure.
 
     Attributes:
-        n: trials that have the figure.
+        n: number of trials that have the figure.
         mean: None when none has.
         variance: sample variance (n - 1), None with fewer than two.
     """
@@ -141,7 +141,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: Iterable[float | None]) -> Spread:
-        """The spread of the values that are there."""
+        """Return the spread of the values that are not None."""
         given = [value for value in values if value is not None]
         return cls(len(given), fmean(given) if given else None, variance(given) if len(given) > 1 else None)
 
@@ -186,8 +186,8 @@ class Summary:
     real_time_factor: float
     trace: str
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain data; the keys are the attributes' names."""
+    def to_json(self) -> dict[str, object]:
+        """Return plain data; the keys are the attributes' names."""
         return asdict(self)
 
 
@@ -200,7 +200,11 @@ class GoalCount:
 
 
 def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
-    """Put trials of one scenario together, in the order of their numbers.
+    """Summarise trials of one scenario, in the order of their numbers.
+
+    Args:
+        results: the trials.
+        seed: seed of the run.
 
     Raises:
         ValueError: there is no trial.

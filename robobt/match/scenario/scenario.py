@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError, FieldError, RobobtError, message_of, one_line, short_repr
+from robobt.config.errors import ConfigError, FieldError, one_line, short_repr
 from robobt.config.resources import bundled_scenarios
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_starts
+from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
-from robobt.plays import PLAYS
-from robobt.plays.files import find_play, is_play_file
-from robobt.skills.store import GIVEN, Store
-from robobt.tree import Behaviour, WiringError, check_tree
-from robobt.tree.devtools import substitute
-from robobt.tree.interop import TreeFileError
-from robobt.tree.parameters import ParameterError, check_parameters
+from robobt.plays.files import is_play_file
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
-from robobt.world.limits import RobotLimits
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 
@@ -41,108 +35,8 @@ class ScenarioError(ConfigError):
     """A scenario that cannot be played; the file is the scenario's name when it came from no file."""
 
 
-class RobotSetup(Part):
-    """One robot: its number, what it plays and where it starts."""
-
-    number: int = Field(ge=0, le=15, description="number on its team")
-    play: str = Field(max_length=400, description="its play: a name, or a tree file beside the scenario")
-    params: dict[str, Any] = Field(default_factory=dict, description="parameters of the play")
-    goalkeeper: bool = Field(False, description="whether it is its team's goalkeeper")
-    limits: RobotLimits | None = Field(
-        None, description="limits of this robot; those not given are the simulator's"
-    )
-    substitute: dict[str, Any] | str = Field(
-        default_factory=dict,
-        description="nodes of its tree that follow a script instead, by the pattern of their paths; "
-        "or a file of such rules beside the scenario",
-    )
-    start: RobotStart = Field(description="pose at the start, in the own team's view")
-
-    @field_validator("play")
-    @classmethod
-    def _known(cls, play: str) -> str:
-        if not is_play_file(play) and play not in PLAYS:
-            there = f"no play is called {short_repr(play)}; there are {', '.join(PLAYS)}"
-            raise ValueError(PLAYS.problem_with(play) or there)
-        return play
-
-    @model_validator(mode="after")
-    def _playable(self) -> Self:
-        try:
-            tree, another = self.build_tree(), self.build_tree()
-            check_tree(tree, Store, GIVEN)
-        except ParameterError as error:
-            raise FieldError(f"params.{error.parameter}", str(error)) from error
-        except _SubstitutionError as error:
-            raise FieldError("substitute", message_of(error)) from error
-        except (TreeFileError, WiringError) as error:
-            raise FieldError("play", message_of(error)) from error
-        except Exception as error:
-            raise FieldError("params", message_of(error)) from error
-        if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
-            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
-            raise FieldError("play", f"{self.play} {problem}")
-        return self
-
-    def build_tree(self) -> Behaviour:
-        """A new tree of this robot's play."""
-        builder = find_play(self.play)
-        tree = builder(**check_parameters(self.play, builder, self.params))
-        if not self.substitute:
-            return tree
-        try:
-            return substitute(tree, self.substitute)
-        except TreeFileError as error:
-            # Rules in the scenario itself are in no file of their own.
-            told = str(error) if isinstance(self.substitute, str) else error.problem
-            raise _SubstitutionError(told) from error
-
-    def limits_over(self, base: RobotLimits) -> RobotLimits:
-        """The robot's limits where ``base`` holds for those the scenario leaves out."""
-        if self.limits is None:
-            return base
-        return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
-
-
-class _SubstitutionError(RobobtError, ValueError):
-    """A rule for nodes to be replaced is wrong."""
-
-
-class Robots(Part):
-    """The robots of both teams."""
-
-    blue: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
-    yellow: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
-
-    @model_validator(mode="after")
-    def _numbers_differ(self) -> Self:
-        for team in Team:
-            numbers: set[int] = set()
-            for index, robot in enumerate(self.of(team)):
-                if robot.number in numbers:
-                    raise FieldError(
-                        f"{team.value}.{index}.number", f"{team.value} has two robots {robot.number}"
-                    )
-                numbers.add(robot.number)
-            keepers = [index for index, robot in enumerate(self.of(team)) if robot.goalkeeper]
-            if len(keepers) > 1:
-                raise FieldError(f"{team.value}.{keepers[1]}.goalkeeper", f"{team.value} has two goalkeepers")
-        if not self.blue and not self.yellow:
-            raise ValueError("there is no robot")
-        return self
-
-    def of(self, team: Team) -> tuple[RobotSetup, ...]:
-        """The robots of one team."""
-        return self.blue if team is Team.BLUE else self.yellow
-
-    def __iter__(self) -> Iterator[tuple[RobotId, RobotSetup]]:  # type: ignore[override]
-        for team in Team:
-            for robot in self.of(team):
-                yield RobotId(team, robot.number), robot
-
-
 class Ends(Part):
-    """What ends a trial; the first that happens."""
+    """Conditions that end a trial; the first that holds does."""
 
     time_limit: float = Field(gt=0, le=3600, description="longest trial [s]")
     goal: bool | None = Field(None, description="a goal; by default where there is no referee")
@@ -159,7 +53,7 @@ class Ends(Part):
 
 
 class Scenario(Part):
-    """One set-up that can be played any number of times.
+    """A set-up that can be played any number of times.
 
     A robot's start is in its own team's view (own goal at -x), the ball's in
     world coordinates, which are blue's view. SI units.
@@ -168,8 +62,8 @@ class Scenario(Part):
     name: str = Field("", max_length=80, description="what it is called; by default the file's name")
     description: str = Field("", max_length=2000)
     field: FieldGeometry = Field(DIVISION_B, description="a preset's name or dimensions [m]")
-    simulator: dict[str, Any] = Field(
-        default_factory=lambda: {"preset": "default"},
+    simulator: dict[str, object] = Field(
+        {"preset": "default"},
         description="a preset's name, or preset, realism and settings to change; for the world factory",
     )
     period: float = Field(0.025, ge=0.005, le=0.1, description="control period [s]")
@@ -179,7 +73,7 @@ class Scenario(Part):
         "the commands on their way",
     )
     seed: int = Field(0, ge=0, le=MAX_SEED, description="what every trial's randomness follows from")
-    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played unless told otherwise")
+    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played by default")
     robots: Robots
     ball: BallStart = Field(BallStart(position=(0.0, 0.0)), description="where the ball starts")
     clearance: float = Field(
@@ -204,7 +98,7 @@ class Scenario(Part):
 
     @field_validator("field", mode="before")
     @classmethod
-    def _field_by_name(cls, value: Any) -> Any:
+    def _field_by_name(cls, value: object) -> object:
         if not isinstance(value, str):
             return value
         if value not in FIELDS:
@@ -213,21 +107,24 @@ class Scenario(Part):
 
     @field_validator("simulator", mode="before")
     @classmethod
-    def _simulator_by_name(cls, value: Any) -> Any:
+    def _simulator_by_name(cls, value: object) -> object:
         return {"preset": value} if isinstance(value, str) else value
 
     @field_validator("referee", mode="before")
     @classmethod
-    def _referee_or_not(cls, value: Any) -> Any:
+    def _referee_or_not(cls, value: object) -> object:
         return {True: {}, False: None}[value] if isinstance(value, bool) else value
 
     @model_validator(mode="after")
     def _startable(self) -> Self:
         if self.ends.score_limit is not None and self.referee is None:
             raise FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
+        self._check_starts()
+        return self
+
+    def _check_starts(self) -> None:
         check_starts(self.field, self._starts, self.ball)
         self._placer(np.random.default_rng(0)).place()
-        return self
 
     @property
     def _starts(self) -> dict[RobotId, RobotStart]:
@@ -238,23 +135,59 @@ class Scenario(Part):
 
     @property
     def source(self) -> str:
-        """The file it came from, or its name."""
+        """Return the file it came from, or its name."""
         return self._source or self.name or "scenario"
 
     def error(self, problem: str, field: str = "") -> ScenarioError:
-        """An error about this scenario."""
+        """Make an error about this scenario."""
         return ScenarioError(self.source, problem, field)
 
+    def with_robot(self, robot: str | RobotId, /, **changes: object) -> Scenario:
+        """Return the scenario with one robot changed; this one stays as it is.
+
+        ``scenario.with_robot("blue 0", rater="open_angle")`` gives its play another parameter,
+        ``scenario.with_robot("blue 0", play="attack_nn", limits={"max_speed": 2.0})`` changes
+        the robot itself. What is not named stays, the other parameters of the play included.
+
+        Args:
+            robot: which robot, as "blue 0".
+            **changes: fields of :class:`RobotSetup`; any other name is a parameter of the play.
+
+        Raises:
+            ScenarioError: there is no such robot, the play has no such parameter, or a value
+                does not fit; the message names the robot and the field.
+        """
+        name = " ".join(str(robot).split())
+        named = {str(identity): (identity, setup) for identity, setup in self.robots}
+        if name not in named:
+            raise self.error(f"there is no robot {name!r}; there are {', '.join(named)}", "robots")
+        identity, setup = named[name]
+        place = f"robots.{identity.team.value}.{self.robots.of(identity.team).index(setup)}"
+        try:
+            replacement = setup.changed(changes)
+        except ValidationError as error:
+            field, problem = first_problem(error, RobotSetup, changes)
+            raise self.error(f"{name}: {problem}", f"{place}.{field}") from error
+        try:
+            changed = self.model_copy(update={"robots": self.robots.replaced({identity: replacement})})
+            changed._check_starts()
+        except ValidationError as error:
+            field, problem = first_problem(error, Robots, {})
+            raise self.error(problem, f"robots.{field}") from error
+        except FieldError as error:
+            raise self.error(str(error), error.field) from error
+        return changed
+
     def lasting(self, time_limit: float) -> Scenario:
-        """The same scenario with another time limit [s]."""
+        """Return the scenario with another time limit [s]."""
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
     def goalkeepers(self) -> dict[Team, int]:
-        """Numbers of the teams' goalkeepers, for teams that have one."""
+        """Return the numbers of the teams' goalkeepers, for teams that have one."""
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}
 
     def place(self, rng: np.random.Generator) -> Placement:
-        """Where everything stands in one trial, in world coordinates.
+        """Sample where everything stands in one trial, in world coordinates.
 
         Raises:
             ScenarioError: an object found no free place in a bounded number of tries.
@@ -266,10 +199,10 @@ class Scenario(Part):
 
 
 def load_scenario(source: str | Path) -> Scenario:
-    """A scenario from a YAML file or, where there is no such file, a bundled one by its name.
+    """Load a scenario from a YAML file or, where there is no such file, a bundled one by its name.
 
     Raises:
-        ScenarioError: one line that names the file and the field or line.
+        ScenarioError: the file cannot be read or is no scenario; it names the field or line.
     """
     path = Path(source)
     bundled = bundled_scenarios()
@@ -286,17 +219,18 @@ def load_scenario(source: str | Path) -> Scenario:
     # From here, not from the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))
     scenario = scenario_from(data, str(path))
-    return scenario if scenario.name else _named(scenario, path.stem)
+    return scenario if scenario.name else scenario.model_copy(update={"name": path.stem})
 
 
 def scenario_from(data: object, source: str) -> Scenario:
-    """A scenario from plain data, as a YAML or JSON file holds it.
+    """Make a scenario of plain data, as a YAML or JSON file holds it.
 
     Args:
-        source: what messages call it.
+        data: the data.
+        source: name for messages.
 
     Raises:
-        ScenarioError: one line that names the source and the field.
+        ScenarioError: the data is no scenario; the message names the source and the field.
     """
     if not isinstance(data, dict):
         raise ScenarioError(source, "a scenario is a mapping of fields")
@@ -311,7 +245,7 @@ def scenario_from(data: object, source: str) -> Scenario:
 
 
 def rename_files(data: object, rename: Callable[[str], str]) -> None:
-    """Call the robots' files (trees, substitution rules) otherwise in a scenario's plain data."""
+    """Rename the robots' files (trees, substitution rules) in a scenario's plain data."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
@@ -322,9 +256,3 @@ def rename_files(data: object, rename: Callable[[str], str]) -> None:
                 robot["play"] = rename(play)
             if isinstance(rules, str):
                 robot["substitute"] = rename(rules)
-
-
-def _named(scenario: Scenario, name: str) -> Scenario:
-    named = scenario.model_copy(update={"name": name})
-    named._source = scenario._source
-    return named

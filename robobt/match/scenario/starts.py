@@ -7,7 +7,7 @@ and printed.
 from __future__ import annotations
 
 from math import cos, hypot, pi, sin, sqrt
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
@@ -90,7 +90,7 @@ class Around(Part):
         return f"{self.distance[0]:g} to {self.distance[1]:g} m from the {self.around}{turned}"
 
 
-def _position_kind(value: Any) -> str:
+def _position_kind(value: object) -> str:
     if isinstance(value, Box | Disc | Around):
         return type(value).__name__
     if not isinstance(value, dict):
@@ -108,7 +108,7 @@ Position = Annotated[
 """A fixed point or a distribution of points."""
 
 
-def _heading_kind(value: Any) -> str:
+def _heading_kind(value: object) -> str:
     return "towards" if isinstance(value, str) else "range" if isinstance(value, list | tuple) else "angle"
 
 

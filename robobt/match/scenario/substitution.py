@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from robobt.match.scenario.scenario import RobotSetup, Scenario
-from robobt.skills.store import GIVEN, Store
-from robobt.tree import check_tree
-from robobt.world.game import Team
-from robobt.world.state import RobotId
+from robobt.match.scenario.scenario import Scenario
 
 
-def substituted(scenario: Scenario, rules: Iterable[tuple[str, str, Any]]) -> Scenario:
-    """The scenario with these rules before those it has.
+def substituted(scenario: Scenario, rules: Iterable[tuple[str, str, object]]) -> Scenario:
+    """Return the scenario with more substitution rules, ahead of those it has.
 
     Args:
-        scenario: it is not changed.
+        scenario: stays as it is.
         rules: for each the robot ("blue 0", or a team's name for all of its robots), the pattern of
             the nodes' paths, and a status or a list of them, as in
             :func:`~robobt.tree.devtools.read_substitutions`.
@@ -25,35 +20,22 @@ def substituted(scenario: Scenario, rules: Iterable[tuple[str, str, Any]]) -> Sc
         ScenarioError: there is no such robot or node, the status is none, or another node needs
             what a replaced one would have written.
     """
-    more: dict[RobotId, dict[str, Any]] = {robot: {} for robot, _ in scenario.robots}
+    added: dict[str, dict[str, object]] = {str(robot): {} for robot, _ in scenario.robots}
     for who, pattern, script in rules:
-        meant = [robot for robot in more if who in (str(robot), robot.team.value)]
-        if not meant:
-            there = ", ".join(str(robot) for robot in more)
+        names = [name for name in added if who in (name, name.partition(" ")[0])]
+        if not names:
             raise scenario.error(
-                f"there is no robot {who!r} to substitute nodes of; there are {there}", "robots"
+                f"there is no robot {who!r} to substitute nodes of; there are {', '.join(added)}", "robots"
             )
-        for robot in meant:
-            more[robot][pattern] = script
-    robots = {
-        team.value: tuple(
-            _with(scenario, RobotId(team, setup.number), setup, more[RobotId(team, setup.number)])
-            for setup in scenario.robots.of(team)
-        )
-        for team in Team
-    }
-    return scenario.model_copy(update={"robots": scenario.robots.model_copy(update=robots)})
-
-
-def _with(scenario: Scenario, robot: RobotId, setup: RobotSetup, rules: dict[str, Any]) -> RobotSetup:
-    if not rules:
-        return setup
-    if isinstance(setup.substitute, str):
-        raise scenario.error(f"{robot} has its rules in {setup.substitute}; add yours there", "robots")
-    others = {path: script for path, script in setup.substitute.items() if path not in rules}
-    changed = setup.model_copy(update={"substitute": {**rules, **others}})
-    try:
-        check_tree(changed.build_tree(), Store, GIVEN)
-    except ValueError as error:
-        raise scenario.error(f"substitute for {robot}: {error}", "robots") from error
+        for name in names:
+            added[name][pattern] = script
+    changed = scenario
+    for robot, setup in scenario.robots:
+        if own := added[str(robot)]:
+            if isinstance(setup.substitute, str):
+                raise scenario.error(
+                    f"{robot} has its rules in {setup.substitute}; add yours there", "robots"
+                )
+            others = {path: script for path, script in setup.substitute.items() if path not in own}
+            changed = changed.with_robot(robot, substitute={**own, **others})
     return changed

@@ -17,7 +17,8 @@ import numpy as np
 
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.placing import HELD_DISTANCE
-from robobt.match.scenario.scenario import Robots, RobotSetup, Scenario, load_scenario
+from robobt.match.scenario.robots import Robots, RobotSetup
+from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.match.scenario.starts import RobotStart
 from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, CollectionSettings
 from robobt.skills.aim.raters.goal_line import POST_GAP

@@ -14,7 +14,8 @@ from robobt.config.resources import bundled_scenarios
 from robobt.config.yaml import MAX_BYTES, MAX_DEPTH, parse_marked, write_yaml
 from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.placing import HELD_DISTANCE
-from robobt.match.scenario.scenario import Ends, RobotSetup, Scenario, scenario_from
+from robobt.match.scenario.robots import RobotSetup
+from robobt.match.scenario.scenario import Ends, Scenario, scenario_from
 from robobt.match.scenario.starts import Around, BallStart, Box, Disc, RobotStart
 from robobt.world import BALL_RADIUS, ROBOT_RADIUS, RobotId, RobotLimits, Team
 from tests.match.scripted import data

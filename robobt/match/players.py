@@ -1,0 +1,93 @@
+"""The robots of a match, each with its tree and its store."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+
+import numpy as np
+
+from robobt.config.errors import one_line, short_repr
+from robobt.match.scenario.scenario import Scenario
+from robobt.skills.store import Store, TeamStore
+from robobt.tree import TreeError, TreeRunner, node_path
+from robobt.world.command import RobotCommand
+from robobt.world.game import Team
+from robobt.world.state import Frame, RobotId, RobotState
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class Player:
+    """One robot on the field.
+
+    Attributes:
+        robot: which robot it is.
+        runner: ticks its tree.
+        store: what its skills share.
+        problem: why its tree failed at the last tick that it did: the node's path and what happened.
+    """
+
+    robot: RobotId
+    runner: TreeRunner
+    store: Store
+    problem: str = ""
+
+    def decide(self, view: Frame, me: RobotState) -> RobotCommand | None:
+        """Tick the tree once and return its command, or None where the tree failed.
+
+        Args:
+            view: the frame, seen from the own team's side.
+            me: the robot in it.
+
+        Raises:
+            TreeError: the tree failed, and ``on_error`` is "raise"; robot and node are named.
+        """
+        store, runner = self.store, self.runner
+        store.frame, store.me, store.command = view, me, RobotCommand()
+        try:
+            runner.tick()
+        except TreeError as error:
+            raise TreeError(f"{self.robot}: {error}") from error.__cause__
+        if runner.error is not None:
+            self.problem = runner.error
+            return None
+        fault = _fault_of(store.command)
+        if fault is None:
+            return store.command
+        self.problem = f"{node_path(runner.root.tip() or runner.root)}: {fault}"
+        _log.warning("tree stopped: %s", self.problem)
+        runner.stop()
+        if runner.on_error == "raise":
+            raise TreeError(f"{self.robot}: {self.problem}")
+        return None
+
+
+def make_players(scenario: Scenario, start: Frame, seeds: np.random.SeedSequence) -> list[Player]:
+    """Build every robot's tree and store, in the order of teams and scenario.
+
+    Args:
+        scenario: the scenario to play.
+        start: the first frame.
+        seeds: source of the robots' random numbers.
+    """
+    teams = {team: TeamStore() for team in Team}
+    players = []
+    for robot, setup in scenario.robots:
+        # The robot is part of its seed, so one more robot changes nobody else's random numbers.
+        entropy = (*seeds.spawn_key, list(Team).index(robot.team), robot.number)
+        rng = np.random.default_rng(np.random.SeedSequence(seeds.entropy, spawn_key=entropy))
+        store = Store(start, RobotState(robot.number, 0.0, 0.0), rng=rng, team=teams[robot.team])
+        players.append(Player(robot, TreeRunner(setup.build_tree(), store, scenario.on_error), store))
+    return players
+
+
+def _fault_of(command: object) -> str | None:
+    """Return why a robot cannot be sent what its tree decided, None when it can."""
+    if not isinstance(command, RobotCommand):
+        return f"command is no RobotCommand: {short_repr(command)}"
+    try:
+        return None if command.finite() else f"command is not finite: {command}"
+    except (TypeError, ValueError, OverflowError):
+        return one_line(f"command is not made of numbers: {command}")

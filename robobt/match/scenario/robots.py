@@ -1,0 +1,144 @@
+"""The robots of a scenario: what each plays, within which limits and from where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Self
+
+from pydantic import Field, field_validator, model_validator
+
+from robobt.config.errors import FieldError, RobobtError, message_of, short_repr
+from robobt.match.scenario.starts import Part, RobotStart
+from robobt.plays import PLAYS
+from robobt.plays.files import find_play, is_play_file
+from robobt.skills.store import GIVEN, Store
+from robobt.tree import Behaviour, WiringError, check_tree
+from robobt.tree.devtools import substitute
+from robobt.tree.interop import TreeFileError
+from robobt.tree.parameters import ParameterError, check_parameters
+from robobt.world.game import Team
+from robobt.world.limits import RobotLimits
+from robobt.world.state import RobotId
+
+
+class RobotSetup(Part):
+    """One robot: its number, what it plays and where it starts."""
+
+    number: int = Field(ge=0, le=15, description="number on its team")
+    play: str = Field(max_length=400, description="its play: a name, or a tree file beside the scenario")
+    params: dict[str, object] = Field(default_factory=dict, description="parameters of the play")
+    goalkeeper: bool = Field(False, description="whether it is its team's goalkeeper")
+    limits: RobotLimits | None = Field(
+        None, description="limits of this robot; those not given are the simulator's"
+    )
+    substitute: dict[str, object] | str = Field(
+        default_factory=dict,
+        description="nodes of its tree that follow a script instead, by the pattern of their paths; "
+        "or a file of such rules beside the scenario",
+    )
+    start: RobotStart = Field(description="pose at the start, in the own team's view")
+
+    @field_validator("play")
+    @classmethod
+    def _known(cls, play: str) -> str:
+        if not is_play_file(play) and play not in PLAYS:
+            there = f"no play is called {short_repr(play)}; there are {', '.join(PLAYS)}"
+            raise ValueError(PLAYS.problem_with(play) or there)
+        return play
+
+    @model_validator(mode="after")
+    def _playable(self) -> Self:
+        try:
+            tree, another = self.build_tree(), self.build_tree()
+            check_tree(tree, Store, GIVEN)
+        except ParameterError as error:
+            raise FieldError(f"params.{error.parameter}", str(error)) from error
+        except _SubstitutionError as error:
+            raise FieldError("substitute", message_of(error)) from error
+        except (TreeFileError, WiringError) as error:
+            raise FieldError("play", message_of(error)) from error
+        except Exception as error:
+            raise FieldError("params", message_of(error)) from error
+        if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
+            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
+            raise FieldError("play", f"{self.play} {problem}")
+        return self
+
+    def build_tree(self) -> Behaviour:
+        """Build a new tree of this robot's play."""
+        builder = find_play(self.play)
+        tree = builder(**check_parameters(self.play, builder, self.params))
+        if not self.substitute:
+            return tree
+        try:
+            return substitute(tree, self.substitute)
+        except TreeFileError as error:
+            # Rules in the scenario itself are in no file of their own.
+            problem = str(error) if isinstance(self.substitute, str) else error.problem
+            raise _SubstitutionError(problem) from error
+
+    def changed(self, changes: Mapping[str, object]) -> RobotSetup:
+        """Return the setup with other values.
+
+        Args:
+            changes: by name of a field, or of a parameter of the play.
+
+        Raises:
+            ValidationError: a value does not fit, or the play has no such parameter.
+        """
+        data = {name: getattr(self, name) for name in self.model_fields_set}
+        data |= {name: value for name, value in changes.items() if name in RobotSetup.model_fields}
+        params = {name: value for name, value in changes.items() if name not in RobotSetup.model_fields}
+        if params:
+            data["params"] = {**data.get("params", {}), **params}
+        return RobotSetup.model_validate(data)
+
+    def limits_over(self, base: RobotLimits) -> RobotLimits:
+        """Return the robot's limits, with those of ``base`` where the scenario gives none."""
+        if self.limits is None:
+            return base
+        return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
+
+
+class _SubstitutionError(RobobtError, ValueError):
+    """A substitution rule that does not fit the tree."""
+
+
+class Robots(Part):
+    """The robots of both teams."""
+
+    blue: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
+    yellow: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)
+
+    @model_validator(mode="after")
+    def _numbers_differ(self) -> Self:
+        for team in Team:
+            numbers: set[int] = set()
+            for index, robot in enumerate(self.of(team)):
+                if robot.number in numbers:
+                    raise FieldError(
+                        f"{team.value}.{index}.number", f"{team.value} has two robots {robot.number}"
+                    )
+                numbers.add(robot.number)
+            keepers = [index for index, robot in enumerate(self.of(team)) if robot.goalkeeper]
+            if len(keepers) > 1:
+                raise FieldError(f"{team.value}.{keepers[1]}.goalkeeper", f"{team.value} has two goalkeepers")
+        if not self.blue and not self.yellow:
+            raise ValueError("there is no robot")
+        return self
+
+    def of(self, team: Team) -> tuple[RobotSetup, ...]:
+        """Return the robots of one team."""
+        return self.blue if team is Team.BLUE else self.yellow
+
+    def replaced(self, changed: Mapping[RobotId, RobotSetup]) -> Robots:
+        """Return the robots with some of them replaced, in the same order."""
+        return Robots(
+            blue=tuple([changed.get(RobotId(Team.BLUE, robot.number), robot) for robot in self.blue]),
+            yellow=tuple([changed.get(RobotId(Team.YELLOW, robot.number), robot) for robot in self.yellow]),
+        )
+
+    def __iter__(self) -> Iterator[tuple[RobotId, RobotSetup]]:  # type: ignore[override]
+        for team in Team:
+            for robot in self.of(team):
+                yield RobotId(team, robot.number), robot
