@@ -6,12 +6,13 @@ import types
 import typing
 from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, Self
 
 from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import RobobtError
-from robobt.tree.leaf import Leaf
+from robobt.tree.leaf import Entries, Leaf
+from robobt.tree.parameters import members_of
 from robobt.tree.runner import node_path, preorder
 
 
@@ -26,8 +27,8 @@ class WiringError(RobobtError, ValueError):
         super().__init__("; ".join(problems))
         self.problems = tuple(problems)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (WiringError, (list(self.problems),))
+    def __reduce__(self) -> tuple[type[Self], tuple[list[str]]]:
+        return (type(self), (list(self.problems),))
 
 
 def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> None:
@@ -77,9 +78,9 @@ def _problems(node: Behaviour, store: type, written: Collection[str]) -> Iterato
 
 
 @lru_cache(maxsize=32)
-def entries_of(store: type) -> Mapping[str, Any]:
+def entries_of(store: type) -> Mapping[str, object]:
     """The entries of a store class and their types; :data:`typing.Any` where it does not say."""
-    entries = {}
+    entries: dict[str, object] = {}
     for name, hint in typing.get_type_hints(store).items():
         if typing.get_origin(hint) is not typing.ClassVar:
             entries[name] = hint
@@ -92,15 +93,15 @@ def entries_of(store: type) -> Mapping[str, Any]:
     return entries
 
 
-def _reads(node: Behaviour) -> Mapping[str, Any]:
+def _reads(node: Behaviour) -> Mapping[str, object]:
     return _declared(getattr(node, "reads", ()))
 
 
-def _writes(node: Behaviour) -> Mapping[str, Any]:
+def _writes(node: Behaviour) -> Mapping[str, object]:
     return _declared(getattr(node, "writes", ()))
 
 
-def _declared(entries: Any) -> Mapping[str, Any]:
+def _declared(entries: Entries) -> Mapping[str, object]:
     return entries if isinstance(entries, Mapping) else dict.fromkeys(entries)
 
 
@@ -110,31 +111,26 @@ def _needs(node: Behaviour) -> list[tuple[str, ...]]:
     return [(entry,) for entry in _reads(node)]
 
 
-def _fits(verb: str, declared: Any, kept: Any) -> bool:
+def _fits(verb: str, declared: object, kept: object) -> bool:
     if Any in (declared, kept):
         return True
     if verb == "reads":
         # None is what an entry holds before anybody has written it.
-        source, target = _members(kept) - {types.NoneType}, _members(declared)
+        source, target = members_of(kept) - {types.NoneType}, members_of(declared)
     else:
-        source, target = _members(declared), _members(kept)
+        source, target = members_of(declared), members_of(kept)
     return all(any(_is_a(one, other) for other in target) for one in source)
 
 
-def _members(hint: Any) -> set[Any]:
-    if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        return {member for part in typing.get_args(hint) for member in _members(part)}
-    return {types.NoneType if hint is None else hint}
-
-
-def _is_a(one: Any, other: Any) -> bool:
+def _is_a(one: object, other: object) -> bool:
     if one == other:
         return True
-    if not isinstance(other, type) or not isinstance(typing.get_origin(one) or one, type):
+    cls = typing.get_origin(one) or one
+    if not isinstance(other, type) or not isinstance(cls, type):
         return False
     # An int is as good as a float, as everywhere in Python's typing.
-    return issubclass(typing.get_origin(one) or one, other) or (one is int and other is float)
+    return issubclass(cls, other) or (cls is int and other is float)
 
 
-def _say(hint: Any) -> str:
+def _say(hint: object) -> str:
     return hint.__name__ if isinstance(hint, type) and not typing.get_args(hint) else str(hint)

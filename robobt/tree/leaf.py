@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
-from typing import Any, ClassVar, Generic, Self, TypeAlias, TypeVar
+from typing import ClassVar, Generic, Self, TypeAlias, TypeVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 StoreT = TypeVar("StoreT")
 
-Entries: TypeAlias = tuple[str, ...] | Mapping[str, Any]
+Entries: TypeAlias = tuple[str, ...] | Mapping[str, object]
 """Entries of the store: their names, or name and type."""
 
 
@@ -23,16 +23,16 @@ class Bound(Generic[StoreT]):
     """
 
     store: StoreT
-    _given: tuple[tuple[Any, ...], dict[str, Any]]
+    _given: tuple[tuple[object, ...], dict[str, object]]
 
-    def __new__(cls, *args: Any, **kwargs: Any) -> Self:
+    def __new__(cls, *args: object, **kwargs: object) -> Self:
         """Make a node that knows what it was made from."""
         # Kept because a node need not keep what it was made from, and a tree file has to say it.
         node = super().__new__(cls)
         node._given = (args, kwargs)
         return node
 
-    def parameters(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, object]:
         """What the node was made from: every parameter of its constructor by name."""
         args, kwargs = self._given
         bound = inspect.signature(type(self)).bind(*args, **kwargs)

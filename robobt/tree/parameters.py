@@ -57,7 +57,7 @@ class Parameter:
     def __str__(self) -> str:
         return f"{self.name}: {self.kind}" + ("" if self.required else f" = {_say_default(self.default)}")
 
-    def convert(self, value: Any) -> Any:
+    def convert(self, value: object) -> Any:
         """Plain data as this parameter's type.
 
         The rules are those of strict JSON: a list fits a tuple and an integer a
@@ -81,7 +81,7 @@ class Parameter:
             # Validators are anybody's code, and an abstract model cannot be made at all.
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
 
-    def plain(self, value: Any) -> Any:
+    def plain(self, value: object) -> Any:
         """The plain data that :meth:`convert` makes into an equal value.
 
         Raises:
@@ -118,7 +118,9 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
     ]
 
 
-def check_parameters(what: str, builder: Callable[..., object], given: Mapping[str, Any]) -> dict[str, Any]:
+def check_parameters(
+    what: str, builder: Callable[..., object], given: Mapping[str, object]
+) -> dict[str, Any]:
     """The given parameters, converted to the types of the builder's signature.
 
     Args:
@@ -134,7 +136,7 @@ def check_parameters(what: str, builder: Callable[..., object], given: Mapping[s
     return {name: known[name].convert(value) for name, value in given.items()}
 
 
-def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, Any]) -> None:
+def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, object]) -> None:
     """Check that every given name is known and every parameter without a default is given.
 
     Raises:
@@ -149,7 +151,7 @@ def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, A
             raise ParameterError(name, f"{what} needs this parameter")
 
 
-def say_hint(hint: Any) -> str:
+def say_hint(hint: object) -> str:
     """A type as a person would write it."""
     origin, arguments = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
@@ -170,6 +172,17 @@ def say_hint(hint: Any) -> str:
 
 def _say_default(default: object) -> str:
     return "none" if default is None else repr(str(default)) if isinstance(default, str) else f"{default}"
+
+
+def members_of(hint: object) -> set[object]:
+    """Return the members of a union type, or the type itself."""
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        return {member for part in typing.get_args(hint) for member in members_of(part)}
+    try:
+        return {types.NoneType if hint is None else hint}
+    except TypeError:
+        # Annotations may carry what cannot be hashed.
+        return set()
 
 
 @lru_cache(maxsize=512)

@@ -23,7 +23,7 @@ from robobt.tree.runner import TreeRunner
 class TickOn(Protocol):
     """What the fixture :func:`tick_on` is."""
 
-    def __call__(self, tree: Behaviour, frames: Iterable[Any], store: Any = None) -> list[Status]:
+    def __call__(self, tree: Behaviour, frames: Iterable[object], store: object = None) -> list[Status]:
         """Tick a leaf or a tree once on each frame; its statuses.
 
         A second call with the same tree goes on where the first one ended.
@@ -63,7 +63,7 @@ def tick_on(make_store: Callable[..., Any], before_tick: Callable[[Any, Any], No
     """A function that ticks a leaf or a tree on frames, see :class:`TickOn`."""
     runners: dict[Behaviour, tuple[TreeRunner, Any]] = {}
 
-    def tick(tree: Behaviour, frames: Iterable[Any], store: Any = None) -> list[Status]:
+    def tick(tree: Behaviour, frames: Iterable[object], store: object = None) -> list[Status]:
         if tree not in runners or store is not None:
             own = make_store() if store is None else store
             runners[tree] = (TreeRunner(tree, own, on_error="raise"), own)

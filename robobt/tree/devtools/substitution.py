@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Composite, Parallel
 from py_trees.decorators import Decorator
 
-from robobt.config.yaml import MAX_BYTES, Marked, parse_marked, read_limited
+from robobt.config.yaml import MAX_BYTES, Marked, Scalar, parse_marked, read_limited
 from robobt.tree.interop.model import TreeFileError
 from robobt.tree.runner import node_path
 
@@ -77,7 +77,7 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
     return _rules(parse_marked(content, source, TreeFileError), source)
 
 
-def substitutions(rules: Mapping[str, Any], source: str = "rules") -> list[Substitution]:
+def substitutions(rules: Mapping[str, object], source: str = "rules") -> list[Substitution]:
     """The same rules from a mapping as a file has them; statuses may also be :class:`Status`.
 
     Raises:
@@ -86,7 +86,9 @@ def substitutions(rules: Mapping[str, Any], source: str = "rules") -> list[Subst
     return _rules(_marked(dict(rules)), source)
 
 
-def substitute(root: Behaviour, rules: Iterable[Substitution] | Mapping[str, Any] | str | Path) -> Behaviour:
+def substitute(
+    root: Behaviour, rules: Iterable[Substitution] | Mapping[str, object] | str | Path
+) -> Behaviour:
     """Replace every node whose path matches a rule by a :class:`ScriptedLeaf` of its name.
 
     The first rule that matches counts, and what is below a replaced node is gone with it.
@@ -181,15 +183,15 @@ def _status(pattern: str, marked: Marked, source: str) -> Status:
     raise TreeFileError(source, problem, line=marked.line or None)
 
 
-def _say(value: Any) -> str:
+def _say(value: object) -> str:
     kinds: dict[type, str] = {dict: "a mapping", list: "a list"}
     return kinds.get(type(value)) or repr(value)[:40]
 
 
-def _marked(value: Any) -> Marked:
+def _marked(value: object) -> Marked:
     """Given data in the form of read data; its lines are 0, for there are none."""
     if isinstance(value, Mapping):
         return Marked({str(key): _marked(part) for key, part in value.items()}, 0, 0)
     if isinstance(value, list | tuple):
         return Marked([_marked(part) for part in value], 0, 0)
-    return Marked(value.value if isinstance(value, Status) else value, 0, 0)
+    return Marked(cast(Scalar, value.value if isinstance(value, Status) else value), 0, 0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.decorators import Decorator, EternalGuard, OneShot
@@ -80,7 +78,7 @@ def lifecycle(node: Behaviour) -> tuple[Hook | None, Tick, Hook | None]:
     return initialise, update, terminate
 
 
-def _inherits(leaf: Leaf[Any], method: str) -> bool:
+def _inherits(leaf: Behaviour, method: str) -> bool:
     """Return whether the leaf has this method from :class:`Leaf` itself."""
     return has_method_of(Leaf, leaf, method)
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from robobt.tree.interop.node_types import NodeType
 
@@ -43,7 +42,7 @@ class Tag:
     """
 
     type: str
-    fixed: Mapping[str, Any] = field(default_factory=dict)
+    fixed: Mapping[str, object] = field(default_factory=dict)
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
 
 

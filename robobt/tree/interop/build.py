@@ -22,7 +22,7 @@ from robobt.tree.interop.model import (
     TreeFileError,
     Value,
 )
-from robobt.tree.interop.node_types import Branches, NodeType, split_cases
+from robobt.tree.interop.node_types import Arguments, NodeType, split_cases
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, parameters_of
 
@@ -130,7 +130,7 @@ class _Builder:
                     self._check_entry(resolved)
                 if not self._wired(known, name, resolved):
                     given[name] = self._converted(known.parameters[name], resolved)
-        branches: Branches = {}
+        branches: Arguments = {}
         for name, branch in spec.branches.items():
             if isinstance(branch, list):
                 branches[name] = [self.spec(child, scope) for child in branch]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from py_trees.behaviour import Behaviour
 
 from robobt.tree.interop.model import Definition, Node, TreeFile
@@ -71,7 +69,7 @@ def _name(node: Behaviour, kind: NodeType) -> str | None:
     return None if kind.leaf and node.name == kind.cls.__name__ else node.name
 
 
-def _is_default(value: Any, default: Any) -> bool:
+def _is_default(value: object, default: object) -> bool:
     return value is default or (type(value) is type(default) and bool(value == default))
 
 

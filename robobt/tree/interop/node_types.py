@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import types
 import typing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -17,10 +16,10 @@ from pydantic_core import PydanticCustomError
 
 from robobt.tree import nodes
 from robobt.tree.leaf import Bound
-from robobt.tree.parameters import Parameter, parameters_of
+from robobt.tree.parameters import Parameter, members_of, parameters_of
 
-Branches: TypeAlias = dict[str, Behaviour | list[Behaviour] | dict[str, Behaviour]]
-"""The children a constructor is given, by the names of its parameters."""
+Arguments: TypeAlias = dict[str, Any]
+"""Values or children by the names of a constructor's parameters."""
 
 Shape = Literal["one", "optional", "many", "cases"]
 """How many children a branch has: a node, perhaps one, a list, or one for each of several cases."""
@@ -45,8 +44,8 @@ class NodeType:
     parameters: Mapping[str, Parameter]
     branches: Mapping[str, Shape]
     name_required: bool
-    make: Callable[[str | None, dict[str, Any], dict[str, Any]], Behaviour]
-    arguments: Callable[[Any], dict[str, Any]]
+    make: Callable[[str | None, Arguments, Arguments], Behaviour]
+    arguments: Callable[[Any], Arguments]
 
     @property
     def leaf(self) -> bool:
@@ -85,11 +84,11 @@ def node_type(cls: type[Behaviour], name: str = "") -> NodeType:
     }
     name_default = signature.parameters["name"].default if "name" in signature.parameters else None
 
-    def make(own_name: str | None, given: dict[str, Any], children: dict[str, Any]) -> Behaviour:
+    def make(own_name: str | None, given: Arguments, children: Arguments) -> Behaviour:
         named = {} if own_name is None else {"name": own_name}
         return cls(**named, **given, **children)
 
-    def arguments(node: Behaviour) -> dict[str, Any]:
+    def arguments(node: Behaviour) -> Arguments:
         if isinstance(node, Bound):
             known = node.parameters()
             return {entry: known[entry] for entry in parameters}
@@ -114,17 +113,6 @@ def _shape(parameter: Parameter) -> Shape | None:
     return "cases" if isinstance(origin, type) and issubclass(origin, Mapping) else "many"
 
 
-def members_of(hint: Any) -> set[Any]:
-    """Return the members of a union type, or the type itself."""
-    if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        return {member for part in typing.get_args(hint) for member in members_of(part)}
-    try:
-        return {hint}
-    except TypeError:
-        # Annotations may carry what cannot be hashed.
-        return set()
-
-
 def split_cases(cases: str) -> list[str]:
     """Return the cases that one branch of a switch serves: ``halt | stop``."""
     return [case.strip() for case in cases.split("|")]
@@ -134,7 +122,7 @@ def _parallel() -> NodeType:
     """py_trees' Parallel, whose policy is an object."""
     policies = ("success_on_all", "success_on_one")
 
-    def make(name: str | None, given: dict[str, Any], children: dict[str, Any]) -> Behaviour:
+    def make(name: str | None, given: Arguments, children: Arguments) -> Behaviour:
         assert name is not None
         policy: ParallelPolicy.Base
         if given["policy"] == "success_on_all":
@@ -145,7 +133,7 @@ def _parallel() -> NodeType:
             policy = ParallelPolicy.SuccessOnOne()
         return composites.Parallel(name, policy, **children)
 
-    def arguments(node: composites.Parallel) -> dict[str, Any]:
+    def arguments(node: composites.Parallel) -> Arguments:
         known = {ParallelPolicy.SuccessOnAll: policies[0], ParallelPolicy.SuccessOnOne: policies[1]}
         policy = type(node.policy)
         if policy not in known:
@@ -171,11 +159,11 @@ def _one_shot() -> NodeType:
         "on_success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION,
     }
 
-    def make(name: str | None, given: dict[str, Any], children: dict[str, Any]) -> Behaviour:
+    def make(name: str | None, given: Arguments, children: Arguments) -> Behaviour:
         assert name is not None
         return decorators.OneShot(name, policy=policies[given["policy"]], **children)
 
-    def arguments(node: decorators.OneShot) -> dict[str, Any]:
+    def arguments(node: decorators.OneShot) -> Arguments:
         return {"policy": next(word for word, policy in policies.items() if policy is node.policy)}
 
     return NodeType(
@@ -201,7 +189,7 @@ def _retry() -> NodeType:
     return _with_hint(node_type(decorators.Retry), "num_failures", Annotated[int, AfterValidator(_times)])
 
 
-def _with_hint(known: NodeType, name: str, hint: Any) -> NodeType:
+def _with_hint(known: NodeType, name: str, hint: object) -> NodeType:
     return replace(known, parameters={**known.parameters, name: Parameter(name, hint)})
 
 

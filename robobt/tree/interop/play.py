@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from pathlib import Path
-from typing import Any
 
 from py_trees.behaviour import Behaviour
 
@@ -50,7 +49,7 @@ class FilePlay:
         self.__annotations__ = {entry.name: entry.annotation for entry in entries}
         self.__signature__ = inspect.Signature(entries)
 
-    def __call__(self, **given: Any) -> Behaviour:
+    def __call__(self, **given: object) -> Behaviour:
         """A new tree.
 
         Raises:

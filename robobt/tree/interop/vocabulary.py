@@ -12,8 +12,8 @@ from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import short_repr
 from robobt.tree.interop.model import Entry
-from robobt.tree.interop.node_types import CONTROL, NodeType, members_of, node_type
-from robobt.tree.parameters import Parameter, ParameterError
+from robobt.tree.interop.node_types import CONTROL, NodeType, node_type
+from robobt.tree.parameters import Parameter, ParameterError, members_of
 
 
 class Named(Protocol):
@@ -76,7 +76,7 @@ class Vocabulary:
     def __iter__(self) -> Iterator[str]:
         return iter(sorted({*self._control, *self.leaves}))
 
-    def convert(self, parameter: Parameter, value: Any) -> Any:
+    def convert(self, parameter: Parameter, value: object) -> object:
         """Plain data, or an entry, as a parameter's type.
 
         Raises:
@@ -95,7 +95,7 @@ class Vocabulary:
                 return self._make_value(parameter, named[name], name, settings)
         return parameter.convert(value)
 
-    def plain(self, parameter: Parameter, value: Any) -> Any:
+    def plain(self, parameter: Parameter, value: object) -> object:
         """The plain data that :meth:`convert` makes into an equal value.
 
         Raises:
@@ -109,7 +109,7 @@ class Vocabulary:
                     return {name: settings}
         return parameter.plain(value)
 
-    def from_text(self, parameter: Parameter, text: str) -> Any:
+    def from_text(self, parameter: Parameter, text: str) -> object:
         """The plain data that a text stands for, as BehaviorTree.CPP writes values.
 
         Tried in this order: the text itself; after ``json:``, JSON; JSON without
@@ -130,7 +130,7 @@ class Vocabulary:
                     raise
         raise ParameterError(parameter.name, f"{short_repr(text)} is no {parameter.kind}") from first
 
-    def to_text(self, parameter: Parameter | None, value: Any) -> str:
+    def to_text(self, parameter: Parameter | None, value: object) -> str:
         """The text that :meth:`from_text` reads as this plain data; for any type where none is named."""
         exact = f"json:{json.dumps(value)}"
         if isinstance(value, list) and len(value) > 1 and all(type(part) in _SIMPLE for part in value):
@@ -148,7 +148,7 @@ class Vocabulary:
                 return exact
         return simple
 
-    def _is_refused(self, parameter: Parameter, value: Any) -> bool:
+    def _is_refused(self, parameter: Parameter, value: object) -> bool:
         """Whether a value is of the parameter's type, and only what is said beside the type refuses it."""
         if typing.get_origin(parameter.hint) is not Annotated:
             return False
@@ -160,11 +160,11 @@ class Vocabulary:
 
     def _named(self, parameter: Parameter) -> Named | None:
         for member in members_of(parameter.hint):
-            if member in self.values:
+            if isinstance(member, type) and member in self.values:
                 return self.values[member]
         return None
 
-    def _make_value(self, parameter: Parameter, cls: Any, name: str, settings: Any) -> Any:
+    def _make_value(self, parameter: Parameter, cls: object, name: str, settings: object) -> object:
         try:
             return Parameter(parameter.name, cls).convert({} if settings is None else settings)
         except ParameterError as error:
@@ -183,7 +183,7 @@ def is_pointer(text: str) -> bool:
     return len(text) >= 3 and text.startswith("{") and text.endswith("}")
 
 
-def _readings(text: str) -> Iterator[Any]:
+def _readings(text: str) -> Iterator[object]:
     if text.startswith("json:"):
         yield from _json(text.removeprefix("json:"))
         return
@@ -203,12 +203,12 @@ def _readings(text: str) -> Iterator[Any]:
 _SIMPLE = (int, float, str)
 
 
-def _same(one: Any, other: Any) -> bool:
+def _same(one: object, other: object) -> bool:
     # 1 and 1.0 are the same number, but 1 and true are not the same value.
     return bool(one == other) and isinstance(one, bool) is isinstance(other, bool)
 
 
-def _json(text: str) -> Iterator[Any]:
+def _json(text: str) -> Iterator[object]:
     try:
         yield json.loads(text)
     except (ValueError, RecursionError):

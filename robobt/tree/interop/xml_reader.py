@@ -184,10 +184,11 @@ class _Reader:
             except ParameterError as error:
                 raise self._error(element, f"{name} of <{shown}>: {error}") from error
 
-    def _plain(self, attribute: Attribute | None, parameter: Parameter, text: str) -> Any:
+    def _plain(self, attribute: Attribute | None, parameter: Parameter, text: str) -> object:
         if attribute is None:
             return self.vocabulary.from_text(parameter, text)
         number = self.vocabulary.from_text(Parameter(parameter.name, int), text)
+        assert isinstance(number, int)
         if attribute.milliseconds:
             if number < 0:
                 raise ParameterError(parameter.name, f"{number} is negative")
