@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import inspect
 import re
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from hashlib import sha256
@@ -31,6 +30,7 @@ from robobt.models.file import (
     read_manifest,
     unpack_archive,
 )
+from robobt.models.policy import load_policy, quiet
 
 MAX_EXPORT_SIZE = 2**20
 """A skill's network is small; a file longer than this is a mistake [bytes]."""
@@ -55,17 +55,17 @@ def export_model(
     same module and card give the same file.
 
     Args:
-        module: put into evaluation mode for a copy; itself it stays as it was.
-        card: all but ``payload``, which is filled in here.
-        folder: where to; made when it is not there.
+        module: the network; a copy is put into evaluation mode, it stays as it is.
+        card: its card, but for ``payload``, which is filled in here.
+        folder: folder to write to; made when it is missing.
         formats: "torchscript", "onnx" or both.
 
     Returns:
         The files, in the order of ``formats``.
 
     Raises:
-        ModelError: the module does not fit its card, answers what it must not, is larger
-            than 1 MB, or cannot be written so that its answers stay the same.
+        ModelError: the module does not fit its card, its outputs leave their range, it is larger
+            than 1 MB, or the file's outputs would differ from its own.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -93,7 +93,7 @@ def _copy(module: nn.Module) -> nn.Module:
         return copy.deepcopy(module).cpu().eval()
     # A deep copy of these has tensors that torch warns of.
     buffer = BytesIO()
-    with _quiet():
+    with quiet():
         torch.jit.save(module, buffer)
         buffer.seek(0)
         loaded: nn.Module = torch.jit.load(buffer, map_location="cpu")  # type: ignore[no-untyped-call]
@@ -102,7 +102,7 @@ def _copy(module: nn.Module) -> nn.Module:
 
 def _torchscript(module: nn.Module, card: ModelCard) -> bytes:
     buffer = BytesIO()
-    with _quiet():
+    with quiet():
         scripted = module if isinstance(module, torch.jit.ScriptModule) else _traced(module, card)
         torch.jit.save(torch.jit.freeze(scripted), buffer)
     members = unpack_archive(buffer.getvalue())
@@ -137,7 +137,7 @@ def _onnx(module: nn.Module, card: ModelCard) -> bytes:
     # The exporter that is torch's default from 2.9 on needs a package of its own.
     if "dynamo" in inspect.signature(torch.onnx.export).parameters:
         options["dynamo"] = False
-    with _quiet():
+    with quiet():
         torch.onnx.export(module, (torch.from_numpy(_inputs(card, 2)),), buffer, **options)  # type: ignore[arg-type]
     model = onnx.load_from_string(buffer.getvalue())
     del model.metadata_props[:]
@@ -150,35 +150,25 @@ def _onnx(module: nn.Module, card: ModelCard) -> bytes:
 
 
 def _compare(module: nn.Module, card: ModelCard, format_: Format, written: Path, path: Path) -> None:
-    from robobt.models.policy import load_policy
-
     try:
         policy = load_policy(written)
     except ModelError as error:
         raise ModelError(str(error).replace(str(written), str(path))) from error
     inputs = torch.from_numpy(_inputs(card, _SAMPLES))
     with torch.no_grad():
-        wanted: Tensor = module(inputs)
+        expected: Tensor = module(inputs)
         one_by_one = torch.cat([module(row[None]) for row in inputs])
     allowed = TOLERANCE
     if format_ != "torchscript":
         # Another runtime adds up in another order, as torch itself does for one row and for many.
-        allowed = max(allowed, 2.0 * float((wanted - one_by_one).abs().max()))
-    off = float(np.abs(policy(inputs.numpy()) - wanted.numpy()).max())
+        allowed = max(allowed, 2.0 * float((expected - one_by_one).abs().max()))
+    off = float(np.abs(policy(inputs.numpy()) - expected.numpy()).max())
     if not off <= allowed:
         raise ModelError(f"{path}: the file's answers are {off:.2g} off those of the network")
 
 
 def _inputs(card: ModelCard, count: int) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
     return np.random.default_rng(0).normal(0.0, 2.0, (count, card.observation.size)).astype(np.float32)
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """TorchScript is deprecated upstream; whoever exports a model cannot do anything about it."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        yield
 
 
 @contextmanager

@@ -157,7 +157,7 @@ class _TorchScript:
 
         members = unpack_archive(file.content)
         check_code(members)
-        with _quiet():
+        with quiet():
             try:
                 loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
                 loaded.eval()
@@ -287,7 +287,7 @@ def _first_line(error: Exception) -> str:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Silence warnings: a player can do nothing about TorchScript's deprecation upstream."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
