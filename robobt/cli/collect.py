@@ -8,7 +8,17 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, Progress, cores, errors, one_line_errors, print_json, say
+from robobt.cli.common import (
+    MAX_SEED,
+    Json,
+    Progress,
+    Workers,
+    cores,
+    errors,
+    one_line_errors,
+    print_json,
+    say,
+)
 
 
 class Scenario(StrEnum):
@@ -60,9 +70,7 @@ def shots(
             "--opponents", min=1, max=6, help="Most opponents; half the shots have the keeper alone."
         ),
     ] = 1,
-    workers: Annotated[
-        int | None, typer.Option("--workers", "-w", min=1, max=256, help="Processes; by default one a core.")
-    ] = None,
+    workers: Workers = None,
     seed: Annotated[
         int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="What all randomness follows from.")
     ] = 1,
@@ -86,9 +94,9 @@ def shots(
     settings = CollectionSettings(
         scenario=scenario.value, protocol=protocol.value, opponents=opponents, seed=seed
     )
-    wanted = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)
-    with Progress("shots", wanted) as progress:
-        done = collect_shots(settings, out, wanted, workers or cores(), progress.advance)
+    total = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)
+    with Progress("shots", total) as progress:
+        done = collect_shots(settings, out, total, workers or cores(), progress.advance)
     figures = {
         "out": str(out),
         "shots": done.shots,

@@ -1,4 +1,4 @@
-"""What the commands share: consoles, one-line errors, options, tables and bars.
+"""Consoles, one-line errors, options, tables and progress bars that the commands share.
 
 Nothing heavy may be imported at the top of any module of this package:
 ``robobt --help`` loads them all. A command imports what it needs itself.
@@ -41,22 +41,39 @@ Imports = Annotated[
 ]
 """The option of every command that knows plays or skills by name; see ``import_files``."""
 
+MAX_SEED = 2**53 - 1
+"""The largest seed that JSON keeps exactly."""
+
+Seed = Annotated[
+    int | None,
+    typer.Option(
+        "--seed", "-s", min=0, max=MAX_SEED, help="Seed of all randomness; by default the scenario's."
+    ),
+]
+"""The option of commands that play a scenario with its seed or another."""
+
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", "-w", min=1, max=256, help="Worker processes; by default one a core."),
+]
+"""The option of commands that share their work among processes."""
+
 Where = Annotated[
     str,
     typer.Option(
         "--world",
-        help="Where it is played: sim, or a field of the league like league://grsim (one worker).",
+        help="Where to play: sim, or a field of the league like league://grsim (one worker).",
     ),
 ]
 """The option of every command that can play elsewhere; see ``factory_of``."""
+
+Bundled = Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")]
+"""The argument of commands that play a scenario."""
 
 RECORDING = ".robobt.jsonl.gz"
 """How the name of a recorded match ends."""
 
 PAGE = ".html"
-
-MAX_SEED = 2**53 - 1
-"""The largest seed that JSON keeps exactly."""
 
 log = logging.getLogger("robobt")
 _P = ParamSpec("_P")
@@ -75,17 +92,17 @@ def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
         except Exception as error:
             if log.isEnabledFor(logging.DEBUG):
                 raise
-            errors.print(f"[red]robobt:[/red] {escape(_say_error(error))}", soft_wrap=True)
+            errors.print(f"[red]robobt:[/red] {escape(_error_text(error))}", soft_wrap=True)
             raise typer.Exit(1) from error
 
     return guarded
 
 
-def _say_error(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     text = " ".join(str(error.args[0] if error.args else "").split())
-    # An error of robobt's own was written for whoever reads this line; any other may be a fault of ours.
+    # robobt's own errors are written for users; any other may be a bug.
     if isinstance(error, RobobtError):
         return text
     if isinstance(error, KeyError | ValueError) and text:
@@ -103,7 +120,7 @@ def import_files(paths: Iterable[Path] | None) -> None:
 
 
 def factory_of(world: str) -> WorldFactory:
-    """What makes the worlds of an address; a process told to end stops the robots of a real one first."""
+    """Return the world factory of an address; on a signal to end, real robots are stopped first."""
     from robobt.worlds import SIM, world_from
 
     factory = world_from(world)
@@ -115,14 +132,14 @@ def factory_of(world: str) -> WorldFactory:
 
 
 def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:
-    """The usage error for a name that is none: the names there are, or why another package's is not."""
+    """Make the usage error for an unknown name, with the known ones or what is wrong with its package."""
     problem = registry.problem_with(name)
     there = f"no {registry.kind} is called {name!r}; there are {', '.join(registry)}"
     return typer.BadParameter(there if problem is None else problem)
 
 
 def parse_assignments(texts: Iterable[str], option: str) -> dict[str, object]:
-    """What ``name=value`` texts say, the values read as YAML; ``option`` is named in the usage error."""
+    """Parse ``name=value`` texts, the values read as YAML; ``option`` is named in the usage error."""
     from robobt.config.yaml import parse_marked
 
     given: dict[str, object] = {}
@@ -138,7 +155,7 @@ def parse_assignments(texts: Iterable[str], option: str) -> dict[str, object]:
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """Return the number of cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -153,17 +170,17 @@ def warn(text: str) -> None:
 
 
 def print_json(data: Mapping[str, object]) -> None:
-    """Print one JSON object, and nothing that JSON has not (NaN, infinity: ValueError)."""
+    """Print one JSON object; a value that JSON lacks (NaN, infinity) is a ValueError."""
     sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
 
 
 def table(*columns: str) -> Table:
-    """A table without lines, to be printed on ``console``."""
+    """Return an empty table without lines, to be printed on ``console``."""
     return Table(*columns, box=None, padding=(0, 2, 0, 0))
 
 
 class Progress:
-    """A bar on stderr for ``total`` steps; nothing where stderr is no terminal."""
+    """A progress bar on stderr for ``total`` steps; nothing where stderr is no terminal."""
 
     def __init__(self, name: str, total: int) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
@@ -188,5 +205,5 @@ class Progress:
         self._bars.stop()
 
     def advance(self, steps: int = 1) -> None:
-        """So many more are done."""
+        """Count more steps as done."""
         self._bars.advance(self._bar, steps)

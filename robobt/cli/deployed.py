@@ -1,4 +1,4 @@
-"""``robobt paper deployed``: what a learned veto does for the goals."""
+"""``robobt paper deployed``: attackers with and without a learned veto."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from robobt.cli.common import (
     Json,
     Progress,
     Where,
+    Workers,
     console,
     cores,
     factory_of,
@@ -45,9 +46,7 @@ def deployed(
     goalkeeper: Annotated[
         Style, typer.Option("--goalkeeper", help="default, or robobulls for the paper's own pilot.")
     ] = Style.DEFAULT,
-    workers: Annotated[
-        int | None, typer.Option("--workers", "-w", min=1, max=256, help="Processes; by default one a core.")
-    ] = None,
+    workers: Workers = None,
     picture: Annotated[
         Path | None,
         typer.Option(
@@ -73,7 +72,7 @@ def deployed(
 
     used = SEED if seed is None else seed
     if world != SIM and workers not in (None, 1):
-        raise typer.BadParameter("what is played over the network has one worker", param_hint="--workers")
+        raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
     factory = factory_of(world)
     processes = workers or (cores() if world == SIM else 1)
     with Progress("deployed", 2 * len(PLAYED) * shots) as progress:

@@ -1,4 +1,4 @@
-"""``robobt export`` and ``robobt models``: trained policies as files, and what those say of themselves."""
+"""``robobt export`` and ``robobt models``: trained policies as files, and their cards."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def _print_table(files: list[ModelFile]) -> None:
     listed.columns[0].no_wrap = True
     for file in files:
         card = file.card
-        told = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()][:2]
+        figures = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()][:2]
         listed.add_row(
             escape(card.name),
             file.format,
@@ -133,7 +133,7 @@ def _print_table(files: list[ModelFile]) -> None:
             escape(card.skill),
             escape(f"{card.observation.name} v{card.observation.version}"),
             f"{file.size / 1024:.0f}",
-            escape(", ".join(told)),
+            escape(", ".join(figures)),
         )
     console.print(listed)
 

@@ -1,4 +1,4 @@
-"""What is registered by name: ``robobt plays``, ``skills``, ``raters`` and ``policies``."""
+"""``robobt plays``, ``skills``, ``raters`` and ``policies``: list what is registered by name."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def raters(
             )
             for key, given in fields
         ]
-        return _Listed(_doc(cls), own, says={key: given.description or "" for key, given in fields})
+        return _Listed(_doc(cls), own, meanings={key: given.description or "" for key, given in fields})
 
     _list("raters", RATERS, name, as_json, listed)
 
@@ -124,17 +124,17 @@ def policies(
 
 @dataclass
 class _Listed:
-    """What is said of an entry.
+    """The description of an entry.
 
     Attributes:
         store: verb and entries of the store.
-        says: what parameters mean, where their type does not carry the description.
+        meanings: what parameters mean, where their type does not carry the description.
     """
 
     doc: str
     parameters: list[Parameter]
     store: dict[str, list[str]] = field(default_factory=dict)
-    says: dict[str, str] = field(default_factory=dict)
+    meanings: dict[str, str] = field(default_factory=dict)
 
 
 def _list(
@@ -178,7 +178,7 @@ def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> N
     doc = listed.doc if whole else listed.doc.partition("\n")[0]
     console.print(f"  {escape(doc)}".replace("\n", "\n  "), soft_wrap=True)
     for parameter in listed.parameters:
-        meaning = listed.says.get(parameter.name, "")
+        meaning = listed.meanings.get(parameter.name, "")
         console.print(
             f"    [cyan]{escape(str(parameter))}[/cyan]" + (f"  {escape(meaning)}" if meaning else ""),
             soft_wrap=True,

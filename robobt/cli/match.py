@@ -1,4 +1,4 @@
-"""``robobt match``: plays a scenario and prints what came out."""
+"""``robobt match``: play a scenario and print the results."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from rich.markup import escape
 from rich.table import Table
 
 from robobt.cli.common import (
-    MAX_SEED,
     PAGE,
     RECORDING,
     Imports,
     Json,
     Progress,
+    Seed,
+    Where,
     console,
     cores,
     errors,
@@ -54,9 +55,7 @@ def match(
     ],
     trials: Annotated[
         int | None,
-        typer.Option(
-            "--trials", "-n", min=1, max=100_000, help="How often; by default what the scenario says."
-        ),
+        typer.Option("--trials", "-n", min=1, max=100_000, help="Trials to play; by default the scenario's."),
     ] = None,
     workers: Annotated[
         int | None,
@@ -64,16 +63,7 @@ def match(
             "--workers", "-w", min=1, max=256, help="Processes; by default one a core, for 4 trials each."
         ),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--seed",
-            "-s",
-            min=0,
-            max=MAX_SEED,
-            help="What all randomness follows from; by default the scenario's.",
-        ),
-    ] = None,
+    seed: Seed = None,
     replay: Annotated[
         Path | None,
         typer.Option(
@@ -102,8 +92,8 @@ def match(
         OnError | None,
         typer.Option(
             "--on-error",
-            help="What an exception in a tree does: stop that robot for the tick, or raise and end "
-            "the run with the node's path; by default what the scenario says.",
+            help="On an exception in a tree: stop that robot for the tick, or raise and end the run "
+            "with the node's path; by default as in the scenario.",
         ),
     ] = None,
     substitute: Annotated[
@@ -116,24 +106,18 @@ def match(
         ),
     ] = None,
     imports: Imports = None,
-    world: Annotated[
-        str,
-        typer.Option(
-            "--world",
-            help="Where it is played: sim, or a field of the league like league://grsim (one worker).",
-        ),
-    ] = "sim",
+    world: Where = "sim",
     publish: Annotated[
         bool,
         typer.Option(
             "--publish",
-            help="Play in real time and tell the league's programs on this machine: vision, tracked frames "
-            "and what the referee says (one worker).",
+            help="Play in real time and send vision, tracked frames and the referee's messages to the "
+            "league's programs on this machine (one worker).",
         ),
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Play a scenario, once or many times, and print what came out.
+    """Play a scenario, once or many times, and print the results.
 
     Ctrl-C stops the run; the trials that are finished are kept and printed.
 
@@ -160,9 +144,7 @@ def match(
         factory = PublishingFactory(factory)
     if world != SIM or publish:
         if workers not in (None, 1):
-            raise typer.BadParameter(
-                "what is played or published over the network has one worker", param_hint="--workers"
-            )
+            raise typer.BadParameter("must be 1 to play or publish over the network", param_hint="--workers")
         workers = 1
         from robobt.league.signals import exit_on_signals
 
@@ -173,7 +155,7 @@ def match(
         there = f"there is no trial {recorded}; they are 0 to {count - 1}"
         raise typer.BadParameter(there, param_hint="--record")
     if replay is None and record is not None:
-        # The name is anybody's words: it may not lead to another folder.
+        # A scenario's name is free text: it must not lead to another folder.
         name = re.sub(r"[^\w.-]+", "_", loaded.name)
         replay = Path(f"{name}-{record}{RECORDING}")
     if replay is not None:
@@ -219,7 +201,7 @@ def match(
 
 
 def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]) -> Scenario:
-    """The scenario as the command line wants it."""
+    """Return the scenario with the changes of the command line."""
     from robobt.match.scenario.substitution import substituted
 
     rules = []

@@ -1,4 +1,4 @@
-"""``robobt record``: makes recordings logs for other tools, and ticks of them test cases."""
+"""``robobt record``: export recordings to other tools, and save ticks as regression cases."""
 
 from __future__ import annotations
 

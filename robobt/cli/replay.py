@@ -1,4 +1,4 @@
-"""``robobt replay``: makes recordings pages."""
+"""``robobt replay``: turn recordings into pages for the browser."""
 
 from __future__ import annotations
 

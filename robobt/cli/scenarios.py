@@ -1,4 +1,4 @@
-"""``robobt scenarios``: what there is to play."""
+"""``robobt scenarios``: list the bundled scenarios."""
 
 from __future__ import annotations
 

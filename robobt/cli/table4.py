@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import (
-    MAX_SEED,
     Json,
     Progress,
+    Seed,
     Where,
     console,
     factory_of,
@@ -31,12 +31,7 @@ def table4(
     runs: Annotated[
         int, typer.Option("--runs", "-n", min=1, max=100_000, help="Runs of each trial and combination.")
     ] = 25,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--seed", "-s", min=0, max=MAX_SEED, help="Of all runs; by default what the scenarios say."
-        ),
-    ] = None,
+    seed: Seed = None,
     preset: Annotated[
         str, typer.Option("--preset", "-p", help="The simulator's preset: also grsim, erforce, default, ...")
     ] = "robobulls",

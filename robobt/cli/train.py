@@ -12,6 +12,7 @@ from robobt.cli.common import (
     MAX_SEED,
     Json,
     Progress,
+    Workers,
     console,
     cores,
     errors,
@@ -33,10 +34,6 @@ Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")
 Changes = Annotated[
     list[str] | None,
     typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again."),
-]
-Workers = Annotated[
-    int | None,
-    typer.Option("--workers", "-w", min=1, max=256, help="Processes of one thread each; by default a core."),
 ]
 
 
@@ -85,10 +82,16 @@ def train(
     settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
     first = settings.seed if seed is None else seed
-    wanted = range(first, first + seeds)
     with _LiveTable(settings.task) as live:
         try:
-            results = train_seeds(settings, wanted, folder, workers or min(cores(), seeds), resume, live.show)
+            results = train_seeds(
+                settings,
+                range(first, first + seeds),
+                folder,
+                workers or min(cores(), seeds),
+                resume,
+                live.show,
+            )
         except KeyboardInterrupt:
             errors.print(f"stopped; --resume goes on with what is in {escape(str(folder))}", soft_wrap=True)
             raise typer.Exit(130) from None

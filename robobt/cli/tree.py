@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import (
-    MAX_SEED,
     Imports,
     Json,
+    Seed,
     errors,
     import_files,
     one_line_errors,
@@ -59,12 +59,7 @@ def tree(
             help="Play a trial of this scenario and count what the nodes of the robots with this play do.",
         ),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--seed", "-s", min=0, max=MAX_SEED, help="For --statistics; by default the scenario's."
-        ),
-    ] = None,
+    seed: Seed = None,
     imports: Imports = None,
     as_json: Json = False,
 ) -> None:

@@ -145,9 +145,6 @@ The learned approach hands over at full speed and the pick-up goes on as fast as
 dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
 """
 
-BESIDE = {"robobulls": "baseline", "ddpg, ddpg": "ddpg"}
-"""The paper's row that stands beside one of ours."""
-
 LEARNED = "ddpg, ddpg"
 HAND_WRITTEN = tuple(name for name in COMBINATIONS if "ddpg" not in name)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Self
@@ -15,7 +16,7 @@ from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
-from robobt.match.results.results import MatchResult, RobotResult
+from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -159,12 +160,7 @@ class Match:
             yellow_score=self._judge.scores[Team.YELLOW],
             in_play=measures.in_play / max(1, measures.ticks),
             ticks=measures.ticks,
-            robots={
-                str(robot): RobotResult(
-                    figures.go_to_ball, figures.shoot, figures.kicks, figures.errors, figures.first_error
-                )
-                for robot, figures in measures.robots.items()
-            },
+            robots={str(robot): replace(figures) for robot, figures in measures.robots.items()},
             trace=self._trace.hexdigest(),
             wall_time=wall_time,
         )

@@ -13,9 +13,6 @@ from robobt.models.actions import ActionScaling
 from robobt.world.features import OBSERVATIONS, ObservationSpec
 from robobt.world.limits import RobotLimits
 
-CARD_FORMAT = 1
-"""Version of the card's own fields."""
-
 MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
 """What a model may be called, as a regular expression."""
 

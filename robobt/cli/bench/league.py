@@ -7,7 +7,17 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import MAX_SEED, Json, console, errors, one_line_errors, print_json, say, table
+from robobt.cli.common import (
+    MAX_SEED,
+    Bundled,
+    Json,
+    console,
+    errors,
+    one_line_errors,
+    print_json,
+    say,
+    table,
+)
 
 
 def add_to(bench: typer.Typer) -> None:
@@ -80,9 +90,7 @@ def _row(rms: dict[str, float]) -> list[str]:
 
 @one_line_errors
 def bench_league(
-    scenario: Annotated[
-        str, typer.Argument(help="A scenario file or the name of a bundled one.")
-    ] = "six_v_six",
+    scenario: Bundled = "six_v_six",
     seconds: Annotated[float, typer.Option("--seconds", min=4, max=3600, help="How long to play.")] = 30.0,
     simulator: Annotated[str, typer.Option("--simulator", help="grsim or protocol.")] = "grsim",
     realism: Annotated[

@@ -7,7 +7,17 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import MAX_SEED, Imports, Json, errors, import_files, one_line_errors, print_json, say
+from robobt.cli.common import (
+    Bundled,
+    Imports,
+    Json,
+    Seed,
+    errors,
+    import_files,
+    one_line_errors,
+    print_json,
+    say,
+)
 
 
 def add_to(bench: typer.Typer) -> None:
@@ -17,15 +27,11 @@ def add_to(bench: typer.Typer) -> None:
 
 @one_line_errors
 def bench_match(
-    scenario: Annotated[
-        str, typer.Argument(help="A scenario file or the name of a bundled one.")
-    ] = "six_v_six",
+    scenario: Bundled = "six_v_six",
     seconds: Annotated[
         float, typer.Option("--seconds", min=1, max=3600, help="Simulated time to play.")
     ] = 60.0,
-    seed: Annotated[
-        int | None, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="By default the scenario's.")
-    ] = None,
+    seed: Seed = None,
     imports: Imports = None,
     as_json: Json = False,
 ) -> None:

@@ -44,7 +44,7 @@ def bench_train(
     given = parse_assignments(changes or [], "--set")
     folder = out or Path("runs") / f"compare-{task}"
     with errors.status(f"comparing settings of {escape(task)}") as status:
-        told = compare(
+        compared = compare(
             task,
             folder,
             range(seeds),
@@ -54,9 +54,9 @@ def bench_train(
             on_variant=lambda name: status.update(f"training {escape(name)}"),
         )
     if as_json:
-        print_json({"task": task, "variants": told})
+        print_json({"task": task, "variants": compared})
         return
-    head, *rows = rows_of(told)
+    head, *rows = rows_of(compared)
     shown = table(*head)
     for row in rows:
         shown.add_row(*row)

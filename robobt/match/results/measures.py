@@ -4,35 +4,16 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import cos, sin
 from struct import pack
 
+from robobt.match.results.results import RobotResult
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 _KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
 """A ball was kicked that leaves its robot with this share of the commanded speed, or this fast [m/s]."""
-
-
-@dataclass(slots=True)
-class RobotMeasures:
-    """One robot's figures.
-
-    Attributes:
-        go_to_ball: from the start until the ball first lay in its mouth [s], None when it never did.
-        shoot: from then until its first kick [s], None without one.
-        kicks: how often it kicked.
-        errors: ticks at which its tree raised or decided a command that is not a number.
-        first_error: the first of them: the node's path and what happened.
-    """
-
-    go_to_ball: float | None = None
-    shoot: float | None = None
-    kicks: int = 0
-    errors: int = 0
-    first_error: str | None = None
 
 
 class Measures:
@@ -47,7 +28,7 @@ class Measures:
     """
 
     def __init__(self, robots: Mapping[RobotId, object]) -> None:
-        self.robots = {robot: RobotMeasures() for robot in robots}
+        self.robots = {robot: RobotResult() for robot in robots}
         self.kicks = 0
         self.ticks = 0
         self.in_play = 0

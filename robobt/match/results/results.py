@@ -17,7 +17,7 @@ from robobt.statistics import wilson_interval
 _AS_WRITTEN = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
-@dataclass(slots=True, frozen=True)
+@dataclass(slots=True)
 class RobotResult:
     """One robot's figures in one trial.
 
@@ -26,7 +26,7 @@ class RobotResult:
         shoot: from then until its first kick [s], None without one.
         kicks: how often it kicked.
         errors: ticks at which its tree failed and the robot was stopped.
-        first_error: the first of them, None without one.
+        first_error: the first of them, the node's path and what happened; None without one.
     """
 
     __pydantic_config__ = _AS_WRITTEN
