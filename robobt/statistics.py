@@ -24,14 +24,14 @@ class Interval(NamedTuple):
 
 
 def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> Interval:
-    """Wilson's score interval for a proportion.
+    """Compute Wilson's score interval for a proportion.
 
     Unlike the textbook normal interval it stays inside [0, 1] and keeps its
     coverage when every trial succeeds or none does.
 
     Args:
-        successes: how many trials succeeded.
-        trials: how many there were; none at all gives (0, 1), nothing is known.
+        successes: number of trials that succeeded.
+        trials: number of trials; none at all gives (0, 1): nothing is known.
         confidence: coverage, between 0 and 1.
 
     Raises:
@@ -54,7 +54,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
 
 
 def clopper_pearson_interval(successes: int, trials: int, confidence: float = 0.95) -> Interval:
-    """Clopper and Pearson's interval for a proportion, which never covers less than it says.
+    """Compute Clopper and Pearson's interval for a proportion, whose coverage is never below its level.
 
     Args and errors as for :func:`wilson_interval`.
 
@@ -72,7 +72,7 @@ def clopper_pearson_interval(successes: int, trials: int, confidence: float = 0.
 
 
 def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
-    """Student's interval for the mean of independent values; without bounds for a single one.
+    """Compute Student's interval for the mean of independent values; a single one gives no bounds.
 
     Raises:
         ValueError: no values, one that is not finite, or confidence out of range.
@@ -103,7 +103,7 @@ class PairedTest(NamedTuple):
 
 
 def corrected_resampled_t_test(differences: ArrayLike, test_to_train: float) -> PairedTest:
-    """The corrected resampled paired t-test.
+    """Compute the corrected resampled paired t-test.
 
     The runs of a repeated cross-validation share training data, so that their
     differences vary less than independent ones would. The correction takes
@@ -153,10 +153,11 @@ class McNemar(NamedTuple):
 def mcnemar(
     first: ArrayLike, second: ArrayLike, method: Literal["exact", "mid_p", "chi2"] = "exact"
 ) -> McNemar:
-    """Whether two classifiers that judged the same trials are right equally often.
+    """Test whether two classifiers that judged the same trials are right equally often.
 
     Args:
-        first, second: (n,) whether each was right on a trial.
+        first: (n,) whether the one was right on a trial.
+        second: (n,) whether the other was.
         method: ``exact``, the binomial test on the trials they differ in;
             ``mid_p``, the same less half the probability of what was seen on either side, which
             is less conservative; ``chi2``, the approximation with continuity correction.
@@ -178,7 +179,7 @@ def mcnemar(
 def mcnemar_p(
     only_first: int, only_second: int, method: Literal["exact", "mid_p", "chi2"] = "exact"
 ) -> float:
-    """Two-sided p of :func:`mcnemar` from the two counts of trials on which the classifiers differ."""
+    """Compute the two-sided p of :func:`mcnemar` from the two counts of trials that only one got right."""
     if only_first < 0 or only_second < 0:
         raise ValueError("counts must not be negative")
     if method not in ("exact", "mid_p", "chi2"):
@@ -214,7 +215,7 @@ class ReliabilityBin:
 
 
 def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
-    """What was predicted beside what came true, in bins of equal width; empty bins are left out.
+    """Compare predictions with outcomes in bins of equal width; empty bins are left out.
 
     Raises:
         ValueError: lists of different length or none, no bin, or values outside [0, 1].
@@ -236,7 +237,7 @@ def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -
 
 
 def calibration_error(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> float:
-    """Expected calibration error: the mean gap between predicted and observed, weighted by trials.
+    """Compute the expected calibration error: the mean gap of predicted and observed, weighted by trials.
 
     Arguments and errors as for :func:`reliability`.
 

@@ -23,7 +23,7 @@ from robobt.cli.common import (
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robobt.experiments.table4 import Spread, Trial
+    from robobt.experiments.table4_rows import Spread, Trial
 
 
 @one_line_errors

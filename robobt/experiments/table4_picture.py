@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from robobt.experiments.picture import new_figure, save_figure
-from robobt.experiments.table4 import Table4
+from robobt.experiments.table4_rows import Table4
 
 _PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
     ("approach", "approach", "C0"),
@@ -22,8 +22,8 @@ def draw_table4(result: Table4, path: Path) -> None:
     rows, whose approach and pick-up are one figure, are hatched.
 
     Args:
-        result: of :func:`~robobt.experiments.table4.table4`.
-        path: the ending decides the format (.png, .svg, .pdf).
+        result: result of :func:`~robobt.experiments.table4.table4`.
+        path: file to write; the ending decides the format (.png, .svg, .pdf).
 
     Raises:
         ValueError: an ending that matplotlib does not know.

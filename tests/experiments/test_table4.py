@@ -9,8 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.experiments.table4 import COMBINATIONS, PAPER, play_attempt, table4, table4_scenario
+from robobt.experiments.table4 import COMBINATIONS, play_attempt, table4, table4_scenario
 from robobt.experiments.table4_picture import draw_table4
+from robobt.experiments.table4_rows import PAPER
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.match import load_scenario
 from robobt.match.runner import trial_seed
