@@ -13,17 +13,17 @@ _DATA = _PACKAGE / "_data"
 
 
 def scenarios_folder() -> Path:
-    """The folder of the bundled scenario files."""
+    """Return the folder of the bundled scenario files."""
     return _folder("scenarios", _PACKAGE.parent / "examples" / "scenarios")
 
 
 def models_folder() -> Path:
-    """The folder of the shipped models, each with its model card."""
+    """Return the folder of the shipped models, each with its model card."""
     return _folder("models", _PACKAGE.parent / "models")
 
 
 def bundled_scenarios() -> dict[str, Path]:
-    """The bundled scenario files by name, in the order of their names."""
+    """Return the bundled scenario files by name, in the order of their names."""
     return {path.stem: path for path in sorted(scenarios_folder().glob("*.yaml"))}
 
 

@@ -78,17 +78,17 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
 
 
 def case(name: str, *steps: Behaviour) -> Behaviour:
-    """One of the goalkeeper's cases: conditions, then what to do, looked at anew every tick."""
+    """Return one of the goalkeeper's cases: conditions, then what to do, checked at every tick."""
     return Sequence(name, memory=False, children=list(steps))
 
 
 def where_to_clear() -> Behaviour:
-    """To a team-mate, else to where there is room."""
+    """Choose where to clear: to a team-mate, else to where there is room."""
     return Selector("where to", memory=False, children=[SelectClearance(), AimUpfield()])
 
 
 def robobulls_limits(factor: float) -> RobotLimits:
-    """RoboBulls' pilot with its velocity multiplier: it scales the top speed and nothing else."""
+    """Return the limits of RoboBulls' pilot with its velocity multiplier, which scales only the top speed."""
     return ROBOBULLS_LIMITS.model_copy(
         update={"max_speed": ROBOBULLS_LIMITS.max_speed * check_factor(factor)}
     )

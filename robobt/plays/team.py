@@ -152,7 +152,7 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
 
 
 def when(name: str, *steps: Behaviour) -> Behaviour:
-    """Conditions, then what to do while they hold; looked at anew every tick."""
+    """Return conditions, then what to do while they hold, checked at every tick."""
     return Sequence(name, memory=False, children=list(steps))
 
 
@@ -200,7 +200,7 @@ def kick_away(shooting: Shooting, *, settled: bool) -> Behaviour:
 
 
 def aims(shooting: Shooting) -> tuple[Behaviour, Behaviour, Behaviour]:
-    """Where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
+    """Choose where to kick the ball, the best first: at the goal, to a team-mate, upfield."""
     shot = SelectShot(rater=shooting.rater, min_score=shooting.min_score, max_distance=shooting.distance)
     return shot, SelectPass(min_score=0.1), AimUpfield()
 

@@ -156,14 +156,14 @@ class _Plain:
         self.status = _I
 
     def initialise(self) -> None:
-        """Called when a run begins."""
+        """Begin a run."""
 
     def update(self) -> Status:
-        """One tick's work."""
+        """Do one tick's work."""
         return _I
 
     def terminate(self, new_status: Status) -> None:
-        """Called when a run ends, and when the node is reset."""
+        """End a run, or reset the node."""
 
     def tick(self) -> Status:
         if self.status is not _R:

@@ -79,7 +79,7 @@ def _problems(node: Behaviour, store: type, written: Collection[str]) -> Iterato
 
 @lru_cache(maxsize=32)
 def entries_of(store: type) -> Mapping[str, object]:
-    """The entries of a store class and their types; :data:`typing.Any` where it does not say."""
+    """Return the entries of a store class and their types, :data:`typing.Any` for those without."""
     entries: dict[str, object] = {}
     for name, hint in typing.get_type_hints(store).items():
         if typing.get_origin(hint) is not typing.ClassVar:

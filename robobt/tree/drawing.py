@@ -67,7 +67,7 @@ class NodeDescription:
 
 
 def describe(node: Behaviour) -> NodeDescription:
-    """What ``node`` is, in words; its children are not looked at."""
+    """Describe ``node`` in words, without its children."""
     name, type_name = str(node.name), type(node).__name__
     if isinstance(node, Selector | Sequence):
         glyph = "?" if isinstance(node, Selector) else "→"
@@ -83,7 +83,7 @@ def describe(node: Behaviour) -> NodeDescription:
 
 
 def _parameters(node: Behaviour) -> Iterator[str]:
-    """The constructor's parameters that the node keeps under their own names and that were changed."""
+    """Return the constructor's parameters that differ from their defaults."""
     for parameter in _signature(type(node)):
         if parameter.name in ("name", "child", "children") or not hasattr(node, parameter.name):
             continue
@@ -122,9 +122,10 @@ def _short(value: object) -> str:
 
 
 def tree_text(root: Behaviour, statuses: bool = False) -> str:
-    """The tree as lines of text, one a node.
+    """Return the tree as lines of text, one for each node.
 
     Args:
+        root: the tree.
         statuses: also say what each node returned at the last tick (✓ success, ✗ failure,
             ▶ running, · not ticked) and the feedback of those that were ticked.
     """
@@ -146,7 +147,7 @@ def _text_lines(node: Behaviour, lead: str, below: str, statuses: bool) -> Itera
 
 
 def tree_dot(root: Behaviour, statuses: bool = False) -> str:
-    """The tree in the language of Graphviz; ``statuses`` colours the nodes by their last tick."""
+    """Return the tree in the language of Graphviz; ``statuses`` colours the nodes by their last tick."""
     lines = [
         f"digraph {_dot_text(root.name)} {{",
         '  node [fontname="Helvetica", fontsize=11, style="rounded,filled", fillcolor="#ffffff"];',
@@ -188,9 +189,10 @@ class _Box:
 
 
 def tree_svg(root: Behaviour, statuses: bool = False) -> str:
-    """The tree as a standalone SVG picture, the root on the left, in light or dark as the viewer likes.
+    """Return the tree as a standalone SVG picture, the root on the left, light or dark as the viewer is.
 
     Args:
+        root: the tree.
         statuses: colour each node by what it returned at the last tick.
     """
     boxes: list[_Box] = []
@@ -273,7 +275,7 @@ def _svg_box(box: _Box, x: float, statuses: bool) -> str:
 
 
 def _text_width(text: str, size: float) -> float:
-    """About how wide a text will be; the font is the viewer's."""
+    """Estimate the width of a text; the font is the viewer's."""
     share = {**dict.fromkeys(_NARROW, 0.6), **dict.fromkeys(_WIDE, 1.4)}
     return size * sum(share.get(letter, 1.0 if letter.isascii() else 1.5) for letter in text)
 
@@ -283,5 +285,5 @@ def _xml(text: str) -> str:
 
 
 def _printable(text: str) -> str:
-    """The text without the characters that XML does not have."""
+    """Return the text without the characters that XML does not have."""
     return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)

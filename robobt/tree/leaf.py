@@ -33,7 +33,7 @@ class Bound(Generic[StoreT]):
         return node
 
     def parameters(self) -> dict[str, object]:
-        """What the node was made from: every parameter of its constructor by name."""
+        """Return every parameter of the node's constructor by name, with the values it was made from."""
         args, kwargs = self._given
         bound = inspect.signature(type(self)).bind(*args, **kwargs)
         bound.apply_defaults()
@@ -69,7 +69,7 @@ class Leaf(Behaviour, Bound[StoreT]):
         super().__init__(name or type(self).__name__)
 
     def needs(self) -> list[tuple[str, ...]]:
-        """What another node has to write into the store: of each item one of its entries.
+        """Return what other nodes have to write into the store: of each item, one of its entries.
 
         That is what the leaf reads and cannot do without, except where a parameter
         of the same name takes the entry's place.
@@ -81,39 +81,39 @@ class Leaf(Behaviour, Bound[StoreT]):
         ]
 
     def on_start(self) -> None:
-        """Called on the first tick of a run."""
+        """Begin a run; called before its first tick."""
 
     def on_running(self) -> Status:
-        """One tick's work; SUCCESS or FAILURE ends the run."""
+        """Do one tick's work; SUCCESS or FAILURE ends the run."""
         raise NotImplementedError(f"{type(self).__name__} does not define on_running")
 
     def on_done(self, status: Status) -> None:
-        """Called when the run ends by itself."""
+        """End a run that has succeeded or failed."""
 
     def on_interrupt(self) -> None:
-        """Called when a running leaf is stopped from outside."""
+        """End a run that is stopped from outside."""
 
     def fail(self, reason: str) -> Status:
-        """FAILURE, with the reason as the node's feedback."""
+        """Return FAILURE, with the reason as the node's feedback."""
         self.feedback_message = reason
         return Status.FAILURE
 
     def run(self, feedback: str = "") -> Status:
-        """RUNNING, with what is being done as the node's feedback."""
+        """Return RUNNING, with what is being done as the node's feedback."""
         self.feedback_message = feedback
         return Status.RUNNING
 
     def succeed(self, feedback: str = "") -> Status:
-        """SUCCESS, with an optional remark as the node's feedback."""
+        """Return SUCCESS, with an optional remark as the node's feedback."""
         self.feedback_message = feedback
         return Status.SUCCESS
 
     def initialise(self) -> None:
-        """Called by py_trees; override :meth:`on_start` instead."""
+        """Start for py_trees; override :meth:`on_start` instead."""
         self.on_start()
 
     def update(self) -> Status:
-        """Called by py_trees; override :meth:`on_running` instead.
+        """Run for py_trees; override :meth:`on_running` instead.
 
         Raises:
             TypeError: ``on_running`` returned no status.
@@ -124,7 +124,7 @@ class Leaf(Behaviour, Bound[StoreT]):
         return status
 
     def terminate(self, new_status: Status) -> None:
-        """Called by py_trees; override :meth:`on_done` or :meth:`on_interrupt` instead.
+        """End for py_trees; override :meth:`on_done` or :meth:`on_interrupt` instead.
 
         py_trees also stops finished nodes with INVALID when their parent starts
         anew; that is neither an end nor an interruption and reaches nobody.
@@ -136,7 +136,7 @@ class Leaf(Behaviour, Bound[StoreT]):
 
 
 def no_status(answer: object) -> TypeError:
-    """What a leaf is told whose ``on_running`` returned something else than a status."""
+    """Return the error for a leaf whose ``on_running`` returned something else than a status."""
     forgotten = " (a forgotten return?)" if answer is None else ""
     return TypeError(f"on_running returned {type(answer).__name__}, not a Status{forgotten}")
 

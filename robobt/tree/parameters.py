@@ -58,7 +58,7 @@ class Parameter:
         return f"{self.name}: {self.kind}" + ("" if self.required else f" = {_say_default(self.default)}")
 
     def convert(self, value: object) -> Any:
-        """Plain data as this parameter's type.
+        """Convert plain data to this parameter's type.
 
         The rules are those of strict JSON: a list fits a tuple and an integer a
         float, but "1.5" is no number.
@@ -82,7 +82,7 @@ class Parameter:
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
 
     def plain(self, value: object) -> Any:
-        """The plain data that :meth:`convert` makes into an equal value.
+        """Return the plain data that :meth:`convert` makes into an equal value.
 
         Raises:
             ParameterError: there is none.
@@ -107,7 +107,7 @@ class Parameter:
 
 
 def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
-    """Parameters that can be given by name, in the order of the signature."""
+    """Return the parameters that can be given by name, in the order of the signature."""
     target = builder.__init__ if inspect.isclass(builder) else builder
     hints = typing.get_type_hints(target, include_extras=True)
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
@@ -121,7 +121,7 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
 def check_parameters(
     what: str, builder: Callable[..., object], given: Mapping[str, object]
 ) -> dict[str, Any]:
-    """The given parameters, converted to the types of the builder's signature.
+    """Convert the given parameters to the types of the builder's signature.
 
     Args:
         what: what the builder is called, for messages.
@@ -152,7 +152,7 @@ def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, o
 
 
 def say_hint(hint: object) -> str:
-    """A type as a person would write it."""
+    """Return a type as a person would write it."""
     origin, arguments = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
         return say_hint(arguments[0])

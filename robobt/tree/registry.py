@@ -45,7 +45,7 @@ class Registry(Generic[T]):
         self._loading: str | None = None
 
     def register(self, name: str) -> Callable[[T], T]:
-        """A decorator that enters the decorated thing under ``name``.
+        """Return a decorator that enters the decorated thing under ``name``.
 
         Raises:
             ValueError: the name is taken; the message names both.
@@ -66,7 +66,7 @@ class Registry(Generic[T]):
 
     @contextmanager
     def temporarily(self) -> Iterator[Self]:
-        """What is registered within this context is gone after it, and what was there is as it was."""
+        """Undo, after this context, what is registered within it."""
         undo = self.undo_point()
         try:
             yield self
@@ -74,7 +74,7 @@ class Registry(Generic[T]):
             undo()
 
     def undo_point(self) -> Callable[[], None]:
-        """A function that takes back what is registered after this call, other packages' things aside."""
+        """Return a function that undoes what is registered later, except other packages' entries."""
         self._load()
         entries, sources = dict(self._entries), dict(self._sources)
 
@@ -90,16 +90,16 @@ class Registry(Generic[T]):
         return tuple(self._problems.values())
 
     def problem_with(self, name: str) -> str | None:
-        """Why the entry of another package under this name could not be loaded, None where none failed."""
+        """Return why the entry of another package under this name could not be loaded, else None."""
         self._load()
         return self._problems.get(name)
 
     def source(self, name: str) -> str | None:
-        """The distribution whose entry point brought an entry, None for the package's own."""
+        """Return the distribution whose entry point brought an entry, None for the package's own."""
         return self._sources.get(name)
 
     def __getitem__(self, name: str) -> T:
-        """The entry.
+        """Return the entry.
 
         Raises:
             KeyError: no such name; the message lists the names there are, or says

@@ -19,7 +19,7 @@ _log = logging.getLogger(__name__)
 
 
 def node_path(node: Behaviour) -> str:
-    """Names from the root to the node, joined by slashes."""
+    """Return the names from the root to the node, joined by slashes."""
     names = [node.name]
     while node.parent is not None:
         node = node.parent
@@ -115,17 +115,17 @@ class TreeRunner:
         self._failed = node
 
     def tick_by_py_trees(self) -> None:
-        """From now on tick by py_trees' own generators instead: the same, slower, for comparison."""
+        """Tick by py_trees' own generators from now on: the same, slower, for comparison."""
         self._stock = True
         self._renew()
 
     def show_to(self, visitor: VisitorBase) -> None:
-        """From now on show every node that has been ticked to this py_trees visitor, and to no other."""
+        """Show every node that has been ticked to this py_trees visitor from now on, and to no other."""
         self._visitor = visitor
         self._renew()
 
     def mark(self, nodes: Iterable[Behaviour], after: Callable[[], None]) -> Marks:
-        """From now on keep the nodes ticked by the last tick, and notice when it changed something.
+        """Keep the nodes ticked by the last tick from now on, and notice when it changed something.
 
         Args:
             nodes: of all nodes of the tree at least these are entered.
@@ -138,7 +138,7 @@ class TreeRunner:
         return marks
 
     def _renew(self) -> None:
-        """Compile the tree for whoever wants to see its nodes."""
+        """Compile the tree for whoever watches its nodes."""
         visitor, marks = self._visitor, self._marks
         visit: Visit | None = marks
         if visitor is not None:
@@ -181,7 +181,7 @@ class TreeRunner:
         return tick
 
     def statuses(self) -> str:
-        """One letter a node in the order of ``nodes``: S, F, R or - (not ticked)."""
+        """Return one letter for each node in the order of ``nodes``: S, F, R or - (not ticked)."""
         return "".join([_LETTERS[node.status._value_] for node in self.nodes])
 
     def stop(self) -> None:
@@ -197,7 +197,7 @@ class TreeRunner:
             self._after()
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
-        """The node that raised, and what it is, with the line of the skill's file."""
+        """Return the node that raised, and what it is, with the line of the skill's file."""
         node, place = self.root, ""
         trace = error.__traceback__
         while trace is not None:
@@ -216,7 +216,7 @@ _ENGINES = ("robobt.tree.", "py_trees.")
 
 
 def text_of(said: object) -> str:
-    """``str(said)``, or what it raised."""
+    """Return ``str(said)``, or the error it raised."""
     try:
         return str(said)
     except (Exception, SystemExit) as error:
@@ -228,7 +228,7 @@ def _nothing() -> None:
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:
-    """Every node below and including ``root``, parents before children."""
+    """Return every node below and including ``root``, parents before children."""
     nodes = [root]
     for child in root.children:
         nodes.extend(preorder(child))

@@ -24,11 +24,13 @@ class TickOn(Protocol):
     """What the fixture :func:`tick_on` is."""
 
     def __call__(self, tree: Behaviour, frames: Iterable[object], store: object = None) -> list[Status]:
-        """Tick a leaf or a tree once on each frame; its statuses.
+        """Tick a leaf or a tree once on each frame and return its statuses.
 
         A second call with the same tree goes on where the first one ended.
 
         Args:
+            tree: the leaf or tree.
+            frames: one for each tick.
             store: what it works on; None keeps that of the call before, or makes one.
 
         Raises:
@@ -38,7 +40,7 @@ class TickOn(Protocol):
 
 @pytest.fixture
 def make_store() -> Callable[..., Any]:
-    """A function that makes a store of the entries given by name; the time is 0 unless it is given."""
+    """Return a function that makes a store of the entries given by name; the time is 0 unless it is given."""
 
     def make(**entries: Any) -> Any:
         return SimpleNamespace(**{"time": 0.0, **entries})
@@ -48,7 +50,7 @@ def make_store() -> Callable[..., Any]:
 
 @pytest.fixture
 def before_tick() -> Callable[[Any, Any], None]:
-    """A function that puts a frame into a store; it sets ``frame``, and ``time`` where the frame has one."""
+    """Return a function that puts a frame, and its ``time`` where it has one, into a store."""
 
     def put(store: Any, frame: Any) -> None:
         store.frame = frame
@@ -60,7 +62,7 @@ def before_tick() -> Callable[[Any, Any], None]:
 
 @pytest.fixture
 def tick_on(make_store: Callable[..., Any], before_tick: Callable[[Any, Any], None]) -> TickOn:
-    """A function that ticks a leaf or a tree on frames, see :class:`TickOn`."""
+    """Return a function that ticks a leaf or a tree on frames, see :class:`TickOn`."""
     runners: dict[Behaviour, tuple[TreeRunner, Any]] = {}
 
     def tick(tree: Behaviour, frames: Iterable[object], store: object = None) -> list[Status]:

@@ -64,11 +64,11 @@ class NodeStatistics(VisitorBase):
         self._counts: dict[Behaviour, NodeCounts] = {}
 
     def initialise(self) -> None:
-        """A tick of the tree begins."""
+        """Begin a tick of the tree."""
         self._last = self._clock()
 
     def run(self, behaviour: Behaviour) -> None:
-        """A node has been ticked."""
+        """Count a node that has been ticked."""
         count = self._counts.get(behaviour)
         if count is None:
             count = self._counts[behaviour] = NodeCounts(node_path(behaviour))
@@ -89,11 +89,11 @@ class NodeStatistics(VisitorBase):
         self._last = now
 
     def counts(self) -> list[NodeCounts]:
-        """What each node of the tree, as it is now, has done; parents first."""
+        """Return the counts of each node that is in the tree now, parents first."""
         return [self._of(node) for node in preorder(self.root)]
 
     def as_table(self) -> str:
-        """The counts as text: a line a node, indented as the tree is, statuses as shares of its ticks."""
+        """Return the counts as text: a line for each node, with statuses as shares of its ticks."""
         nodes = preorder(self.root)
         names = ["  " * _depth(node, self.root) + node.name for node in nodes]
         width = max(map(len, [*names, "node"]))

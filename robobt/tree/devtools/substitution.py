@@ -35,7 +35,7 @@ class ScriptedLeaf(Behaviour):
             raise ValueError(f"the script of {name!r} is empty")
 
     def update(self) -> Status:
-        """The next status."""
+        """Return the next status of the script."""
         status = self.script[min(self.ticks, len(self.script) - 1)]
         self.ticks += 1
         self.feedback_message = f"scripted, tick {self.ticks}"
@@ -60,7 +60,7 @@ class Substitution:
 
 
 def read_substitutions(path: str | Path) -> list[Substitution]:
-    """The rules of a YAML file.
+    """Read the rules of a YAML file.
 
     A mapping from patterns to a status, a list of statuses, or a mapping with one of both
     under ``status`` or ``script``::
@@ -78,7 +78,7 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
 
 
 def substitutions(rules: Mapping[str, object], source: str = "rules") -> list[Substitution]:
-    """The same rules from a mapping as a file has them; statuses may also be :class:`Status`.
+    """Return the rules of a mapping such as a file holds; statuses may also be :class:`Status`.
 
     Raises:
         TreeFileError: the first thing that is wrong, without a line.
@@ -189,7 +189,7 @@ def _say(value: object) -> str:
 
 
 def _marked(value: object) -> Marked:
-    """Given data in the form of read data; its lines are 0, for there are none."""
+    """Return given data in the form of read data, on line 0."""
     if isinstance(value, Mapping):
         return Marked({str(key): _marked(part) for key, part in value.items()}, 0, 0)
     if isinstance(value, list | tuple):

@@ -12,7 +12,7 @@ from robobt.tree.runner import node_path
 
 
 def describe_tree(root: Behaviour, vocabulary: Vocabulary, name: str) -> TreeFile:
-    """A tree as a file of one tree without parameters; parameters at their default are left out.
+    """Return a file that builds this tree; the nodes' parameters at their defaults are left out.
 
     Args:
         root: the tree.
@@ -74,7 +74,7 @@ def _is_default(value: object, default: object) -> bool:
 
 
 def _by_child(cases: dict[str, Behaviour]) -> dict[int, tuple[list[str], Behaviour]]:
-    """Cases that share a child together, in the order of their first."""
+    """Group the cases that share a child, in the order of their first."""
     shared: dict[int, tuple[list[str], Behaviour]] = {}
     for case, child in cases.items():
         shared.setdefault(id(child), ([], child))[0].append(case)

@@ -64,7 +64,7 @@ class NodeType:
 
 
 def node_type(cls: type[Behaviour], name: str = "") -> NodeType:
-    """The type of a class's nodes, read from its constructor.
+    """Return the type of a class's nodes, read from its constructor.
 
     Raises:
         ValueError: a parameter has no name, or its annotations cannot be read.
@@ -119,7 +119,7 @@ def split_cases(cases: str) -> list[str]:
 
 
 def _parallel() -> NodeType:
-    """py_trees' Parallel, whose policy is an object."""
+    """Return the type of py_trees' Parallel, whose policy is an object."""
     policies = ("success_on_all", "success_on_one")
 
     def make(name: str | None, given: Arguments, children: Arguments) -> Behaviour:
@@ -153,7 +153,7 @@ def _parallel() -> NodeType:
 
 
 def _one_shot() -> NodeType:
-    """py_trees' OneShot, whose policy is an enumeration of lists."""
+    """Return the type of py_trees' OneShot, whose policy is an enumeration of lists."""
     policies = {
         "on_completion": OneShotPolicy.ON_COMPLETION,
         "on_success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION,
@@ -178,14 +178,14 @@ def _one_shot() -> NodeType:
 
 
 def _repeat() -> NodeType:
-    """py_trees' Repeat, which takes every number that is never reached for without end."""
+    """Return the type of py_trees' Repeat with its number of times checked."""
     return _with_hint(
         node_type(decorators.Repeat), "num_success", Annotated[int, AfterValidator(_times_or_for_ever)]
     )
 
 
 def _retry() -> NodeType:
-    """py_trees' Retry, which has no number for without end: it fails at once when it is given one below 1."""
+    """Return the type of py_trees' Retry, which has no number for without end: below 1 it fails at once."""
     return _with_hint(node_type(decorators.Retry), "num_failures", Annotated[int, AfterValidator(_times)])
 
 

@@ -50,7 +50,7 @@ class FilePlay:
         self.__signature__ = inspect.Signature(entries)
 
     def __call__(self, **given: object) -> Behaviour:
-        """A new tree.
+        """Build a new tree.
 
         Raises:
             TypeError: a parameter is unknown or missing.
@@ -61,7 +61,7 @@ class FilePlay:
 
 
 def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
-    """The trees of a file, YAML or XML by its ending, with the main tree built once to see that it can be.
+    """Load the trees of a file, YAML or XML by its ending, and build the main tree once as a check.
 
     Raises:
         TreeFileError: it cannot be read, or the first thing that is wrong with it.

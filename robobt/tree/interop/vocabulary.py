@@ -53,7 +53,7 @@ class Vocabulary:
         self._by_class = {known.cls: known for known in self._control.values()}
 
     def type(self, name: str) -> NodeType | None:
-        """The type of this name, None when there is none.
+        """Return the type of this name, None when there is none.
 
         Raises:
             ValueError: the class cannot be used in files; the message says why.
@@ -64,7 +64,7 @@ class Vocabulary:
         return known
 
     def type_of(self, node: Behaviour) -> NodeType | None:
-        """The type of a node, None when no file can name it."""
+        """Return the type of a node, None when no file can name it."""
         cls = type(node)
         if cls in self._by_class:
             return self._by_class[cls]
@@ -77,7 +77,7 @@ class Vocabulary:
         return iter(sorted({*self._control, *self.leaves}))
 
     def convert(self, parameter: Parameter, value: object) -> object:
-        """Plain data, or an entry, as a parameter's type.
+        """Convert plain data, or an entry, to a parameter's type.
 
         Raises:
             ParameterError: it does not fit.
@@ -96,7 +96,7 @@ class Vocabulary:
         return parameter.convert(value)
 
     def plain(self, parameter: Parameter, value: object) -> object:
-        """The plain data that :meth:`convert` makes into an equal value.
+        """Return the plain data that :meth:`convert` makes into an equal value.
 
         Raises:
             ParameterError: there is none.
@@ -110,7 +110,7 @@ class Vocabulary:
         return parameter.plain(value)
 
     def from_text(self, parameter: Parameter, text: str) -> object:
-        """The plain data that a text stands for, as BehaviorTree.CPP writes values.
+        """Return the plain data that a text stands for, as BehaviorTree.CPP writes values.
 
         Tried in this order: the text itself; after ``json:``, JSON; JSON without
         that; ``true`` and ``false`` in any case, ``1`` and ``0`` for them; a list
@@ -131,7 +131,7 @@ class Vocabulary:
         raise ParameterError(parameter.name, f"{short_repr(text)} is no {parameter.kind}") from first
 
     def to_text(self, parameter: Parameter | None, value: object) -> str:
-        """The text that :meth:`from_text` reads as this plain data; for any type where none is named."""
+        """Return the text that :meth:`from_text` reads as this plain data."""
         exact = f"json:{json.dumps(value)}"
         if isinstance(value, list) and len(value) > 1 and all(type(part) in _SIMPLE for part in value):
             simple = ";".join([part if isinstance(part, str) else repr(part) for part in value])
@@ -149,7 +149,7 @@ class Vocabulary:
         return simple
 
     def _is_refused(self, parameter: Parameter, value: object) -> bool:
-        """Whether a value is of the parameter's type, and only what is said beside the type refuses it."""
+        """Return whether a value is of the parameter's type and only its other constraints refuse it."""
         if typing.get_origin(parameter.hint) is not Annotated:
             return False
         try:
@@ -174,12 +174,12 @@ class Vocabulary:
 
 
 def takes_entry(parameter: Parameter) -> bool:
-    """Whether a parameter may be wired to any entry of the store."""
+    """Return whether a parameter may be wired to any entry of the store."""
     return Entry in members_of(parameter.hint)
 
 
 def is_pointer(text: str) -> bool:
-    """Whether BehaviorTree.CPP takes a text for the name of an entry: ``{name}``."""
+    """Return whether BehaviorTree.CPP takes a text for the name of an entry: ``{name}``."""
     return len(text) >= 3 and text.startswith("{") and text.endswith("}")
 
 

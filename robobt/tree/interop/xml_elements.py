@@ -6,6 +6,7 @@ beside this one and nothing grows as it is read.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NoReturn
 from xml.parsers import expat
@@ -107,3 +108,41 @@ class _Reader:
 
     def _no_instruction(self, target: str, _data: str) -> NoReturn:
         raise TreeFileError(self.source, f"the instruction <?{target}?> is not allowed", line=self.line)
+
+
+class ElementChecker:
+    """Checks elements of one document.
+
+    Args:
+        source: name of the document for messages.
+    """
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+
+    def attributes(self, element: Element, known: Iterable[str], needed: Iterable[str]) -> None:
+        """Check the names of an element's attributes."""
+        known = tuple(known)
+        for name in element.attributes:
+            if name not in known:
+                has = f"it has {', '.join(known)}" if known else "it has none"
+                raise self.error(element, f"<{element.tag}> has no attribute {name}; {has}")
+        for name in needed:
+            if name not in element.attributes:
+                raise self.error(element, f"<{element.tag}> needs the attribute {name}")
+
+    def no_text(self, element: Element) -> None:
+        """Check that there is no text in an element."""
+        if element.text.strip():
+            raise self.error(element, f"there is text in <{element.tag}>: {element.text.strip()[:40]!r}")
+
+    def word(self, element: Element, attribute: str) -> str:
+        """Return an attribute that is a text on one line."""
+        text = element.attributes[attribute]
+        if not text.strip() or not text.isprintable():
+            raise self.error(element, f"{attribute} of <{element.tag}> is a text on one line")
+        return text
+
+    def error(self, element: Element, problem: str) -> TreeFileError:
+        """Return an error at an element."""
+        return TreeFileError(self.source, problem, line=element.line)

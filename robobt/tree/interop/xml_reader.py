@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from typing import Any
 
 from robobt.tree.interop.btcpp import (
@@ -23,18 +22,20 @@ from robobt.tree.interop.model import Definition, Name, Node, Spec, SubTree, Tex
 from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.verify import sub_trees, unknown_type, verify
 from robobt.tree.interop.vocabulary import Vocabulary, is_pointer
-from robobt.tree.interop.xml_elements import Element, read_element
+from robobt.tree.interop.xml_elements import Element, ElementChecker, read_element
 from robobt.tree.parameters import Parameter, ParameterError
 
 
 def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
-    """The trees of an XML text.
+    """Return the trees of an XML text.
 
     The main tree is what ``main_tree_to_execute`` names, else the only tree, else
     the one that is no other's sub-tree.
 
     Args:
-        source: what messages call it.
+        text: the text.
+        vocabulary: what it may name.
+        source: name of the text for messages.
 
     Raises:
         TreeFileError: the first thing that is wrong.
@@ -47,35 +48,36 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
     return file
 
 
-class _Reader:
+class _Reader(ElementChecker):
     def __init__(self, vocabulary: Vocabulary, source: str) -> None:
-        self.vocabulary, self.source = vocabulary, source
+        super().__init__(source)
+        self.vocabulary = vocabulary
 
     def file(self, root: Element) -> TreeFile:
         if root.tag != "root":
-            raise self._error(root, f"the outermost tag is <root>, not <{root.tag}>")
-        self._attributes(root, ("BTCPP_format", "main_tree_to_execute"), ("BTCPP_format",))
+            raise self.error(root, f"the outermost tag is <root>, not <{root.tag}>")
+        self.attributes(root, ("BTCPP_format", "main_tree_to_execute"), ("BTCPP_format",))
         if root.attributes["BTCPP_format"] != "4":
-            raise self._error(root, f"BTCPP_format is 4, not {root.attributes['BTCPP_format']}")
-        self._no_text(root)
+            raise self.error(root, f"BTCPP_format is 4, not {root.attributes['BTCPP_format']}")
+        self.no_text(root)
         trees: dict[str, Definition] = {}
         model: Element | None = None
         for part in root.children:
             if part.tag == "BehaviorTree":
                 definition = self._tree(part, only=len(root.children) == 1)
                 if definition.name in trees:
-                    raise self._error(part, f"the tree {definition.name!r} is there twice")
+                    raise self.error(part, f"the tree {definition.name!r} is there twice")
                 trees[definition.name] = definition
             elif part.tag == "TreeNodesModel" and model is None:
                 model = part
             elif part.tag == "TreeNodesModel":
-                raise self._error(part, "there are two <TreeNodesModel>")
+                raise self.error(part, "there are two <TreeNodesModel>")
             elif part.tag == "include":
-                raise self._error(part, "<include> is not supported; put the trees into one file")
+                raise self.error(part, "<include> is not supported; put the trees into one file")
             else:
-                raise self._error(part, f"<root> has <BehaviorTree> and <TreeNodesModel>, no <{part.tag}>")
+                raise self.error(part, f"<root> has <BehaviorTree> and <TreeNodesModel>, no <{part.tag}>")
         if not trees:
-            raise self._error(root, "there is no <BehaviorTree>")
+            raise self.error(root, "there is no <BehaviorTree>")
         if model is not None:
             self._model(model, trees)
         return TreeFile(self.source, self._main(root, trees), trees, "xml")
@@ -84,7 +86,7 @@ class _Reader:
         named = root.attributes.get("main_tree_to_execute")
         if named is not None:
             if named not in trees:
-                raise self._error(root, f"there is no tree {named!r}; there are {', '.join(trees)}")
+                raise self.error(root, f"there is no tree {named!r}; there are {', '.join(trees)}")
             return named
         inner = {
             spec.tree for tree in trees.values() for spec in sub_trees(tree.root) if spec.tree != tree.name
@@ -92,41 +94,41 @@ class _Reader:
         outer = [name for name in trees if name not in inner]
         if len(outer) != 1:
             which = f"{', '.join(outer)} are no sub-trees" if outer else "all are sub-trees"
-            raise self._error(root, f"which tree is the main one? {which}; name it in main_tree_to_execute")
+            raise self.error(root, f"which tree is the main one? {which}; name it in main_tree_to_execute")
         return outer[0]
 
     def _tree(self, element: Element, only: bool) -> Definition:
-        self._attributes(element, ("ID", *METADATA), () if only else ("ID",))
-        self._no_text(element)
+        self.attributes(element, ("ID", *METADATA), () if only else ("ID",))
+        self.no_text(element)
         if len(element.children) != 1:
-            raise self._error(element, f"<BehaviorTree> has one child, not {len(element.children)}")
-        name = self._word(element, "ID") if "ID" in element.attributes else "BehaviorTree"
+            raise self.error(element, f"<BehaviorTree> has one child, not {len(element.children)}")
+        name = self.word(element, "ID") if "ID" in element.attributes else "BehaviorTree"
         return Definition(name, self._spec(element.children[0]), line=element.line)
 
     def _spec(self, element: Element) -> Spec:
-        self._no_text(element)
+        self.no_text(element)
         for name in element.attributes:
             if name in SCRIPTS:
-                raise self._error(element, f"{name}: robobt has no scripts; write a condition")
+                raise self.error(element, f"{name}: robobt has no scripts; write a condition")
             if name.startswith("_") and name not in METADATA and element.tag != "SubTree":
-                raise self._error(element, f"<{element.tag}> has no attribute {name}")
+                raise self.error(element, f"<{element.tag}> has no attribute {name}")
         return self._sub_tree(element) if element.tag == "SubTree" else self._node(element)
 
     def _sub_tree(self, element: Element) -> SubTree:
         if element.children:
-            raise self._error(element, "<SubTree> has no children")
+            raise self.error(element, "<SubTree> has no children")
         if "ID" not in element.attributes:
-            raise self._error(element, "<SubTree> needs the attribute ID")
-        spec = SubTree(self._word(element, "ID"), line=element.line)
+            raise self.error(element, "<SubTree> needs the attribute ID")
+        spec = SubTree(self.word(element, "ID"), line=element.line)
         for name, text in element.attributes.items():
             if name == "_autoremap":
                 if text.lower() not in _WORDS:
-                    raise self._error(element, f"_autoremap is true or false, not {text!r}")
+                    raise self.error(element, f"_autoremap is true or false, not {text!r}")
                 spec.autoremap = _WORDS[text.lower()]
             elif name == "name":
-                spec.label = self._word(element, "name")
+                spec.label = self.word(element, "name")
             elif name.startswith("_") and name not in METADATA:
-                raise self._error(element, f"<SubTree> has no attribute {name}")
+                raise self.error(element, f"<SubTree> has no attribute {name}")
             elif name != "ID" and name not in METADATA:
                 spec.parameters[name] = self._pointer(element, name, text) if is_pointer(text) else Text(text)
         return spec
@@ -135,7 +137,7 @@ class _Reader:
         shown, tag, kind = self._type(element)
         node = Node(kind.name, line=element.line)
         if "name" in element.attributes:
-            node.name = self._word(element, "name")
+            node.name = self.word(element, "name")
         elif not kind.leaf:
             node.name = shown
         node.parameters.update(tag.fixed)
@@ -148,7 +150,7 @@ class _Reader:
         self._branches(element, node, kind, given.pop(cases, None) if cases is not None else None)
         for name, attribute in tag.attributes.items():
             if name not in given and attribute.default is None:
-                raise self._error(element, f"<{shown}> needs the attribute {name}")
+                raise self.error(element, f"<{shown}> needs the attribute {name}")
             given.setdefault(name, attribute.default or "")
         for name, text in given.items():
             self._parameter(element, node, shown, tag, kind, name, text)
@@ -169,20 +171,20 @@ class _Reader:
         if hidden or (parameter is None and name not in entries):
             there = list(tag.attributes) if shown in TAGS else [*kind.parameters, *entries]
             has = f"it has {', '.join(there)}" if there else "it has none besides its name"
-            raise self._error(element, f"<{shown}> has no attribute {name}; {has}")
+            raise self.error(element, f"<{shown}> has no attribute {name}; {has}")
         if is_pointer(text):
             if attribute is not None and attribute.milliseconds:
-                raise self._error(element, f"{name} of <{shown}> is a number, not {text}")
+                raise self.error(element, f"{name} of <{shown}> is a number, not {text}")
             node.parameters[key] = self._pointer(element, name, text)
         elif parameter is None:
-            raise self._error(
+            raise self.error(
                 element, f"{name} of <{shown}> is an entry that it uses: {{{name}}}, not {text!r}"
             )
         else:
             try:
                 node.parameters[key] = self._plain(attribute, parameter, text)
             except ParameterError as error:
-                raise self._error(element, f"{name} of <{shown}>: {error}") from error
+                raise self.error(element, f"{name} of <{shown}>: {error}") from error
 
     def _plain(self, attribute: Attribute | None, parameter: Parameter, text: str) -> object:
         if attribute is None:
@@ -198,24 +200,24 @@ class _Reader:
         return number
 
     def _type(self, element: Element) -> tuple[str, Tag, NodeType]:
-        """What the element is called in messages, the tag it stands for, and the node's type."""
+        """Return the element's name in messages, the tag it stands for, and the node's type."""
         long_form = element.tag in NODE_TAGS
         if long_form and "ID" not in element.attributes:
-            raise self._error(element, f"<{element.tag}> needs the attribute ID")
-        shown = self._word(element, "ID") if long_form else element.tag
+            raise self.error(element, f"<{element.tag}> needs the attribute ID")
+        shown = self.word(element, "ID") if long_form else element.tag
         tag = TAGS.get(shown) or Tag(OTHER_TAGS.get(shown, shown))
         try:
             kind = self.vocabulary.type(tag.type)
         except ValueError as error:
-            raise self._error(element, str(error)) from error
+            raise self.error(element, str(error)) from error
         if kind is None and shown in UNKNOWN_HERE:
-            raise self._error(element, f"<{shown}>: {UNKNOWN_HERE[shown]}")
+            raise self.error(element, f"<{shown}>: {UNKNOWN_HERE[shown]}")
         if kind is None:
-            raise self._error(element, unknown_type(shown, self.vocabulary, TAGS))
+            raise self.error(element, unknown_type(shown, self.vocabulary, TAGS))
         if shown not in TAGS and shown not in OTHER_TAGS and tags_of(kind.name):
-            raise self._error(element, f"<{shown}> is written {' or '.join(tags_of(kind.name))} in XML")
+            raise self.error(element, f"<{shown}> is written {' or '.join(tags_of(kind.name))} in XML")
         if long_form and element.tag not in long_tags(kind):
-            raise self._error(element, f"{shown} is no <{element.tag}> but a <{long_tags(kind)[0]}>")
+            raise self.error(element, f"{shown} is no <{element.tag}> but a <{long_tags(kind)[0]}>")
         return shown, tag, kind
 
     def _branches(self, element: Element, node: Node, kind: NodeType, cases: str | None) -> None:
@@ -223,48 +225,48 @@ class _Reader:
         count = len(children)
         if kind.leaf:
             if count:
-                raise self._error(element, f"<{element.tag}> has no children")
+                raise self.error(element, f"<{element.tag}> has no children")
             return
         (branch, shape), *rest = kind.branches.items()
         if shape == "many":
             if not count:
-                raise self._error(element, f"<{element.tag}> needs a child")
+                raise self.error(element, f"<{element.tag}> needs a child")
             node.branches[branch] = children
         elif shape == "cases":
             names = cases.split(";") if cases else []
             others = count - len(names)
             if cases is None or others not in (0, len(rest)) or len(set(names)) != len(names):
-                raise self._error(element, f'<{element.tag}> names the cases of its children: cases="a;b"')
+                raise self.error(element, f'<{element.tag}> names the cases of its children: cases="a;b"')
             node.branches[branch] = dict(zip(names, children, strict=False))
             if others:
                 node.branches[rest[0][0]] = children[-1]
         else:
             if count != 1:
-                raise self._error(element, f"<{element.tag}> has one child, not {count}")
+                raise self.error(element, f"<{element.tag}> has one child, not {count}")
             node.branches[branch] = children[0]
 
     def _model(self, model: Element, trees: dict[str, Definition]) -> None:
         """Look at the palette; what it says of sub-trees counts."""
-        self._attributes(model, (), ())
-        self._no_text(model)
+        self.attributes(model, (), ())
+        self.no_text(model)
         for part in model.children:
             if part.tag not in (*NODE_TAGS, "SubTree"):
-                raise self._error(part, f"<TreeNodesModel> has no <{part.tag}>")
-            self._attributes(part, ("ID", "editable"), ("ID",))
-            self._no_text(part)
+                raise self.error(part, f"<TreeNodesModel> has no <{part.tag}>")
+            self.attributes(part, ("ID", "editable"), ("ID",))
+            self.no_text(part)
             for port in part.children:
                 if port.tag == "MetadataFields":
                     continue
                 if port.tag not in ("input_port", "output_port", "inout_port"):
-                    raise self._error(port, f"a model has ports, no <{port.tag}>")
-                self._attributes(port, ("name", "type", "default", "description"), ("name",))
+                    raise self.error(port, f"a model has ports, no <{port.tag}>")
+                self.attributes(port, ("name", "type", "default", "description"), ("name",))
                 if port.children:
-                    raise self._error(port, f"<{port.tag}> has no children")
+                    raise self.error(port, f"<{port.tag}> has no children")
                 if part.tag == "SubTree" and part.attributes["ID"] in trees:
                     definition = trees[part.attributes["ID"]]
-                    name = self._word(port, "name")
+                    name = self.word(port, "name")
                     if name in definition.parameters:
-                        raise self._error(port, f"the port {name!r} is there twice")
+                        raise self.error(port, f"the port {name!r} is there twice")
                     definition.parameters[name] = self._port(port, name)
 
     def _port(self, port: Element, name: str) -> Parameter:
@@ -284,36 +286,13 @@ class _Reader:
         try:
             return Parameter(name, hint, self.vocabulary.from_text(parameter, text))
         except ParameterError as error:
-            raise self._error(port, f"default of {name}: {error}") from error
+            raise self.error(port, f"default of {name}: {error}") from error
 
     def _pointer(self, element: Element, attribute: str, text: str) -> Name:
         name = attribute if text == "{=}" else text[1:-1].strip()
         if not _POINTER.fullmatch(name):
-            raise self._error(element, f"{attribute}: {text} is no name of an entry")
+            raise self.error(element, f"{attribute}: {text} is no name of an entry")
         return Name(name)
-
-    def _attributes(self, element: Element, known: Iterable[str], needed: Iterable[str]) -> None:
-        known = tuple(known)
-        for name in element.attributes:
-            if name not in known:
-                has = f"it has {', '.join(known)}" if known else "it has none"
-                raise self._error(element, f"<{element.tag}> has no attribute {name}; {has}")
-        for name in needed:
-            if name not in element.attributes:
-                raise self._error(element, f"<{element.tag}> needs the attribute {name}")
-
-    def _no_text(self, element: Element) -> None:
-        if element.text.strip():
-            raise self._error(element, f"there is text in <{element.tag}>: {element.text.strip()[:40]!r}")
-
-    def _word(self, element: Element, attribute: str) -> str:
-        text = element.attributes[attribute]
-        if not text.strip() or not text.isprintable():
-            raise self._error(element, f"{attribute} of <{element.tag}> is a text on one line")
-        return text
-
-    def _error(self, element: Element, problem: str) -> TreeFileError:
-        return TreeFileError(self.source, problem, line=element.line)
 
 
 _WORDS = {"true": True, "false": False, "1": True, "0": False}

@@ -39,7 +39,7 @@ class CommitFor(Decorator, Bound[HasTime]):
         return self.status is Status.RUNNING and self._timer.runs(self.store.time)
 
     def initialise(self) -> None:
-        """The time runs from here."""
+        """Start the time."""
         above = self.parent
         while isinstance(above, Decorator):
             above = above.parent
@@ -48,7 +48,7 @@ class CommitFor(Decorator, Bound[HasTime]):
         self._timer.start(self.store.time)
 
     def update(self) -> Status:
-        """The child's status."""
+        """Return the child's status."""
         return self.decorated.status
 
 
@@ -65,7 +65,7 @@ class CommittingSelector(Selector):
         super().__init__(name, memory=False, children=children)
 
     def tick(self) -> Iterator[Behaviour]:
-        """As every py_trees node."""
+        """Tick as every py_trees node does."""
         if self.status is not Status.RUNNING:
             self.current_child = None
             self.initialise()
@@ -89,7 +89,7 @@ class CommittingSelector(Selector):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []

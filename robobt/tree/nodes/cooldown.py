@@ -41,14 +41,14 @@ class Cooldown(Gate, Bound[HasTime]):
         self._reason = ""
 
     def answer(self) -> Status | None:
-        """FAILURE during the pause."""
+        """Return FAILURE during the pause."""
         if self._pause.runs(self.store.time):
             self.feedback_message = self._reason
             return Status.FAILURE
         return None
 
     def update(self) -> Status:
-        """The child's status; an end begins the pause."""
+        """Return the child's status; an end begins the pause."""
         status = super().update()
         if status in _ENDS[self.after]:
             self._pause.start(self.store.time)

@@ -24,12 +24,12 @@ class Delay(Gate, Bound[HasTime]):
         self._remark = ""
 
     def initialise(self) -> None:
-        """The time runs from here."""
+        """Start the time."""
         self._timer.start(self.store.time)
         self._remark = f"waits until {self._timer.until:.2f} s"
 
     def answer(self) -> Status | None:
-        """RUNNING until the time is up."""
+        """Return RUNNING until the time is up."""
         if self._timer.runs(self.store.time):
             self.feedback_message = self._remark
             return Status.RUNNING

@@ -22,16 +22,16 @@ class Gate(Decorator):
     """
 
     def answer(self) -> Status | None:
-        """The gate's own status, without ticking the child; None ticks it."""
+        """Return the gate's own status without ticking the child; None ticks it."""
         raise NotImplementedError(f"{type(self).__name__} does not define answer")
 
     def update(self) -> Status:
-        """The gate's status once the child has been ticked; the child's own by default."""
+        """Return the gate's status once the child has been ticked; the child's own by default."""
         self.feedback_message = ""
         return self.decorated.status
 
     def tick(self) -> Iterator[Behaviour]:
-        """As every py_trees node."""
+        """Tick as every py_trees node does."""
         if self.status is not Status.RUNNING:
             self.initialise()
         child = self.decorated
@@ -49,7 +49,7 @@ class Gate(Decorator):
         yield self
 
     def stop(self, new_status: Status) -> None:
-        """As in every py_trees decorator, but a child that was not ticked is not stopped either."""
+        """Stop as every py_trees decorator does, except that a child that was not ticked is not stopped."""
         self.terminate(new_status)
         child = self.decorated
         if child.status is Status.RUNNING or (
@@ -59,7 +59,7 @@ class Gate(Decorator):
         self.status = new_status
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
         running, invalid = Status.RUNNING, Status.INVALID
         initialise, terminate = own_method(self, "initialise"), own_method(self, "terminate")
         answer, update, child = self.answer, self.update, self.decorated

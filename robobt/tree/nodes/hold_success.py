@@ -32,14 +32,14 @@ class HoldSuccess(Gate, Bound[HasTime]):
         self._remark = ""
 
     def answer(self) -> Status | None:
-        """SUCCESS while it holds."""
+        """Return SUCCESS while it holds."""
         if self._hold.runs(self.store.time):
             self.feedback_message = self._remark
             return Status.SUCCESS
         return None
 
     def update(self) -> Status:
-        """The child's status; a success is held from now on."""
+        """Return the child's status; a success is held from now on."""
         status = super().update()
         if status is Status.SUCCESS:
             self._hold.start(self.store.time)

@@ -58,7 +58,7 @@ class ParallelCount(Parallel):
             self._needed(failure_count)
 
     def tick(self) -> Iterator[Behaviour]:
-        """As every py_trees node."""
+        """Tick as every py_trees node does."""
         if self.status is not Status.RUNNING:
             for child in self.children:
                 if child.status is not Status.INVALID:
@@ -75,7 +75,7 @@ class ParallelCount(Parallel):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []
@@ -113,7 +113,7 @@ class ParallelCount(Parallel):
         return tick, stop
 
     def _judge(self) -> Status:
-        """What the children amount to; ``current_child`` is the last one that counts for it."""
+        """Return what the children amount to; set ``current_child`` to the last one that counts for it."""
         children = self.children
         self.feedback_message = ""
         if not children:

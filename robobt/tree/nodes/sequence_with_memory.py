@@ -33,7 +33,7 @@ class SequenceWithMemory(StockSequence):
         self.place = 0
 
     def tick(self) -> Iterator[Behaviour]:
-        """As every py_trees node."""
+        """Tick as every py_trees node does."""
         if self.status is not Status.RUNNING:
             for child in self.children:
                 if child.status is not Status.INVALID:
@@ -56,7 +56,7 @@ class SequenceWithMemory(StockSequence):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []

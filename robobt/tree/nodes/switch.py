@@ -33,7 +33,7 @@ class Switch(Composite):
         self._otherwise = None if otherwise is None else children.index(otherwise)
 
     def case(self) -> str:
-        """The present case."""
+        """Return the present case."""
         raise NotImplementedError(f"{type(self).__name__} does not define case")
 
     @property
@@ -47,7 +47,7 @@ class Switch(Composite):
         return None if self._otherwise is None else self.children[self._otherwise]
 
     def tick(self) -> Iterator[Behaviour]:
-        """As every py_trees node."""
+        """Tick as every py_trees node does."""
         if self.status is not Status.RUNNING:
             self.initialise()
         chosen = self._choose()
@@ -67,7 +67,7 @@ class Switch(Composite):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """As :class:`~robobt.tree.engine.BringsClosures` says."""
+        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []

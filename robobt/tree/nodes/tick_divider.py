@@ -44,7 +44,7 @@ class TickDivider(Gate, Bound[HasTime]):
         self._last: Status | None = None
 
     def answer(self) -> Status | None:
-        """The last status until the child is due."""
+        """Return the last status until the child is due."""
         if self._last is None:
             return None
         if self._timer is not None:
@@ -54,7 +54,7 @@ class TickDivider(Gate, Bound[HasTime]):
         return self._last if self._repeated < self.every else None
 
     def update(self) -> Status:
-        """The child's status, kept for the ticks to come."""
+        """Return the child's status and keep it for the ticks to come."""
         self._last = status = super().update()
         self._repeated = 0
         if self._timer is not None:
@@ -62,6 +62,6 @@ class TickDivider(Gate, Bound[HasTime]):
         return status
 
     def terminate(self, new_status: Status) -> None:
-        """An interrupted child has no status to repeat."""
+        """Forget the status of an interrupted child."""
         if new_status is Status.INVALID and self.status is Status.RUNNING:
             self._last = None

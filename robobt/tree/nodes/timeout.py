@@ -27,11 +27,11 @@ class Timeout(Gate, Bound[HasTime]):
         self._reason = f"not done within {seconds:g} s"
 
     def initialise(self) -> None:
-        """The time runs from here."""
+        """Start the time."""
         self._timer.start(self.store.time)
 
     def answer(self) -> Status | None:
-        """FAILURE when the time is up."""
+        """Return FAILURE when the time is up."""
         if self.decorated.status is Status.RUNNING and not self._timer.runs(self.store.time):
             self.feedback_message = self._reason
             return Status.FAILURE

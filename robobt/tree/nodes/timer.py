@@ -42,7 +42,7 @@ class Timer:
         self._started = now
 
     def runs(self, now: float) -> bool:
-        """Whether it was started and less than ``seconds`` have passed at ``now`` [s]."""
+        """Return whether it was started and less than ``seconds`` have passed at ``now`` [s]."""
         # The slack keeps a multiple of the control period from taking a tick longer.
         return self._started is not None and 0.0 <= now - self._started < self.seconds - _SLACK
 

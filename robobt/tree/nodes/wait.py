@@ -22,7 +22,7 @@ class Wait(Leaf[HasTime]):
         self._remark = ""
 
     def on_start(self) -> None:
-        """The time runs from here."""
+        """Start the time."""
         self._timer.start(self.store.time)
         self._remark = f"waits until {self._timer.until:.2f} s"
 
