@@ -131,12 +131,12 @@ def match(
     is equal for equal runs; replay: the file written, or null.
     """
     from robobt.match import load_scenario, run_trials
-    from robobt.worlds import SIM, sim_world, world_from
+    from robobt.worlds import SIM, scenario_settings, world_from
 
     import_files(imports)
     loaded = _changed(load_scenario(scenario), on_error, substitute or [])
     # The simulator's settings are checked before any worker is started.
-    sim_world(loaded)
+    scenario_settings(loaded)
     factory = world_from(world)
     if publish:
         from robobt.league.serve.publishing import PublishingFactory

@@ -45,7 +45,7 @@ def export(
     from robobt.match.recording.btlog import write_btlog
 
     if not btlog:
-        raise typer.BadParameter("say which form to write; there is --btlog")
+        raise typer.BadParameter("name the format to write: --btlog")
     loaded = load_recording(recording)
     who = _robot(loaded, robot)
     stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
@@ -74,13 +74,13 @@ def case(
 
 
 def _robot(recording: Recording, text: str | None) -> RobotId:
-    """The robot that is meant."""
+    """Return the robot of that name, or the only one."""
     recorded = {str(robot.id): robot.id for robot in recording.header.robots if robot.tree}
     if text is None and len(recorded) == 1:
         return next(iter(recorded.values()))
     there = ", ".join(recorded) or "none"
     if text is None:
-        raise typer.BadParameter(f"say which robot; trees were recorded of {there}", param_hint="--robot")
+        raise typer.BadParameter(f"name a robot; trees were recorded of {there}", param_hint="--robot")
     name = " ".join(text.split())
     if name not in recorded:
         raise typer.BadParameter(f"no tree was recorded of {text!r}; there are {there}", param_hint="--robot")

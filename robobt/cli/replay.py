@@ -45,7 +45,7 @@ def replay(
 
 
 def _replay_log(log: Path, html: Path | None) -> Path:
-    """The page of a league log."""
+    """Make the page of a league log."""
     from robobt.league.log.world import record_log
     from robobt.match.recording.replay_html import write_html
 

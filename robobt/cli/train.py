@@ -170,7 +170,7 @@ class _LiveTable:
         self._live.stop()
 
     def show(self, standing: Standing) -> None:
-        """What a seed has come to."""
+        """Update the line of a seed."""
         self._standing[standing.seed] = standing
         if errors.is_terminal:
             self._live.update(self._table(), refresh=True)

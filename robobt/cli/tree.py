@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -150,7 +151,7 @@ def _nodes(root: Behaviour) -> list[dict[str, object]]:
 
 
 def _wiring(root: Behaviour) -> list[str]:
-    """What the tree reads and nobody writes, or of another type."""
+    """Return which entries the tree reads that no node writes, or writes with another type."""
     from robobt.skills.store import GIVEN, Store
     from robobt.tree import WiringError, check_tree
 
@@ -189,16 +190,7 @@ def _statistics(play: str, source: str, seed: int | None, *, quiet: bool) -> dic
             say(f"{robot}\n{statistics.as_table()}")
     robots = {
         str(robot): [
-            {
-                "path": one.path,
-                "ticks": one.ticks,
-                "transitions": one.transitions,
-                "successes": one.successes,
-                "failures": one.failures,
-                "runs": one.runs,
-                "own_time": one.own_time,
-                "time": one.time,
-            }
+            {name: value for name, value in asdict(one).items() if name != "last"}
             for one in statistics.counts()
         ]
         for robot, statistics in counted.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -102,32 +103,28 @@ def run_trials(
         {trial: Path(path) for trial, path in record.items()},
         tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
     )
-    file = None if out is None else ResultsFile(out, scenario, seed)
     results: dict[int, MatchResult] = {}
     interrupted = False
-    try:
-        if file is not None:
-            for trial, result in sorted(file.done.items()):
+    with ResultsFile(out, scenario, seed) if out is not None else nullcontext() as file:
+        try:
+            for trial, result in sorted(file.done.items() if file is not None else ()):
                 if trial < trials and trial not in record:
                     results[trial] = result
                     if on_result is not None:
                         on_result(result)
-        todo = [trial for trial in range(trials) if trial not in results]
-        work: Work[int, object, MatchResult] = Work(
-            job.play, f"{scenario.source}: trial", RunError, (ScenarioError, OSError)
-        )
-        setup = partial(_import_files, imported_files())
-        for result in run_tasks(work, todo, min(workers, len(todo)), setup=setup):
-            results[result.trial] = result
-            if file is not None:
-                file.add(result)
-            if on_result is not None:
-                on_result(result)
-    except KeyboardInterrupt:
-        interrupted = True
-    finally:
-        if file is not None:
-            file.close()
+            todo = [trial for trial in range(trials) if trial not in results]
+            work: Work[int, object, MatchResult] = Work(
+                job.play, f"{scenario.source}: trial", RunError, (ScenarioError, OSError)
+            )
+            setup = partial(_import_files, imported_files())
+            for result in run_tasks(work, todo, min(workers, len(todo)), setup=setup):
+                results[result.trial] = result
+                if file is not None:
+                    file.add(result)
+                if on_result is not None:
+                    on_result(result)
+        except KeyboardInterrupt:
+            interrupted = True
     return Run([results[trial] for trial in sorted(results)], seed, interrupted)
 
 

@@ -109,7 +109,7 @@ def _check_source(text: str) -> None:
 
 
 def _is_length(function: ast.FunctionDef) -> bool:
-    """Whether it is what torch writes for every ``nn.Sequential``: how many layers that has."""
+    """Return whether it is what torch writes for every ``nn.Sequential``: its number of layers."""
     match function.name, function.body:
         case "__len__", [ast.Return(ast.Constant(int()))]:
             return True

@@ -132,11 +132,6 @@ class RobotStart(Part):
         description="an angle, [least, greatest], 'towards ball' or 'towards goal' (the attacked one) [rad]",
     )
 
-    @property
-    def fixed(self) -> bool:
-        """Whether the position is the same in every trial."""
-        return isinstance(self.position, tuple)
-
     def sample_heading(
         self, rng: np.random.Generator, place: Point, ball: Point | None, field: FieldGeometry
     ) -> float:
@@ -173,11 +168,6 @@ class BallStart(Part):
         if self.held_by is not None and self.velocity != (0.0, 0.0):
             raise ValueError("a ball that a robot holds has no velocity of its own")
         return self
-
-    @property
-    def fixed(self) -> bool:
-        """Whether the position is given and the same in every trial."""
-        return isinstance(self.position, tuple)
 
     def __str__(self) -> str:
         speed = hypot(*self.velocity)

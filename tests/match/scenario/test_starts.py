@@ -59,13 +59,6 @@ def test_a_heading_is_an_angle_a_range_or_a_look_at_something() -> None:
     assert start([0, 0], "towards ball").sample_heading(rng, place, None, DIVISION_B) == goal
 
 
-def test_only_a_point_is_fixed() -> None:
-    assert start([0.0, 1.0]).fixed
-    assert not start({"x": [0.0, 1.0], "y": [0.0, 1.0]}).fixed
-    assert BallStart(position=(0.0, 1.0)).fixed
-    assert not BallStart(held_by="blue 0").fixed
-
-
 @pytest.mark.parametrize(
     ("value", "text"),
     [
