@@ -44,11 +44,7 @@ class Connection(BaseModel):
     speed: float = Field(1.0, ge=0.05, le=20, description="simulated time over real time")
 
     def link(self) -> Link:
-        """Return a new link that commands the robots.
-
-        Raises:
-            OSError: a port is taken, or no interface has the address.
-        """
+        """Return a new link that commands the robots."""
         if self.simulator == "grsim":
             return GrSimLink(self.host, self.endpoints, self.interface)
         return ProtocolLink(self.host, self.endpoints) if self.simulator == "protocol" else Link()

@@ -49,9 +49,6 @@ class Feed:
         arrived: when the newest of them arrived [s].
         heard: when a frame was last used [s].
         referee: the game controller's state, None without one.
-
-    Raises:
-        OSError: a port is taken, or no interface has the address.
     """
 
     def __init__(

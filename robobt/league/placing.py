@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot, pi
+from math import hypot, inf, pi
 
 from robobt.league.connection import LeagueError
 from robobt.league.feed import Feed
@@ -36,14 +36,7 @@ _SETTLING = 0.1
 
 
 class Placer:
-    """Sets up a field.
-
-    Args:
-        feed: what is seen there.
-        link: teleports and commands.
-        commanded: returns the robots that have to stand still meanwhile.
-        clock: monotonic seconds.
-    """
+    """Sets up a field; the robots that ``commanded`` returns have to stand still meanwhile."""
 
     def __init__(
         self, feed: Feed, link: Link, commanded: Callable[[], list[RobotId]], clock: Callable[[], float]
@@ -73,7 +66,7 @@ class Placer:
 
     def _await_vision(self) -> None:
         end = self._clock() + TIMEOUT
-        while not self._feed.filter.robots() and not self._feed.filter.sees_ball():
+        while not self._feed.filter.robots() and self._feed.filter.ball_unseen() == inf:
             if self._clock() > end:
                 raise LeagueError(self._feed.no_frames(TIMEOUT))
             self._feed.receive(0.05)
@@ -141,14 +134,13 @@ class Placer:
             ):
                 misplaced.append(str(robot))
         off = max(abs(frame.ball.x - placement.ball[0]), abs(frame.ball.y - placement.ball[1]))
-        if not self._feed.filter.sees_ball() or off > _TOLERANCE:
+        if self._feed.filter.ball_unseen() == inf or off > _TOLERANCE:
             misplaced.append(_BALL)
         return misplaced
 
     def _ball_hidden(self, placement: Placement) -> bool:
         """Return whether a robot may hide a ball that has not been seen since it was put."""
-        vision = self._feed.filter
-        if vision.sees_ball() and vision.ball_unseen() < _HIDDEN / 2:
+        if self._feed.filter.ball_unseen() < _HIDDEN / 2:
             return False
         x, y = placement.ball[:2]
         return any(hypot(pose[0] - x, pose[1] - y) < _SHADOW for pose in placement.robots.values())

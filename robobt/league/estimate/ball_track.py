@@ -119,11 +119,8 @@ class BallTrack:
     def correct(self, x: float, y: float, kickable: bool = False) -> None:
         """Correct the estimate with a detection captured at the track's time.
 
-        Args:
-            x: [m].
-            y: [m].
-            kickable: whether a robot was close enough to kick the ball; if so, a sudden
-                departure is taken for a kick at the previous detection.
+        If a robot was close enough to kick the ball (``kickable``), a sudden departure is
+        taken for a kick at the previous detection.
         """
         m, p = self.motion, self._covariance
         s = p.pp + self._r

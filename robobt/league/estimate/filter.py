@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
@@ -155,13 +155,9 @@ class VisionFilter:
         """Return the robots on the field."""
         return sorted(self._robots)
 
-    def sees_ball(self) -> bool:
-        """Return whether the ball has ever been seen."""
-        return self._ball is not None
-
     def ball_unseen(self) -> float:
-        """Return how long the ball has not been detected [s]."""
-        return 0.0 if self._ball is None or self.captured is None else self.captured - self._ball_seen
+        """Return how long the ball has not been detected; infinity if it never was [s]."""
+        return inf if self._ball is None or self.captured is None else self.captured - self._ball_seen
 
     def frame_at(self, time: float) -> Frame:
         """Return the field at ``time``, predicted with the commands that were sent.
@@ -199,15 +195,9 @@ class VisionFilter:
         if track is None:
             best = max(detections, key=lambda detection: detection.confidence)
             if best.heading is not None and self._confirmed(robot, best.x, best.y, time, _ROBOT_GATE):
-                self._robots[robot] = RobotTrack(
-                    best.x,
-                    best.y,
-                    best.heading,
-                    time,
-                    self._limits.get(robot, self.settings.limits),
-                    self._robot_noise,
-                    self._heading_noise,
-                )
+                limits = self._limits.get(robot, self.settings.limits)
+                noise = self._robot_noise, self._heading_noise
+                self._robots[robot] = RobotTrack(best.x, best.y, best.heading, time, limits, *noise)
             return
         lag = time - track.time
         track.advance(time, self._sent.get(robot, []))

@@ -133,12 +133,7 @@ def predict_robot(
 ) -> RobotMotion:
     """Return a robot's motion at ``end``, given that at ``start`` and the commands it was sent.
 
-    Args:
-        motion: at ``start``.
-        start: [s].
-        end: [s].
-        commands: before the first, and without any, the robot keeps its velocity.
-        limits: of the robot.
+    Before the first command, and without any, the robot keeps its velocity.
     """
     # Copied by hand, as dataclasses.replace takes longer than the prediction itself.
     state = RobotMotion(motion.x, motion.y, motion.heading, motion.vx, motion.vy, motion.omega)

@@ -74,16 +74,7 @@ class LogWriter:
         self._unflushed = 0
 
     def write(self, time: int, kind: LogKind, data: bytes) -> None:
-        """Add a record.
-
-        Args:
-            time: when the packet was received [ns].
-            kind: what it holds.
-            data: the packet.
-
-        Raises:
-            OSError: the disk is full.
-        """
+        """Add a packet that was received at a time [ns]."""
         self._file.write(_RECORD.pack(time, kind, len(data)) + data)
         self._unflushed += 1
         if self._unflushed >= _FLUSH_EVERY:

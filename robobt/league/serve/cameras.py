@@ -44,13 +44,7 @@ class Cameras:
         self._number = 0
 
     def capture(self, truth: Frame, captured: float, sent: float) -> list[CameraFrame]:
-        """Return one frame of each camera.
-
-        Args:
-            truth: the field.
-            captured: timestamp of the capture [s].
-            sent: timestamp of sending [s].
-        """
+        """Return one frame of each camera, with these timestamps of capture and sending [s]."""
         robots, ball = truth.robots(), truth.ball
         realism, rng = self.realism, self._rng
         self._number += 1
@@ -81,10 +75,7 @@ def _areas(field: FieldGeometry, count: int) -> list[tuple[float, float, float, 
     def edges(parts: int, length: float) -> list[tuple[float, float]]:
         cuts = [-length / 2 + length * i / parts for i in range(parts + 1)]
         return [
-            (
-                -far if i == 0 else cuts[i] - _OVERLAP,
-                far if i == parts - 1 else cuts[i + 1] + _OVERLAP,
-            )
+            (-far if i == 0 else cuts[i] - _OVERLAP, far if i == parts - 1 else cuts[i + 1] + _OVERLAP)
             for i in range(parts)
         ]
 

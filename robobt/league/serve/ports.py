@@ -48,22 +48,11 @@ _REALISM = {
 class ClientPorts:
     """Receives the clients' requests, applies them to a field and answers.
 
-    Args:
-        field: what they command.
-        cameras: whose realism they may configure.
-        endpoints: ports to listen at.
-        interface: own address of the interface to listen on.
-        speed: simulated time over real time.
-
     Attributes:
-        speed: as above, or as a client has set it since.
-        endpoints: as above, with the ports that were picked for 0.
+        speed: simulated time over real time, as the last client has set it.
+        endpoints: with the ports that were picked for 0.
         receivers: of the ports, for ``select``.
         counts: what happened to the packets, by port.
-
-    Raises:
-        OSError: a port is taken, or no interface has the address.
-        ValueError: the speed is out of range.
     """
 
     def __init__(

@@ -93,19 +93,14 @@ class PublishedWorld(World):
 
 
 class PublishingFactory:
-    """Publishes the worlds that another factory makes.
-
-    Args:
-        factory: makes the worlds.
-        endpoints: where the packets go.
-    """
+    """Publishes the worlds that another factory makes; each one ends the publication of the previous."""
 
     def __init__(self, factory: WorldFactory, endpoints: Endpoints | None = None) -> None:
         self._factory, self._endpoints = factory, endpoints
         self._world: PublishedWorld | None = None
 
     def __call__(self, scenario: Scenario) -> PublishedWorld:
-        """Return the world of a scenario, after closing the previous one."""
+        """Return the world of a scenario."""
         self.close()
         self._world = PublishedWorld(self._factory(scenario), scenario.goalkeepers(), self._endpoints)
         return self._world

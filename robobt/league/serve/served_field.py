@@ -88,9 +88,7 @@ class ServedField:
     def command(self, robot: RobotId, command: RobotCommand) -> bool:
         """Give a robot a command, in force until the next one or its timeout.
 
-        Returns:
-            False, without effect, for a robot that is not on the field or a command
-            that is not finite.
+        Return False, without effect, for an absent robot or a command that is not finite.
         """
         i = self._index.get(robot)
         if i is None or not self._present[i] or not command.finite():

@@ -20,7 +20,6 @@ from robobt.league.serve.publishing import GEOMETRY_INTERVAL
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.endpoints import Endpoints
-from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import LOOPBACK, Sender
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_field, write_vision
@@ -46,6 +45,7 @@ class SimServer:
 
     Attributes:
         endpoints: as above, with the ports that were picked for 0.
+        counts: what happened to the packets, by port.
         frames: how many were sent.
         referee: the referee, None without one.
 
@@ -81,7 +81,7 @@ class SimServer:
             self._ports = ClientPorts(field, self._cameras, to, interface, speed)
             opened.callback(self._ports.close)
             self._opened = opened.pop_all()
-        self.endpoints = self._ports.endpoints
+        self.endpoints, self.counts = self._ports.endpoints, self._ports.counts
         self._kinds = {
             self._vision: LogKind.VISION,
             self._tracker: LogKind.TRACKER,
@@ -95,11 +95,6 @@ class SimServer:
     def speed(self) -> float:
         """Simulated time over real time."""
         return self._ports.speed
-
-    @property
-    def counts(self) -> dict[str, PacketCounts]:
-        """What happened to the packets, by port."""
-        return self._ports.counts
 
     def run(
         self,

@@ -29,15 +29,15 @@ _OUTDATED = {
     15: RefereeCommand.STOP,
 }
 
-_RESTARTS: Mapping[RefereeCommand, tuple[Restart, Team]] = {
-    RefereeCommand.PREPARE_KICKOFF_YELLOW: (Restart.KICKOFF, Team.YELLOW),
-    RefereeCommand.PREPARE_KICKOFF_BLUE: (Restart.KICKOFF, Team.BLUE),
-    RefereeCommand.PREPARE_PENALTY_YELLOW: (Restart.PENALTY, Team.YELLOW),
-    RefereeCommand.PREPARE_PENALTY_BLUE: (Restart.PENALTY, Team.BLUE),
-    RefereeCommand.DIRECT_FREE_YELLOW: (Restart.FREE_KICK, Team.YELLOW),
-    RefereeCommand.DIRECT_FREE_BLUE: (Restart.FREE_KICK, Team.BLUE),
-    RefereeCommand.BALL_PLACEMENT_YELLOW: (Restart.BALL_PLACEMENT, Team.YELLOW),
-    RefereeCommand.BALL_PLACEMENT_BLUE: (Restart.BALL_PLACEMENT, Team.BLUE),
+_RESTARTS = {
+    RefereeCommand[f"{prefix}_{team.name}"]: (restart, team)
+    for prefix, restart in (
+        ("PREPARE_KICKOFF", Restart.KICKOFF),
+        ("PREPARE_PENALTY", Restart.PENALTY),
+        ("DIRECT_FREE", Restart.FREE_KICK),
+        ("BALL_PLACEMENT", Restart.BALL_PLACEMENT),
+    )
+    for team in Team
 }
 
 _AT_ONCE = frozenset({Restart.FREE_KICK, Restart.BALL_PLACEMENT})
@@ -60,8 +60,7 @@ class RefereeFollower:
         self.blue_on_positive_half: bool | None = None
         self.counts = PacketCounts()
         self._counter: tuple[int, int] | None = None
-        self._ball_from: Point | None = None
-        self._since: float | None = None
+        self._ready: tuple[Point, float] | None = None
 
     def read(self, data: bytes) -> bool:
         """Update the state from a packet; return False (counted) when it is malformed or implausible."""
@@ -98,33 +97,31 @@ class RefereeFollower:
     def watch(self, frame: Frame) -> GameState:
         """Return the state in view of the ball: a restart ends when the ball moves, or times out.
 
-        Args:
-            frame: the field, in the coordinates of the packets.
+        The frame is in the coordinates of the packets.
         """
         game = self.game
         if game.restart is None or game.restart is Restart.BALL_PLACEMENT or not game.may_touch:
             return game
-        if self._since is None:
-            self._ball_from, self._since = frame.ball.position, frame.time
+        if self._ready is None:
+            self._ready = frame.ball.position, frame.time
             if game.placement is None:
                 self.game = game = replace(game, placement=frame.ball.position)
-        assert self._ball_from is not None
-        moved = distance(frame.ball.position, self._ball_from) > IN_PLAY_DISTANCE
+        ball, since = self._ready
+        moved = distance(frame.ball.position, ball) > IN_PLAY_DISTANCE
         # A penalty kick has no timeout here: the controller ends it.
-        timeout = game.restart is not Restart.PENALTY and frame.time - self._since > _KICK_TIMEOUT
+        timeout = game.restart is not Restart.PENALTY and frame.time - since > _KICK_TIMEOUT
         if moved or timeout:
             self.game = replace(game, restart=None, restart_team=None, placement=None)
         return self.game
 
     def _follow(self, command: RefereeCommand, upcoming: RefereeCommand, placement: Point | None) -> None:
         before = self.game
-        self._ball_from = self._since = None
+        self._ready = None
         restart, team = _RESTARTS.get(command, (None, None))
         may_touch = restart in _AT_ONCE
         if command is RefereeCommand.NORMAL_START and not before.may_touch:
             # The kick that was prepared may now be taken.
-            restart, team, placement = before.restart, before.restart_team, before.placement
-            may_touch = True
+            restart, team, placement, may_touch = before.restart, before.restart_team, before.placement, True
         elif command in (RefereeCommand.FORCE_START, RefereeCommand.NORMAL_START):
             may_touch, placement = True, None
         elif command is RefereeCommand.STOP:
@@ -161,12 +158,7 @@ class RefereePublisher:
         self._command_time = 0
 
     def write(self, game: GameState, time: float) -> bytes:
-        """Return the packet for a state in world coordinates (blue defends -x).
-
-        Args:
-            game: the state.
-            time: timestamp of the state, Unix time or simulated [s].
-        """
+        """Return the packet for a state in world coordinates (blue defends -x) at a time [s]."""
         now = max(0, round(time * 1e6))
         last, current = self._last, (game.command, game.restart if game.stopped else None, game.restart_team)
         if last is None or current[0] is not last[0] or (game.stopped and current != last):

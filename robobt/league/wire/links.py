@@ -56,10 +56,7 @@ class _SimulatorLink(Link):
 
     def __init__(self, host: str, endpoints: Endpoints) -> None:
         super().__init__()
-        self._teams = {
-            Team.BLUE: Sender(host, endpoints.blue),
-            Team.YELLOW: Sender(host, endpoints.yellow),
-        }
+        self._teams = {Team.BLUE: Sender(host, endpoints.blue), Team.YELLOW: Sender(host, endpoints.yellow)}
         self._sockets: list[Sender | Receiver] = list(self._teams.values())
         self._alive_at = -math.inf
 

@@ -3,14 +3,7 @@
 from __future__ import annotations
 
 from robobt.league.wire.messages import TrackedRobot, TrackerWrapperPacket
-from robobt.league.wire.packets import (
-    MAX_OBJECTS,
-    MAX_ROBOT_NUMBER,
-    MAX_TIME,
-    PacketCounts,
-    on_field,
-    read,
-)
+from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
 from robobt.league.wire.simulation import TEAMS
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team

@@ -16,14 +16,7 @@ from robobt.league.wire.messages import (
     SSL_GeometryFieldSize,
     SSL_WrapperPacket,
 )
-from robobt.league.wire.packets import (
-    MAX_OBJECTS,
-    MAX_ROBOT_NUMBER,
-    MAX_TIME,
-    PacketCounts,
-    on_field,
-    read,
-)
+from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -175,10 +168,7 @@ def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
 def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
     """Return the message of a camera's frame, with every field that strict readers require."""
     message = SSL_DetectionFrame(
-        frame_number=frame.number % 2**32,
-        t_capture=frame.captured,
-        t_sent=frame.sent,
-        camera_id=frame.camera,
+        frame_number=frame.number % 2**32, t_capture=frame.captured, t_sent=frame.sent, camera_id=frame.camera
     )
     for ball in frame.balls:
         message.balls.add(

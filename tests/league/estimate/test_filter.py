@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, pi, sin, sqrt
+from math import cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -167,7 +167,7 @@ def test_detections_of_no_confidence_are_left_out(watched: Watched) -> None:
     for _ in range(10):
         watched.see([(ME, 0.0, 0.0, 0.0)], [(1.0, 1.0)], confidence=0.05)
     assert watched.filter.robots() == []
-    assert not watched.filter.sees_ball()
+    assert watched.filter.ball_unseen() == inf
 
 
 def test_a_false_ball_is_ignored_and_a_real_one_believed_after_three_frames(watched: Watched) -> None:
