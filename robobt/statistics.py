@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 from statistics import NormalDist
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -150,57 +150,30 @@ class McNemar(NamedTuple):
     p: float
 
 
-def mcnemar(
-    first: ArrayLike, second: ArrayLike, method: Literal["exact", "mid_p", "chi2"] = "exact"
-) -> McNemar:
+def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
     """Test whether two classifiers that judged the same trials are right equally often.
 
+    The test is exact: the binomial test on the trials in which they differ.
+
     Args:
-        first: (n,) whether the one was right on a trial.
-        second: (n,) whether the other was.
-        method: ``exact``, the binomial test on the trials they differ in;
-            ``mid_p``, the same less half the probability of what was seen on either side, which
-            is less conservative; ``chi2``, the approximation with continuity correction.
+        first: (n,) whether the first was right on each trial.
+        second: likewise.
 
     Raises:
-        ValueError: lists of different length, or an unknown method.
+        ValueError: lists of different length.
 
     Source: McNemar, "Note on the sampling error of the difference between
-    correlated proportions or percentages", 1947; mid-p: Fagerland, Lydersen and
-    Laake, "The McNemar test for binary matched-pairs data", 2013.
+    correlated proportions or percentages", 1947.
     """
+    from scipy.special import bdtr
+
     a, b = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
     if a.ndim != 1 or a.shape != b.shape:
         raise ValueError("both lists must judge the same trials")
     only_first, only_second = int((a & ~b).sum()), int((b & ~a).sum())
-    return McNemar(only_first, only_second, mcnemar_p(only_first, only_second, method))
-
-
-def mcnemar_p(
-    only_first: int, only_second: int, method: Literal["exact", "mid_p", "chi2"] = "exact"
-) -> float:
-    """Compute the two-sided p of :func:`mcnemar` from the two counts of trials that only one got right."""
-    if only_first < 0 or only_second < 0:
-        raise ValueError("counts must not be negative")
-    if method not in ("exact", "mid_p", "chi2"):
-        raise ValueError(f"method must be exact, mid_p or chi2, not {method!r}")
-    trials = only_first + only_second
-    if trials == 0 or (only_first == only_second and method != "mid_p"):
-        return 1.0
-    if method == "chi2":
-        from scipy.special import chdtrc
-
-        return float(chdtrc(1, max(0, abs(only_first - only_second) - 1) ** 2 / trials))
-    from scipy.special import bdtr, gammaln
-
-    fewer = min(only_first, only_second)
-    both_tails = min(1.0, 2.0 * float(bdtr(fewer, trials, 0.5)))
-    if method == "exact":
-        return both_tails
-    ways = gammaln(trials + 1) - gammaln(fewer + 1) - gammaln(trials - fewer + 1)
-    seen = float(np.exp(ways - trials * np.log(2.0)))
-    # A tie lies in both tails and is there only once.
-    return max(0.0, 1.0 - seen / 2.0 if only_first == only_second else both_tails - seen)
+    fewer, trials = min(only_first, only_second), only_first + only_second
+    p = 1.0 if 2 * fewer == trials else min(1.0, 2.0 * float(bdtr(fewer, trials, 0.5)))
+    return McNemar(only_first, only_second, p)
 
 
 @dataclass(frozen=True)
@@ -215,7 +188,12 @@ class ReliabilityBin:
 
 
 def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
-    """Compare predictions with outcomes in bins of equal width; empty bins are left out.
+    """Compare what was predicted with what came true, in bins of equal width; empty bins are left out.
+
+    Args:
+        probabilities: (n,) predicted.
+        outcomes: (n,) of 0 and 1.
+        bins: how many.
 
     Raises:
         ValueError: lists of different length or none, no bin, or values outside [0, 1].
@@ -237,7 +215,7 @@ def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -
 
 
 def calibration_error(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> float:
-    """Compute the expected calibration error: the mean gap of predicted and observed, weighted by trials.
+    """Return the expected calibration error: the mean gap of predicted and observed, weighted by trials.
 
     Arguments and errors as for :func:`reliability`.
 

@@ -42,7 +42,7 @@ def table2(
     seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=10**6, help="Of the first one.")] = 0,
     as_json: Json = False,
 ) -> None:
-    """Table 2: the network against logistic regression in a 10 x 10 cross-validation.
+    """Print Table 2: the network against logistic regression in a 10 x 10 cross-validation.
 
     Folds, hold-outs and seeds are drawn anew for every replication. The third row
     is logistic regression on standardised inputs.
@@ -110,7 +110,7 @@ def table3(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Table 3: confusion matrices on the test shots, for the paper's network and all other predictors.
+    """Print Table 3: confusion matrices on the test shots, for the paper's network and all other predictors.
 
     The network of Table 1 is trained again with the paper's recipe and many seeds;
     what is listed of it is the run with the median accuracy. The author's own
@@ -170,10 +170,10 @@ def _print_table3(result: Table3) -> None:
     compared = {name: one.mcnemar for name, one in result.models.items() if one.mcnemar is not None}
     if compared:
         against = next(iter(compared.values())).against
-        listed = table(f"against {against}", "only this right", "only that right", "McNemar p", "mid-p")
+        listed = table(f"against {against}", "only this right", "only that right", "McNemar p")
         for name, paired in compared.items():
             counts = str(paired.only_this), str(paired.only_other)
-            listed.add_row(name, *counts, f"{paired.p:.3f}", f"{paired.mid_p:.3f}")
+            listed.add_row(name, *counts, f"{paired.p:.3f}")
         console.print(listed)
     validated = {name: one.cross_validation for name, one in result.models.items()}
     if any(validated.values()):

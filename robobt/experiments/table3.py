@@ -41,7 +41,6 @@ class Paired:
     only_this: int
     only_other: int
     p: float
-    mid_p: float
 
 
 @dataclass(frozen=True)
@@ -225,8 +224,7 @@ def _report(
     if reference is not None and reference != name:
         theirs = (predicted[reference] >= 0.5) == (labels == 1)
         test = mcnemar(right, theirs)
-        mid_p = mcnemar(right, theirs, "mid_p").p
-        paired = Paired(reference, test.only_first, test.only_second, test.p, mid_p)
+        paired = Paired(reference, test.only_first, test.only_second, test.p)
     return ModelReport(
         judged.confusion,
         100.0 * judged.accuracy,

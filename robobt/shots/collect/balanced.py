@@ -48,7 +48,7 @@ _TOLERANCES = (0.005, 0.03)
 
 
 def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
-    """The set-up of one trial; it depends on the settings and the trial's number alone."""
+    """Return the set-up of one trial; it depends on the settings and the trial's number alone."""
     seed = trial_seed(settings.seed, trial)
     rng = np.random.default_rng([seed, 1])
     kinds: Sequence[Literal["motion", "still"]] = (
@@ -105,7 +105,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
 
 
 def _opponents(settings: CollectionSettings, trial: int) -> int:
-    """How many opponents: the goalkeeper alone in every other pair of trials, else up to as many as asked."""
+    """Return how many opponents: the goalkeeper alone in every other pair of trials, else up to the most."""
     more = settings.opponents - 1
     group = trial // 4
     return 1 if more == 0 or group % 2 == 0 else 2 + group // 2 % more
@@ -125,7 +125,7 @@ def _sequence(seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _even_point(seed: int, index: int) -> list[float]:
-    """Point ``index`` of a sequence that fills the unit cube evenly.
+    """Return point ``index`` of a sequence that fills the unit cube evenly.
 
     Source: Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
     """
@@ -152,7 +152,7 @@ def _base(kind: str, opponents: int) -> Scenario:
 
 
 def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Point:
-    """Where the ball shall be kicked: even in range and bearing, outside the defence area."""
+    """Return where the ball is to be kicked: even in range and bearing, outside the defence area."""
     bearing = WIDEST * (2.0 * angle - 1.0)
     away, aside = cos(bearing), abs(sin(bearing))
     most = min(FARTHEST, (field.half_width - 0.2) / aside if aside > 0.0 else FARTHEST)
@@ -169,7 +169,7 @@ def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Po
 
 
 def _keeper(field: FieldGeometry, ball: Point, target: Point, offset: float, out: float) -> Point:
-    """A goalkeeper beside the line of the shot by ``offset``, ``out`` of the way out of its goal."""
+    """Place a goalkeeper beside the line of the shot by ``offset``, ``out`` of the way out of its goal."""
     x = field.half_length - (_OUT[0] + out * (_OUT[1] - _OUT[0]))
     beside = offset
     aim = direction(ball, target)
@@ -187,7 +187,7 @@ def _keeper(field: FieldGeometry, ball: Point, target: Point, offset: float, out
 
 
 def _before(field: FieldGeometry, ball: Point, rng: np.random.Generator) -> Point:
-    """Where the attacker comes from: some way farther out, from any side of that."""
+    """Return where the attacker comes from: some way farther out, from any side of that."""
     outward = direction(field.their_goal, ball)
     travel = float(rng.uniform(*_TRAVEL))
     bearing = outward + float(rng.uniform(-0.5 * pi, 0.5 * pi))
@@ -199,7 +199,7 @@ def _before(field: FieldGeometry, ball: Point, rng: np.random.Generator) -> Poin
 def _blocker(
     field: FieldGeometry, ball: Point, target: Point, taken: list[Point], rng: np.random.Generator
 ) -> Point:
-    """A place for one more opponent, half of them near the line of the shot."""
+    """Return a place for one more opponent, half of them near the line of the shot."""
     while True:
         share, aside = float(rng.uniform(0.1, 0.95)), float(rng.normal(0.0, 0.4))
         x = ball[0] + share * (target[0] - ball[0])
@@ -219,7 +219,7 @@ def _blocker(
 def _moved(
     setup: RobotSetup, place: Point, heading: float, *, flip: bool = False, speed: float | None = None
 ) -> RobotSetup:
-    """The robot started elsewhere; a start is in the own team's view, so yellow's is turned round."""
+    """Start a robot elsewhere; a start is in the own team's view, so yellow's is turned round."""
     x, y = (-place[0], -place[1]) if flip else place
     turned = atan2(sin(heading + pi), cos(heading + pi)) if flip else atan2(sin(heading), cos(heading))
     start = setup.start.model_copy(update={"position": (x, y), "heading": turned})

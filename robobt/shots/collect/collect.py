@@ -54,14 +54,14 @@ class Collected:
 
     @property
     def real_time_factor(self) -> float:
-        """Simulated time over the time it took; 0 when nothing was played."""
+        """Return simulated time over the time it took; 0 when nothing was played."""
         return self.simulated / self.wall if self.wall > 0.0 else 0.0
 
 
 def collect_shots(
     settings: CollectionSettings,
     out: str | Path,
-    count: int | None = None,
+    count: int,
     workers: int = 1,
     on_shot: Callable[[], None] | None = None,
 ) -> Collected:
@@ -74,8 +74,8 @@ def collect_shots(
     Args:
         settings: what they are shots of.
         out: ``.csv`` or ``.parquet``; see :class:`CollectionFile`.
-        count: how many; 1000 without, and always :data:`PAPER_COUNT` in the paper's protocol.
-        workers: processes; one is this process itself.
+        count: how many; always :data:`PAPER_COUNT` in the paper's protocol.
+        workers: number of processes; 1 is this process itself.
         on_shot: called for each shot that is there, those of earlier runs first.
 
     Raises:
@@ -85,8 +85,6 @@ def collect_shots(
         OSError: a file cannot be written.
     """
     paper = settings.protocol == "paper"
-    if count is None:
-        count = PAPER_COUNT if paper else 1000
     if paper and (count != PAPER_COUNT or settings.opponents != 1 or settings.scenario != "both"):
         raise ValueError(f"the paper's protocol is {PAPER_COUNT} shots of both scenarios at one opponent")
     if not 1 <= count <= MAX_COUNT:
@@ -152,13 +150,12 @@ class _Tally:
         self.shots = len(self._rows)
         self._next = [0] * len(quotas)
         self._kept = [0] * len(quotas)
-        self._asked: set[int] = set()
         self._barren = 0
         for series in range(len(quotas)):
             self._move_on(series)
 
     def add(self, trial: int, row: Row | None) -> None:
-        """One more trial is over."""
+        """Note that one more trial is over."""
         self._rows[trial] = row
         self._barren = 0 if row is not None else self._barren + 1
         if self._barren > _BARREN:
@@ -167,7 +164,7 @@ class _Tally:
         self._move_on(trial % len(self._quotas))
 
     def open_trials(self) -> Iterator[int]:
-        """Trials to play, series by series in turn, until every series has its shots."""
+        """Yield trials to play, series by series in turn, until every series has its shots."""
         series, size = 0, len(self._quotas)
         place = [0] * size
         while any(kept < quota for kept, quota in zip(self._kept, self._quotas, strict=True)):
@@ -180,7 +177,7 @@ class _Tally:
             series = (series + 1) % size
 
     def chosen(self) -> list[Row]:
-        """The shots of the collection: the first of each series, in order."""
+        """Return the shots of the collection: the first of each series, in order."""
         size = len(self._quotas)
         rows: list[Row] = []
         for series, quota in enumerate(self._quotas):

@@ -81,11 +81,11 @@ class CollectionFile:
         self._describe()
 
     def _known(self) -> bool:
-        """Whether what lies there is all that was asked for; raises when it is something else."""
+        """Return whether the file holds all that was asked for; raise when it holds something else."""
         if not self.description.exists():
             for file in {self.out, self.growing}:
                 if file.exists():
-                    raise ShotDataError(f"{file}: is there already without its {self.description.name}")
+                    raise ShotDataError(f"{file}: exists already without its {self.description.name}")
             return False
         try:
             found = json.loads(self.description.read_text(encoding="utf-8"))

@@ -99,7 +99,7 @@ def paper_attempt(settings: CollectionSettings, trial: int) -> Attempt:
 
 
 def splits(success: list[int], seed: int) -> list[str]:
-    """The ``early_stop_split`` of the 542 + 201 shots: valid ones drawn evenly from either kind."""
+    """Return the ``early_stop_split`` of the 542 + 201 shots: valid ones drawn evenly from either kind."""
     rng = np.random.default_rng([seed, 3])
     names = ["train"] * TRAIN + ["test"] * TEST
     label = np.array(success[:TRAIN])

@@ -9,7 +9,6 @@ from robobt.shots.collect.paper import paper_attempt
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.collect.watch import take_shot
 from robobt.shots.data.schema import Row, complete_row
-from robobt.worlds import sim_world
 
 
 class Taken(NamedTuple):
@@ -29,5 +28,5 @@ class Taken(NamedTuple):
 def play_trial(settings: CollectionSettings, trial: int) -> Taken:
     """Play one trial; the same settings and number give the same shot wherever it is played."""
     attempt = (paper_attempt if settings.protocol == "paper" else balanced_attempt)(settings, trial)
-    shot, time = take_shot(attempt, sim_world, trial)
+    shot, time = take_shot(attempt, trial)
     return Taken(trial, None if shot is None else complete_row(shot), time)

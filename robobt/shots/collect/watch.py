@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import atan2, cos, hypot, sin
 
 from robobt.match.ends import Outcome
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import Match
 from robobt.match.scenario.scenario import Scenario
 from robobt.shots.collect.plan import Attempt, Section
 from robobt.shots.data.schema import Row
@@ -15,6 +15,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.geometry import distance, wrap_angle
 from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId, RobotState
+from robobt.worlds import sim_world
 
 _LEFT_SHARE = 0.5
 """A ball that leaves with this share of the kick's speed has been kicked."""
@@ -78,7 +79,7 @@ class WatchedWorld(World):
             self.shot = _scene(before, after, me, aimed, self._shooter)
 
 
-def take_shot(attempt: Attempt, world_factory: WorldFactory, trial: int = 0) -> tuple[Row | None, float]:
+def take_shot(attempt: Attempt, trial: int) -> tuple[Row | None, float]:
     """Play one trial with one attacker, blue's first robot.
 
     Returns:
@@ -89,7 +90,7 @@ def take_shot(attempt: Attempt, world_factory: WorldFactory, trial: int = 0) -> 
     watched: list[WatchedWorld] = []
 
     def factory(played: Scenario) -> World:
-        watched.append(WatchedWorld(world_factory(played), shooter))
+        watched.append(WatchedWorld(sim_world(played), shooter))
         return watched[0]
 
     with Match(attempt.scenario, attempt.seed, factory, trial=trial) as match:
@@ -157,7 +158,7 @@ def _speed_away(me: RobotState, frame: Frame) -> float:
 
 
 def _stopped_at_once(before: Frame, after: Frame, shooter: RobotId) -> bool:
-    """Whether somebody stands so near that the kicked ball met him before it was seen."""
+    """Return whether another robot is so near that the kicked ball met it within the tick."""
     toucher = after.last_touch
     return (
         toucher is not None

@@ -20,7 +20,7 @@ _OPPONENT = ("x", "y", "heading", "vx", "vy", "omega")
 
 
 def shot_inputs(table: pa.Table) -> FloatArray:
-    """What every predictor takes: the scene of each shot, (n, 34), as :data:`SHOT_SCENE` describes.
+    """Return what every predictor takes: the scene of each shot (n, 34), see :data:`SHOT_SCENE`.
 
     Shots whose field coordinates were not recorded give the entries that the shot
     frame's columns hold, with their one opponent; the others are not-a-number, so
@@ -39,7 +39,7 @@ def shot_inputs(table: pa.Table) -> FloatArray:
 
 
 def goals(table: pa.Table) -> NDArray[np.int64]:
-    """Which shots scored: (n,) of 1 and 0."""
+    """Return which shots scored: (n,) of 1 and 0."""
     return np.asarray(table.column("success").to_numpy(), dtype=np.int64)
 
 

@@ -19,7 +19,7 @@ from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.scene_training import train_scene_network
+from robobt.shots.predict.scene_network import train_scene_network
 from robobt.shots.predict.validation import Judgement, judge
 from robobt.statistics import wilson_interval
 from robobt.world.features import ABSENT, SCENE_HEAD, SHOT, SHOT_SCENE
@@ -75,6 +75,7 @@ def train_shipped(
         answers = module(torch.from_numpy(inputs[held].astype(np.float32))).numpy()[:, 0]
     figures = judge(answers, labels[held])
     interval = wilson_interval(round(figures.accuracy * figures.shots), figures.shots)
+    seeds = sorted(set(table.column("seed").to_pylist()))
     card = ModelCard(
         kind="shot_predictor",
         name=name,
@@ -82,7 +83,7 @@ def train_shipped(
         description=_DESCRIPTIONS[name],
         observation=ObservationCard.of(observation),
         outputs=(OutputEntry(name="goal"),),
-        environment={"shots": len(table), "goals": float(np.mean(labels)), "seed": _seed_of(table)},
+        environment={"shots": len(table), "goals": float(np.mean(labels)), "seed": seeds},
         training=training,
         seed=seed,
         held_out={
@@ -127,7 +128,3 @@ def _data(name: ShippedModel, table: pa.Table) -> tuple[FloatArray, NDArray[np.i
             f"there are {len(scenes)}, {int(labels.sum())} of them goals"
         )
     return scenes, labels
-
-
-def _seed_of(table: pa.Table) -> list[int]:
-    return sorted(set(table.column("seed").to_pylist()))

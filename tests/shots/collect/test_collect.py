@@ -16,7 +16,6 @@ from robobt.shots.collect.watch import take_shot
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS
-from robobt.worlds import sim_world
 from tests.conftest import StartPython
 
 SETTINGS = CollectionSettings(seed=5)
@@ -164,9 +163,9 @@ def test_the_papers_shots_are_attack_mains_with_its_tolerances():
 
 def test_an_attacker_that_leaves_its_section_has_taken_no_shot():
     attempt = paper_attempt(CollectionSettings(protocol="paper"), 7)
-    assert take_shot(replace(attempt, section=None), sim_world)[0] is not None
+    assert take_shot(replace(attempt, section=None), 7)[0] is not None
     elsewhere = replace(attempt, section=((-4.5, -4.0), (-3.0, 3.0)))
-    assert take_shot(elsewhere, sim_world)[0] is None
+    assert take_shot(elsewhere, 7)[0] is None
 
 
 def test_the_papers_split_keeps_the_share_of_goals():

@@ -46,7 +46,7 @@ def test_too_few_shots_are_said(tmp_path: Path):
 
 def network() -> SceneNetwork:
     torch.manual_seed(0)
-    return SceneNetwork(8).eval()
+    return SceneNetwork().eval()
 
 
 def answers(scenes: np.ndarray) -> np.ndarray:
