@@ -57,7 +57,7 @@ def bench_env(seconds: float = 2.0) -> dict[str, float]:
 
 
 def _measure(task: Task, decide: Decide, seconds: float) -> tuple[float, float]:
-    """CPU seconds of a step of all arenas, and of the physics alone."""
+    """Measure the CPU seconds of a step of all arenas, and of the physics alone."""
     observation = task.reset()
     best = bare = end = float("inf")
     chunk = max(_FEWEST, _CHUNK // task.n)

@@ -94,9 +94,6 @@ _ABSENT = np.array(ABSENT)
 OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, SHOOT)}
 
 
-_wrap_angle = compiled(wrap_angle)
-
-
 @compiled
 def _observe_go_to_ball(robot: Row, ball: Row, row: FloatArray) -> None:
     c, s = cos(robot[2]), sin(robot[2])
@@ -158,7 +155,7 @@ def _observe_scene(
     row[0] = length
     row[1] = angle
     row[2] = abs(target[1])
-    row[3] = _wrap_angle(angle - shooter[2])
+    row[3] = wrap_angle(angle - shooter[2])
     row[4] = c * shooter[3] + s * shooter[4]
     row[5] = c * shooter[4] - s * shooter[3]
     row[6] = c * bx + s * by

@@ -10,12 +10,15 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.world.compiled import compilable
+
 Point = tuple[float, float]
 FloatArray = NDArray[np.float64]
 
 _TAU = 2.0 * pi
 
 
+@compilable
 def wrap_angle(angle: float) -> float:
     """Return the same direction in (-pi, pi]."""
     wrapped = angle % _TAU

@@ -1,4 +1,4 @@
-"""What the environments have in common: arenas that are stepped, seen, and started anew."""
+"""What the environments have in common: arenas that are stepped, observed and started anew."""
 
 from __future__ import annotations
 
@@ -63,18 +63,18 @@ class ArenaTask(ABC):
 
     @abstractmethod
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
-        """The observations (m, O) of robots (m, 1, 6) and balls (m, 4)."""
+        """Compute the observations (m, O) of robots (m, 1, 6) and balls (m, 4)."""
 
     @abstractmethod
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
         """Fill ``rewards`` (n,) and ``ends`` (3, n) after a tick; return whether any episode ended."""
 
     @abstractmethod
-    def _optimum(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return straight way [m] and optimal time [s] from the starts; nan where there is none."""
+    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
+        """Return the shortest possible times from the starts [s]; nan where there is none."""
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
-        """``count`` starts (count, 10) from a seed of their own, to be held out; the task's state stays."""
+        """Draw ``count`` starts (count, 10) from a seed of their own; the task's state stays as it is."""
         return self.sample(np.random.default_rng(seed), count)
 
     def reset(self, seed: int | None = None) -> FloatArray:
@@ -121,7 +121,7 @@ class ArenaTask(ABC):
         return result
 
     def advance(self, actions: FloatArray) -> StepResult:
-        """As :meth:`step`, but an episode that has ended stays as it is; to be started anew by a reset."""
+        """Do as :meth:`step`, but leave an episode that has ended as it is, to be started anew by a reset."""
         given = np.ascontiguousarray(actions, dtype=np.float64)
         if given.shape != (self.n, self.action_size):
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
@@ -144,7 +144,7 @@ class ArenaTask(ABC):
         self._seeded = True
 
     def _build(self) -> None:
-        """Everything that a run changes, anew."""
+        """Build anew everything that a run changes."""
         settings, n = self.settings, self.n
         limits = settings.robot_limits
         self.arenas = Arenas(settings.field, [limits], settings.stepped_simulator, settings.period, n)
@@ -157,7 +157,6 @@ class ArenaTask(ABC):
         self._progress_rows: FloatArray = self._progress.view(np.float64).reshape(n, -1)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)
-        self._straight_way = np.full(n, np.nan)
         self.ended = None
 
     def _begin(self, which: IntArray) -> FloatArray:
@@ -167,7 +166,7 @@ class ArenaTask(ABC):
         self._randomiser.draw(which)
         self.arenas.place(rows[:, None, :6], rows[:, 6:], which)
         self._progress[which] = progress_at(rows)
-        self._straight_way[which], self._optimal_time[which] = self._optimum(rows, which)
+        self._optimal_time[which] = self._optimum(rows, which)
         return self._perception.start(self.arenas.robots, self.arenas.balls, which)
 
     def _collect(self, which: IntArray, ends: BoolArray) -> Episodes:
@@ -181,8 +180,6 @@ class ArenaTask(ABC):
             time=ticks * period,
             optimum=self._optimal_time[which],
             kick_time=np.where(kick < 0, np.nan, kick * period),
-            way=progress["way"],
-            straight_way=self._straight_way[which],
             total_reward=progress["total_reward"],
         )
 

@@ -1,4 +1,4 @@
-"""What became of episodes, and the time in which they could be done at best."""
+"""How episodes ended, and the shortest time in which they could have."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 
 
 def straight_line_time(distance: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> FloatArray:
-    """Shortest time from rest over ``distance`` [s]: speed up to ``speed``, drive on, do not brake.
+    """Compute the shortest time from rest over a distance [s]: speed up, drive on, do not brake.
 
     Args:
         distance: [m], any shape; the others broadcast.
@@ -37,8 +37,6 @@ class Episodes:
             robot or ball started in motion, and for Shoot.
         kick_time: start to the end of the tick in which the kicker first fired
             [s]; nan without a kick.
-        way: length of the way driven [m].
-        straight_way: straight way to where the ball counts as reached [m]; nan as ``optimum``.
         total_reward: undiscounted.
     """
 
@@ -49,8 +47,6 @@ class Episodes:
     time: FloatArray
     optimum: FloatArray
     kick_time: FloatArray
-    way: FloatArray
-    straight_way: FloatArray
     total_reward: FloatArray
 
     def __len__(self) -> int:
@@ -62,25 +58,12 @@ class Episodes:
         counts = self.success & np.isfinite(self.optimum) & (self.optimum > 0.0)
         return float(self.time[counts].sum() / self.optimum[counts].sum()) if counts.any() else float("nan")
 
-    @property
-    def way_ratio(self) -> float:
-        """The same of ways."""
-        counts = self.success & np.isfinite(self.straight_way) & (self.straight_way > 0.0)
-        whole = self.straight_way[counts].sum()
-        return float(self.way[counts].sum() / whole) if counts.any() else float("nan")
-
-    @property
-    def mean_kick_time(self) -> float:
-        """Mean time to the kick of the episodes with one [s]; nan without any."""
-        kicked = np.isfinite(self.kick_time)
-        return float(self.kick_time[kicked].mean()) if kicked.any() else float("nan")
-
     def pick(self, which: IntArray | BoolArray) -> Episodes:
-        """The episodes at these indices."""
+        """Return the episodes at these indices."""
         return Episodes(**{item.name: getattr(self, item.name)[which] for item in fields(self)})
 
     @classmethod
     def joined(cls, parts: list[Episodes]) -> Episodes:
-        """All episodes of at least one part in one table."""
+        """Return all episodes of at least one part in one table."""
         names = [item.name for item in fields(cls)]
         return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})

@@ -103,7 +103,7 @@ class SingleEnv(gymnasium.Env[Observation, Action]):
         )
 
     def render(self) -> Picture | None:
-        """The field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
+        """Draw the field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
         if not self._begun:
@@ -202,7 +202,7 @@ class ManyEnv(VectorEnv[Observation, Action, Any]):
         )
 
     def render(self) -> tuple[Picture, ...] | None:
-        """One picture an arena in mode ``rgb_array``; None without a mode."""
+        """Draw one picture an arena in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
         if not self._begun:

@@ -17,7 +17,15 @@ Observe = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 class Perception:
-    """The eyes of ``n`` arenas."""
+    """How the state of ``n`` arenas is observed.
+
+    Args:
+        settings: of the environment.
+        observe: computes observations from states.
+        size: length of an observation.
+        n: number of arenas.
+        rng: of the noise.
+    """
 
     def __init__(
         self, settings: TaskSettings, observe: Observe, size: int, n: int, rng: np.random.Generator
@@ -35,7 +43,7 @@ class Perception:
         self._all = np.arange(n)
 
     def look(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
-        """What is observed after a tick, (n, O)."""
+        """Return the observations after a tick, (n, O)."""
         if self._noisy or self._differenced:
             robots, balls = self._disturbed(robots, balls, self._all, first=False)
         seen = self._observe(robots, balls)
@@ -47,7 +55,7 @@ class Perception:
         return late
 
     def start(self, robots: FloatArray, balls: FloatArray, which: IntArray) -> FloatArray:
-        """What is observed first of the arenas ``which`` that have just been placed, (m, O)."""
+        """Return the first observations of the arenas ``which``, which have just been placed, (m, O)."""
         robots, balls = robots[which], balls[which]
         if self._noisy or self._differenced:
             robots, balls = self._disturbed(robots, balls, which, first=True)

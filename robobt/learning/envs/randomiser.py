@@ -67,7 +67,7 @@ class Randomiser:
             self._waiting[:, which] = 0.0
 
     def delayed(self, commands: FloatArray) -> FloatArray:
-        """The commands that reach the robots in this period, (n, 1, 6), of those given now and before."""
+        """Return the commands that reach the robots in this period, (n, 1, 6), of those given so far."""
         if self._ranges.control_delay == (0.0, 0.0):
             return commands
         self._newest = (self._newest + 1) % len(self._waiting)

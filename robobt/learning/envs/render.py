@@ -51,13 +51,14 @@ class Renderer:
         robot_trail: Sequence[Point] = (),
         ball_trail: Sequence[Point] = (),
     ) -> Picture:
-        """The picture of one moment.
+        """Draw the picture of one moment.
 
         Args:
             robot: (6,) x, y, heading, ...
             ball: (4,) x, y, ...
             reach: radius of a ring around the ball [m], the distance at which it counts as reached.
-            robot_trail, ball_trail: where they have been, oldest first [m].
+            robot_trail: where the robot has been, oldest first [m].
+            ball_trail: where the ball has been, oldest first [m].
         """
         image = self._ground.copy()
         pen = ImageDraw.Draw(image)

@@ -16,7 +16,7 @@ _AIM = 0.25
 
 
 def straight_drive(observation: FloatArray) -> FloatArray:
-    """Full speed at the ball, whatever the heading: the time-optimal Go-To-Ball.
+    """Drive at full speed at the ball, whatever the heading: the time-optimal Go-To-Ball.
 
     Args:
         observation: (n, 6).

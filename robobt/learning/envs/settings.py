@@ -61,7 +61,7 @@ def _simulator(value: object) -> object:
 
 
 def _complete(value: Mapping[str, object]) -> bool:
-    """Whether the mapping is what a settings object was written out as."""
+    """Return whether the mapping is what a settings object was written out as."""
     return set(SimSettings.model_fields) <= set(value)
 
 

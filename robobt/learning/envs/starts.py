@@ -42,7 +42,7 @@ class StartPool:
         self._next_given = 0
 
     def take(self, count: int) -> tuple[FloatArray, list[int]]:
-        """The next ``count`` starts, and for each its index in the given ones, -1 for a drawn one."""
+        """Take the next ``count`` starts, each with its index in the given ones, -1 for a drawn one."""
         given = min(count, len(self._given) - self._next_given)
         first = self._next_given
         self._next_given += given

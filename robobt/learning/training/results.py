@@ -90,12 +90,6 @@ class Figures(TypedDict):
     weights: str
 
 
-class RunFigures(Figures):
-    """The figures of a run, and its folder."""
-
-    folder: str
-
-
 @dataclass(frozen=True, slots=True)
 class TrainResult:
     """A run that has ended.
@@ -154,13 +148,6 @@ class Summary(TypedDict):
     wall_s: Spread | None
 
 
-class SeedsFigures(TypedDict):
-    """What ``robobt train --json`` prints: every seed's figures, and all of them together."""
-
-    runs: list[RunFigures]
-    together: Summary
-
-
 def held_out_figures(evaluation: Evaluation) -> HeldOutFigures:
     """Return the figures of an evaluation on the held-out starts."""
     return {
@@ -203,7 +190,7 @@ def summary_of(results: Sequence[TrainResult]) -> Summary:
     }
 
 
-def figures_of(results: Sequence[TrainResult]) -> SeedsFigures:
+def figures_of(results: Sequence[TrainResult]) -> dict[str, object]:
     """Return every seed's figures and all of them together, for machines."""
     return {
         "runs": [{**result.figures, "folder": str(result.folder)} for result in results],

@@ -15,7 +15,6 @@ from robobt.world.compiled import compiled
 from robobt.world.geometry import wrap_angle
 
 _BELL = 1.0 / sqrt(2.0 * pi)
-_wrap_angle = compiled(wrap_angle)
 
 
 class GoToBallReward(Settings):
@@ -48,7 +47,7 @@ def reward(
     """
     dx, dy = ball[0] - robot[0], ball[1] - robot[1]
     distance = hypot(dx, dy)
-    angle = abs(_wrap_angle(atan2(dy, dx) - robot[2]))
+    angle = abs(wrap_angle(atan2(dy, dx) - robot[2]))
     total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
     total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
     total -= weights.time

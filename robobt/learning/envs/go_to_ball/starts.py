@@ -10,7 +10,7 @@ from robobt.learning.envs.task import FloatArray
 
 
 def go_to_ball_starts(settings: GoToBallSettings, rng: np.random.Generator, count: int) -> FloatArray:
-    """``count`` starts (count, 10) of Go-To-Ball.
+    """Draw ``count`` starts (count, 10) of Go-To-Ball.
 
     Robot and ball anywhere in their ranges, drawn again until their distance fits.
 

@@ -12,7 +12,7 @@ from robobt.learning.envs.episodes import straight_line_time
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, reward
 from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings
 from robobt.learning.envs.go_to_ball.starts import go_to_ball_starts
-from robobt.learning.envs.progress import PROGRESS, Progress, count_tick
+from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import GO_TO_BALL, ObservationSpec, go_to_ball_rows
@@ -23,7 +23,6 @@ _RULES = ("distance", "distance_facing", "infrared", "held")
 _DISTANCE, _FACING, _INFRARED, _HELD = range(4)
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
 _WEIGHTS = numbers_dtype(GoToBallReward)
-_wrap_angle = compiled(wrap_angle)
 
 
 class GoToBallTask(ArenaTask):
@@ -69,7 +68,7 @@ class GoToBallTask(ArenaTask):
             ends,
         )
 
-    def _optimum(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
+    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
         settings = self.settings
         rule, limits, body = settings.contact, settings.robot_limits, settings.simulator.body
         reach = rule.distance
@@ -79,7 +78,7 @@ class GoToBallTask(ArenaTask):
         way = np.maximum(way, 0.0)
         way[np.any(starts[:, (3, 4, 8, 9)] != 0.0, axis=1)] = np.nan
         fastest = max(limits.acceleration, limits.lateral_acceleration) * self._randomiser.acceleration[which]
-        return way, straight_line_time(way, min(limits.max_speed, settings.action.max_speed), fastest)
+        return straight_line_time(way, min(limits.max_speed, settings.action.max_speed), fastest)
 
 
 @compiled
@@ -105,13 +104,13 @@ def _judge(
     for i in range(len(balls)):
         robot, ball = robots[i, 0], balls[i]
         episode: Progress = episodes[i, 0]
-        count_tick(episode, robot)
+        episode.ticks += 1
         episode.ticks_held = episode.ticks_held + 1 if in_mouth[i, 0] and dribbler else 0.0
         if rule in (_DISTANCE, _FACING):
             dx, dy = ball[0] - robot[0], ball[1] - robot[1]
             reached = hypot(dx, dy) <= contact.distance
             if reached and rule == _FACING:
-                reached = abs(_wrap_angle(atan2(dy, dx) - robot[2])) <= contact.angle
+                reached = abs(wrap_angle(atan2(dy, dx) - robot[2])) <= contact.angle
         elif rule == _INFRARED:
             reached = in_mouth[i, 0]
         else:

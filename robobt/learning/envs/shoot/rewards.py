@@ -16,8 +16,6 @@ from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compiled
 from robobt.world.geometry import wrap_angle
 
-_wrap_angle = compiled(wrap_angle)
-
 
 class ShootReward(Settings):
     """Weights of the reward's terms."""
@@ -86,8 +84,8 @@ def reward(
         return 0.0
     upper = atan2(post_y - robot[1], goal_x - robot[0])
     lower = atan2(-post_y - robot[1], goal_x - robot[0])
-    alpha = _wrap_angle(upper - lower)
-    beta = max(abs(_wrap_angle(upper - robot[2])), abs(_wrap_angle(lower - robot[2])))
+    alpha = wrap_angle(upper - lower)
+    beta = max(abs(wrap_angle(upper - robot[2])), abs(wrap_angle(lower - robot[2])))
     facing = alpha >= beta
     speed = hypot(ball[2], ball[3])
     total = weights.face_goal * (alpha - beta) * speed - weights.time  # Eq. 12

@@ -22,7 +22,7 @@ _POINTS = 17
 
 
 def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) -> FloatArray:
-    """``count`` starts (count, 10) of Shoot: the ball where the dribbler holds it after the warm-up."""
+    """Draw ``count`` starts (count, 10) of Shoot, the ball where the dribbler holds it after the warm-up."""
     starts, field = settings.starts, settings.field
     # The margins are those of the authors' code.
     x = starts.robot_x or (0.3, field.half_length - field.defense_depth - 0.3)
@@ -51,7 +51,7 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
 def _drifts(
     settings: ShootSettings, rng: np.random.Generator, rows: FloatArray, x: Span, y: Span
 ) -> FloatArray:
-    """Velocities from which the robots come to rest inside the ranges.
+    """Draw velocities from which the robots come to rest inside the ranges.
 
     Raises:
         ValueError: none was found for some of them.

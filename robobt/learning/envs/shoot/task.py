@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
-from robobt.learning.envs.progress import PROGRESS, Progress, count_tick
+from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.shoot.rewards import ShootReward, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
@@ -70,10 +70,9 @@ class ShootTask(ArenaTask):
             ends,
         )
 
-    def _optimum(self, starts: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
         # There is no straight line to a goal.
-        none = np.full(len(which), np.nan)
-        return none, none
+        return np.full(len(which), np.nan)
 
 
 @compiled
@@ -99,7 +98,7 @@ def _judge(
     for i in range(len(balls)):
         robot, ball = robots[i, 0], balls[i]
         episode: Progress = episodes[i, 0]
-        count_tick(episode, robot)
+        episode.ticks += 1
         fired = kicked[i, 0]
         if fired and episode.kick_tick < 0:
             episode.kick_tick = episode.ticks
