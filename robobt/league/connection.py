@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from robobt.config.errors import RobobtError
-from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.endpoints import Endpoints, HostAddress
 from robobt.league.wire.links import GrSimLink, Link, ProtocolLink
 from robobt.league.wire.sockets import LOOPBACK
 from robobt.world.game import Team
@@ -25,8 +25,8 @@ class Connection(BaseModel):
     simulator: Literal["grsim", "protocol", "observer"] = Field(
         "grsim", description="grSim's packets, the simulation protocol, or no commands at all"
     )
-    host: str = Field(LOOPBACK, description="where the robots are commanded (IPv4 address)")
-    interface: str | None = Field(
+    host: HostAddress = Field(LOOPBACK, description="where the robots are commanded (IPv4 address)")
+    interface: HostAddress | None = Field(
         None, description="own address of the interface to listen on; none: this machine's packets only"
     )
     endpoints: Endpoints = Endpoints()

@@ -6,6 +6,7 @@ import atexit
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Self
 
 from robobt.league.connection import Connection
@@ -138,10 +139,8 @@ class LeagueWorld(World):
             self.latencies.append((feed.now() - feed.arrived) / self.connection.speed)
         # An immediate kick has been made; repeats of the command only drive.
         for robot, command in self._commands.items():
-            if command.kick_trigger is KickTrigger.NOW and command.kick_speed > 0.0:
-                self._commands[robot] = RobotCommand(
-                    command.vx, command.vy, command.omega, dribbler=command.dribbler
-                )
+            if command.kick_trigger is KickTrigger.NOW:
+                self._commands[robot] = replace(command, kick_speed=0.0)
         self._wait()
         feed.filter.possession.feedback.update(self._link.feedback())
         # All frames until the next act are of this instant.

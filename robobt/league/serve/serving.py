@@ -15,10 +15,7 @@ def served_scenario(
 ) -> ServedField:
     """Return the field of a scenario, with everything where its seed puts it.
 
-    Args:
-        scenario: robots, their places, field and simulator.
-        simulator: a preset instead of the scenario's simulator.
-        realism: a level instead of the scenario's.
+    A preset of the simulator and a level of realism may replace the scenario's.
 
     Raises:
         KeyError: no such preset or level.
@@ -35,13 +32,6 @@ def served_line_up(
     field: FieldGeometry, robots: int, simulator: str = "grsim", realism: str | None = None, seed: int = 0
 ) -> ServedField:
     """Return a field with so many robots a team, lined up in their own halves.
-
-    Args:
-        field: dimensions.
-        robots: on each team.
-        simulator: a preset.
-        realism: a level instead of the preset's.
-        seed: of lost commands.
 
     Raises:
         KeyError: no such preset or level.

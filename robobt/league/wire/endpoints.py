@@ -5,7 +5,7 @@ from __future__ import annotations
 from ipaddress import IPv4Address
 from typing import Annotated, NamedTuple
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 VISION_GROUP = "224.5.23.2"
 REFEREE_GROUP = "224.5.23.1"
@@ -36,6 +36,17 @@ def parse_endpoint(text: str) -> Endpoint:
     if not colon or not 0 <= number <= 65535:
         raise ValueError(f"{text!r} is not an address like 224.5.23.2:10006")
     return Endpoint(address, number)
+
+
+def _ipv4(value: str) -> str:
+    try:
+        return str(IPv4Address(value))
+    except ValueError:
+        raise ValueError(f"{value!r} is not an IPv4 address like 192.168.1.5") from None
+
+
+HostAddress = Annotated[str, AfterValidator(_ipv4)]
+"""An IPv4 address as text."""
 
 
 def _endpoint(value: object) -> object:
