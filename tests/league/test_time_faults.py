@@ -7,7 +7,6 @@ from math import inf, nan
 
 import pytest
 
-from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, read_vision, write_vision
@@ -83,32 +82,6 @@ def test_a_time_of_sending_that_cannot_be_is_not_believed(sent: float) -> None:
     assert seen is not None
     assert seen.frame is not None
     assert seen.frame.sent == 10.0
-
-
-@pytest.mark.parametrize("apart", [-1000.0, -3.0, -0.3, 0.2, 7.0, 1e6])
-def test_clocks_that_differ_are_brought_together(apart: float) -> None:
-    clocks = CameraClocks()
-    for i in range(200):
-        now = i * PERIOD
-        late = 0.01 * (i % 3)
-        assert clocks.shift(0, 100.0 + now + late, now) == 0.0
-        assert clocks.shift(1, 100.0 + now + late, now + apart) == pytest.approx(-apart)
-
-
-def test_clocks_in_step_are_left_as_they_are() -> None:
-    clocks = CameraClocks()
-    for i in range(200):
-        now = i * PERIOD
-        assert clocks.shift(0, now + 0.001, now) == 0.0
-        assert clocks.shift(1, now + 0.02, now) == 0.0
-
-
-def test_a_packet_whose_clock_has_slipped_moves_no_camera() -> None:
-    clocks = CameraClocks()
-    for i in range(200):
-        now = i * PERIOD
-        clocks.shift(0, now, now + (1000.0 if i % 10 == 5 else 0.0))
-        assert clocks.shift(1, now, now) == 0.0
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from math import nan, pi
 import pytest
 
 from robobt.league.connection import LeagueError
-from robobt.league.factory import AddressError, LeagueFactory, parse_address
+from robobt.league.factory import LeagueFactory
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.wire.commands import Teleport
 from robobt.league.wire.endpoints import Endpoints
@@ -16,12 +16,12 @@ from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario, run_trials
 from robobt.sim.settings import REALISM, SimSettings, preset
 from robobt.world import World
-from robobt.world.command import RobotCommand
+from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
-from robobt.worlds import sim_world, world_from
+from robobt.worlds import world_from
 from tests.league.served import free_endpoints, poses, served
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 1)
@@ -68,6 +68,18 @@ def test_it_puts_sees_drives_and_stops_robots(simulator: str, group: str) -> Non
         for _ in range(20):
             world.act({})
         assert world.observe().own[0].speed < 0.03
+
+
+def test_an_immediate_kick_is_sent_once_however_often_the_command_is_repeated() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED), connect(endpoints, period=0.2) as world:
+        world.reset(START, 0)
+        kicks: list[float] = []
+        world._link.send = lambda commands, _: kicks.append(commands[ME].kick_speed)  # type: ignore[method-assign]
+        world.act({ME: RobotCommand(0.5, kick_speed=3.0, kick_trigger=KickTrigger.NOW)})
+        assert len(kicks) > 2
+        assert kicks[0] == 3.0
+        assert not any(kicks[1:])
 
 
 def test_closing_it_stops_the_robots() -> None:
@@ -219,50 +231,6 @@ def test_a_scenario_is_played_over_the_network_as_in_the_process() -> None:
         factory.close()
     assert result.ticks > 20
     assert not any(robot.errors for robot in result.robots.values())
-
-
-def test_the_simulator_is_a_world_by_its_name() -> None:
-    assert world_from("sim") is sim_world
-
-
-@pytest.mark.parametrize(
-    ("address", "problem"),
-    [
-        ("grsim", "is league://SIMULATOR"),
-        ("league://webots", "simulator: input should be 'grsim', 'protocol' or 'observer'"),
-        ("league://grsim?port=1", "there is no option 'port'"),
-        ("league://grsim?vision=here", "'here' is not an address like 224.5.23.2:10006"),
-        ("league://grsim?vision=224.5.23.2:99999", "is not an address"),
-        ("league://grsim?grsim=99999", "grsim: input should be less than or equal to 65535"),
-        ("league://grsim?physics=moon", "no preset is called 'moon'"),
-        ("league://grsim?speed=nan", "speed: input should be a finite number"),
-        ("league://grsim?teams=red", "teams.0"),
-    ],
-)
-def test_a_wrong_address_is_one_plain_error(address: str, problem: str) -> None:
-    with pytest.raises(AddressError) as raised:
-        parse_address(address)
-    assert problem in str(raised.value)
-    assert "\n" not in str(raised.value)
-
-
-def test_an_address_says_all_of_a_connection() -> None:
-    connection, physics = parse_address(
-        "league://protocol?host=192.0.2.9&interface=192.0.2.2&teams=yellow&speed=2"
-        "&vision=224.5.23.2:10006&control=1&blue_on_positive_half=true&physics=erforce"
-    )
-    assert (connection.simulator, connection.host, connection.interface) == (
-        "protocol",
-        "192.0.2.9",
-        "192.0.2.2",
-    )
-    assert (connection.teams, connection.speed, connection.blue_on_positive_half) == (
-        (Team.YELLOW,),
-        2.0,
-        True,
-    )
-    assert (str(connection.endpoints.vision), connection.endpoints.control) == ("224.5.23.2:10006", 1)
-    assert physics == "erforce"
 
 
 def test_only_the_own_teams_robots_are_commanded() -> None:

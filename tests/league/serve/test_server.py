@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import time
 from collections.abc import Callable, Iterator
 from math import nan
@@ -15,9 +13,9 @@ from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.commands import BallTeleport, Teleport
-from robobt.league.wire.endpoints import Endpoints, parse_endpoint
+from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.gamecontroller import RefereeFollower
-from robobt.league.wire.grsim import read_grsim, write_grsim, write_grsim_replacement
+from robobt.league.wire.grsim import write_grsim, write_grsim_replacement
 from robobt.league.wire.messages import (
     RealismConfigErForce,
     RobotControlResponse,
@@ -37,7 +35,6 @@ from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
-from tests.conftest import StartPython
 from tests.league.served import free_endpoints, poses
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5)
@@ -270,40 +267,3 @@ def test_a_server_whose_port_is_taken_says_so_and_frees_the_others(
         SimServer(server.field, other)
     with Receiver("127.0.0.1", other.grsim):
         pass
-
-
-@pytest.mark.parametrize("text", ["here", "224.5.23.2", "224.5.23.2:", "224.5.23.2:70000", "localhost:1"])
-def test_an_endpoint_that_is_none_is_one_plain_error(text: str) -> None:
-    with pytest.raises(ValueError, match=r"is not an address like 224\.5\.23\.2:10006"):
-        parse_endpoint(text)
-
-
-KILLED = """
-import time
-from robobt.league.signals import exit_on_signals
-from robobt.league.world import LeagueWorld
-from robobt.world import RobotId, Team
-exit_on_signals()
-world = LeagueWorld(robots={RobotId(Team.BLUE, 0): None}, endpoints={endpoints})
-print("ready", flush=True)
-time.sleep(60)
-"""
-
-
-def test_a_process_that_is_told_to_end_stops_its_robots_first(
-    endpoints: Endpoints, start_python: StartPython
-) -> None:
-    code = KILLED.replace("{endpoints}", repr(endpoints.model_dump(mode="json")))
-    with Receiver("127.0.0.1", endpoints.grsim) as grsim:
-        process = start_python("-c", code)
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-        assert list(grsim.receive()) == []
-        os.kill(process.pid, signal.SIGTERM)
-        assert process.wait(20) == 128 + signal.SIGTERM
-        packets = list(grsim.receive())
-    assert packets
-    for packet in packets:
-        orders = read_grsim(packet.data, PacketCounts())
-        assert orders is not None
-        assert orders.commands == {ME: RobotCommand()}
