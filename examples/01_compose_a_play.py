@@ -32,9 +32,9 @@ SCENARIO = robobt.Scenario.model_validate(
 
 def main() -> None:
     print(tree_text(my_striker()))
-    result = robobt.play_match(SCENARIO, seed=1, record="out/first_play.robobt.jsonl")
+    result = robobt.play_match(SCENARIO, seed=1, record="out/first_play.robobt.arrows")
     print(f"\n{result.outcome} after {result.time:.2f} s")
-    print("robobt replay out/first_play.robobt.jsonl --html out/first_play.html   makes a page of it")
+    print("robobt replay out/first_play.robobt.arrows --html out/first_play.html   makes a page of it")
 
 
 if __name__ == "__main__":

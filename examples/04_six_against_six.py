@@ -13,7 +13,7 @@ import robobt
 
 def main(seconds: float = 60.0) -> None:
     scenario = robobt.load_scenario("six_v_six").lasting(seconds)
-    match = robobt.Match(scenario, 1, robobt.sim_world, record="out/six_v_six.robobt.jsonl.gz")
+    match = robobt.Match(scenario, 1, robobt.sim_world, record="out/six_v_six.robobt.arrows")
     command = None
     with match:  # closes the recording
         while match.tick():
@@ -29,7 +29,7 @@ def main(seconds: float = 60.0) -> None:
         tip = player.runner.root.tip()
         doing = "nothing" if tip is None else f"{tip.name}: {tip.feedback_message}"
         print(f"  {player.robot!s:9} {doing}")
-    print("robobt replay out/six_v_six.robobt.jsonl.gz   makes a page of it")
+    print("robobt replay out/six_v_six.robobt.arrows   makes a page of it")
 
 
 if __name__ == "__main__":

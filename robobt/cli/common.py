@@ -70,7 +70,7 @@ Where = Annotated[
 Bundled = Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")]
 """The argument of commands that play a scenario."""
 
-RECORDING = ".robobt.jsonl.gz"
+RECORDING = ".robobt.arrows"
 """How the name of a recorded match ends."""
 
 PAGE = ".html"

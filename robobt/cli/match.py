@@ -221,7 +221,7 @@ def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]
 
 def _check_replay(path: Path, out: Path | None) -> None:
     """Refuse a name that is more likely another file's: what is there is replaced."""
-    ends = (PAGE, RECORDING, RECORDING.removesuffix(".gz"))
+    ends = (PAGE, RECORDING)
     if not path.name.lower().endswith(ends):
         there = f"takes a name that ends in {', '.join(ends)}, not '{path}'"
         raise typer.BadParameter(there, param_hint="--replay")

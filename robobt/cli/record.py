@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robobt.match.recording import Recording
     from robobt.world import RobotId
 
-_File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}, *.robobt.jsonl).")]
+_File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}).")]
 _Robot = Annotated[
     str | None,
     typer.Option("--robot", help="Whose tree, as 'blue 0'; may be left out where only one was recorded."),
@@ -48,7 +48,7 @@ def export(
         raise typer.BadParameter("name the format to write: --btlog")
     loaded = load_recording(recording)
     who = _robot(loaded, robot)
-    stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
+    stem = recording.name.removesuffix(RECORDING)
     target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out
     _spare(recording, target)
     say(f"Log: {write_btlog(loaded, who, target)}")
@@ -58,19 +58,19 @@ def export(
 def case(
     recording: _File,
     tick: Annotated[int, typer.Option("--tick", min=0, help="Which tick, from 0.")],
-    out: Annotated[Path, typer.Option("--out", help="The test case to write, a YAML file.")],
+    out: Annotated[Path, typer.Option("--out", help="The regression case to write, a YAML file.")],
     robot: _Robot = None,
     imports: Imports = None,
 ) -> None:
-    """Save a tick as a test case: what a robot's tree did then, to be checked by a test."""
+    """Save a tick as a regression case: what a robot's tree did then, for a test to check."""
     from robobt.match.recording import load_recording
-    from robobt.match.regression_cases import save_case
+    from robobt.match.regression_cases import save_regression_case
 
     import_files(imports)
     loaded = load_recording(recording)
     who = _robot(loaded, robot)
     _spare(recording, out)
-    say(f"Case: {save_case(loaded, who, tick, out)}")
+    say(f"Regression case: {save_regression_case(loaded, who, tick, out)}")
 
 
 def _robot(recording: Recording, text: str | None) -> RobotId:

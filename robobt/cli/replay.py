@@ -20,9 +20,7 @@ def add_to(app: typer.Typer) -> None:
 def replay(
     recording: Annotated[
         Path,
-        typer.Argument(
-            help=f"A recording (*{RECORDING}, *.robobt.jsonl), or a league log (*.log, *.log.gz)."
-        ),
+        typer.Argument(help=f"A recording (*{RECORDING}), or a league log (*.log, *.log.gz)."),
     ],
     html: Annotated[
         Path | None,
@@ -37,7 +35,7 @@ def replay(
         say(f"Replay: {_replay_log(recording, html)}")
         return
     loaded = load_recording(recording)
-    stem = recording.name.removesuffix(".gz").removesuffix(".jsonl").removesuffix(".robobt")
+    stem = recording.name.removesuffix(RECORDING)
     page = recording.with_name(f"{stem}{PAGE}") if html is None else html
     if page.exists() and page.samefile(recording):
         raise typer.BadParameter("is the recording itself; give another name", param_hint="--html")

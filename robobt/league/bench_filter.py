@@ -165,7 +165,7 @@ def _play(
 
         def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
             self._watcher.look()
-            self._watcher.sent({robot: commands.get(robot, RobotCommand()) for robot in self.robots})
+            self._watcher.sent({robot: commands.get(robot, RobotCommand()) for robot, _ in scenario.robots})
             super().act(commands)
 
         def place_ball(self, x: float, y: float) -> None:

@@ -49,7 +49,7 @@ def bench_match(
     """
     seed = scenario.seed if seed is None else seed
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "bench.robobt.jsonl"
+        path = Path(folder) / "bench.robobt.arrows"
         # Compiled code and policies are loaded by the first seconds of a match.
         Match(scenario.lasting(2.0), seed, world_factory, path).play()
         played = scenario.lasting(seconds)

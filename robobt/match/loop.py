@@ -35,7 +35,7 @@ class Match:
         scenario: what is played.
         seed: fixes placement, world and trees; the same seed gives the same match, bit for bit.
         world_factory: makes the world.
-        record: file to record the match to; its name ends in ``.robobt.jsonl`` or ``.robobt.jsonl.gz``.
+        record: file to record the match to; its name ends in ``.robobt.arrows``.
         trial: which repetition this is; only written down.
 
     Attributes:
@@ -115,9 +115,6 @@ class Match:
         """
         truth = self.world.truth()
         self._time = truth.time
-        if self._recorder is not None:
-            # Before the referee moves the ball.
-            self._recorder.see(truth)
         if self._referee is not None:
             self._follow_referee(truth)
         else:
@@ -223,7 +220,6 @@ class Match:
             header,
             {player.robot: player.runner for player in self.players},
             {player.robot: player.store for player in self.players},
-            self.world,
         )
 
     def _limits_of(self, robot: RobotId) -> RobotLimits:

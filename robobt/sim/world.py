@@ -15,7 +15,7 @@ from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angles
 from robobt.world.limits import RobotLimits
 from robobt.world.placement import check_inside, check_placement
-from robobt.world.protocol import Placement, Snapshots, World
+from robobt.world.protocol import Placement, World
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
@@ -103,25 +103,6 @@ class SimWorld(World):
     def truth(self) -> Frame:
         """Return the simulated state itself."""
         return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
-
-    @property
-    def snapshots(self) -> Snapshots:
-        """Itself: see :class:`robobt.world.protocol.Snapshots`."""
-        return self
-
-    @property
-    def robots(self) -> tuple[RobotId, ...]:
-        """Its robots, in the order of :meth:`snapshot` and :meth:`sent`."""
-        return tuple(self._ids)
-
-    def snapshot(self) -> bytes:
-        """See :meth:`robobt.world.protocol.Snapshots.snapshot`."""
-        arenas = self._arenas
-        return arenas.balls.tobytes() + arenas.robots.tobytes() + arenas.contact.tobytes()
-
-    def sent(self) -> bytes | None:
-        """See :meth:`robobt.world.protocol.Snapshots.sent`; None where commands are lost."""
-        return None if self.settings.realism.command_loss > 0.0 else self._commands.tobytes()
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands and simulate one control period.

@@ -1,228 +1,146 @@
-"""What a tree did from one tick to the next: statuses, the path that was ticked, what nodes said.
+"""What a tree does from tick to tick: statuses, the nodes that were ticked, their feedback.
 
-A recorder that asks every node at every tick costs a tenth of a match. A
-:class:`TreeWatch` asks only nodes that can have a status, in code made for the
-tree, and works out what changed only where something did.
+Calling a method of every node at every tick would cost a tenth of a match, so a
+:class:`TreeWatch` compiles one expression for the tree that reads only nodes that can
+have a status, and works out what changed later, for many ticks at once.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence as SequenceOf
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import compress, count
-from operator import is_not
+from operator import is_not, ne, or_
 from types import CodeType, FunctionType
-from typing import Any, TypeAlias
 
+from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.composites import Parallel, Selector, Sequence
 
 from robobt.tree.engine import stops_children, ticked_children
 from robobt.tree.runner import TreeRunner, text_of
 
 _LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R", "INVALID": "-"}
-_SILENT = (Selector, Sequence, Parallel)
-_Seen: TypeAlias = tuple[Any, ...] | None
+_SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
+"""Classes whose own nodes give no feedback."""
 
 
 @dataclass(slots=True, frozen=True)
-class Look:
-    """What a tree looked like after a tick or a stop, as :meth:`TreeWatch.tell` understands it."""
-
-    seen: _Seen
-    error: str | None
-    failed: int | None
-    ticked: bool
-    marked: tuple[int, ...]
-    words: tuple[tuple[int, object], ...] = ()
-    """What nodes said, by their place, when nothing else is new; the rest does not count then."""
-
-
-@dataclass(slots=True, frozen=True)
-class Change:
-    """What is new at one tick.
+class TreeState:
+    """A tree as it was found changed.
 
     Attributes:
-        letters: one a node in the order of ``runner.nodes``: S, F, R of a node ticked by the
-            last tick, s, f, r where it kept the status of an earlier one, - without a status;
-            None when they are as they were.
-        said: what nodes said anew, by their place.
-        error: what the runner's tree raised, when that is new.
+        statuses, feedback: of every node, in the order of ``runner.nodes``.
+        ticked: whether the tree was ticked since it was looked at before.
+        reached: nodes that the last tick reached, every one among them of which the statuses
+            do not tell.
+        error: what the last tick raised.
     """
 
-    letters: str | None
-    said: dict[int, str]
+    statuses: tuple[Status, ...]
+    feedback: tuple[object, ...]
+    ticked: bool
+    reached: frozenset[int]
+    error: str | None
+
+
+@dataclass(slots=True, frozen=True)
+class TreeChange:
+    """What is new in a state of a tree.
+
+    Attributes:
+        statuses: one letter a node in the order of ``runner.nodes``: S, F, R of a node that was
+            ticked, s, f, r where it kept the status of an earlier tick, - without a status;
+            None when they are as they were.
+        feedback: new feedback of nodes that have a status, by their place.
+        error: what the tree raised, when that is new.
+    """
+
+    statuses: str | None
+    feedback: dict[int, str]
     error: str | None
 
 
 class TreeWatch:
-    """What has changed in a runner's tree since it was looked at last.
+    """Finds out what has changed in a runner's tree since it was looked at last.
 
-    It looks at the tree after every tick and stop, while that is still at hand, and hands
-    over what it saw only when that is new. What that means, :meth:`tell` can say later, in
-    the same order. What a node says counts while it has a status.
+    Looking is quick and can be done at every tick; :meth:`change` makes sense of what was
+    found, at any later time but in the same order.
 
     Args:
         runner: whose tree.
-        notice: called with every look that is new.
-
-    Attributes:
-        runner: whose tree.
-        ticks: how often it had been ticked when a record was complete the last time.
-        usual: whether it was ticked when it was looked at last.
     """
 
-    def __init__(self, runner: TreeRunner, notice: Callable[[Look], None]) -> None:
+    def __init__(self, runner: TreeRunner) -> None:
         nodes = runner.nodes
-        self.runner = runner
-        self._size = len(nodes)
-        self._places = places = {id(node): place for place, node in enumerate(nodes)}
+        places = {id(node): place for place, node in enumerate(nodes)}
+        self._runner = runner
+        self._places = places
         self._parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
         self._reach = [ticked_children(node) for node in nodes]
-        unsure = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
-        self._layout, ask = _Question(nodes, runner).make()
-        self._ask = ask
-        self._notice = notice
-        self.ticks = runner.ticks
-        # As it was looked at last.
-        self._seen: tuple[Any, ...] = ()
-        self.usual = False
-        self._marked: list[Behaviour] = []
-        self._marks = runner.mark(unsure, self._look)
-        # As it was told last.
-        self._told: _Seen = None
-        self._error: str | None = None
-        self._failed: int | None = None
-        self._statuses = ["-"] * len(nodes)
-        self._said = [""] * len(nodes)
+        doubtful = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
+        self._reached: list[Behaviour] = runner.note_ticked(doubtful) if doubtful else []
+        statuses = "".join([f"'{place}'.status," for place in range(len(nodes))])
+        self._signature = make_reader(f"({_Signature(nodes, places).of(0)})", nodes)
+        self._statuses = make_reader(f"({statuses})", nodes)
+        self._feedback = make_reader(f"({statuses.replace('status', 'feedback_message')})", nodes)
+        self._ticks = runner.ticks
+        self._found: tuple[object, ...] = ()
+        # As of the last change that was told.
+        self._before = TreeState((Status.INVALID,) * len(nodes), ("",) * len(nodes), False, frozenset(), None)
         self._letters = "-" * len(nodes)
-        self._path: tuple[bool, tuple[int, ...]] = (False, ())
-        self._look()
+        self._texts = [""] * len(nodes)
 
-    def tell(self, look: Look) -> Change | None:
-        """What is new in this look since the one told before."""
-        said: dict[int, str] = {}
-        if look.words:
-            for place, message in look.words:
-                if self._statuses[place] != "-":
-                    self._hear(place, message, said)
-            self._told = None
-            return Change(None, said, None) if said else None
-        turned = False
-        if self._failed is not None:
-            self._statuses[self._failed] = "-"
-            self._told, turned = None, True
-        turned = self._compare(look.seen, self._told, self._layout, said) or turned
-        self._told, self._failed = look.seen, look.failed
-        if look.failed is not None and look.error is not None:
-            # The one node that has a status although those above it have none.
-            self._statuses[look.failed], turned = "F", True
-            self._hear(look.failed, look.error.partition(": ")[2], said)
-        path = (look.ticked, look.marked)
-        letters = None
-        if turned or path != self._path:
-            self._path = path
-            letters = self._tell_ticked(look)
-            if letters == self._letters:
-                letters = None
-            else:
-                self._letters = letters
-        error = look.error if look.error != self._error else None
-        self._error = look.error
-        return None if letters is error is None and not said else Change(letters, said, error)
+    def look(self) -> TreeState | None:
+        """Return the tree's state if it is another one than at the last look."""
+        runner = self._runner
+        ticked = runner.ticks != self._ticks
+        self._ticks = runner.ticks
+        found = (ticked, runner.error, self._reached, self._signature())
+        if found == self._found:
+            return None
+        self._found = (ticked, runner.error, self._reached.copy(), found[3])
+        reached = frozenset([self._places.get(id(node), -1) for node in self._reached])
+        return TreeState(self._statuses(), self._feedback(), ticked, reached, runner.error)
 
-    def settle(self) -> None:
-        """A record is complete: notice whether the tree was ticked for it.
+    def change(self, state: TreeState) -> TreeChange | None:
+        """Return what is new in ``state`` since the state before, None if that is nothing."""
+        before, self._before = self._before, state
+        letters = self._letters
+        feedback = map(is_not, state.feedback, before.feedback)
+        if (state.statuses, state.ticked, state.reached) != (before.statuses, before.ticked, before.reached):
+            letters = self._letters_of(state)
+            # The feedback of a node without a status did not count before.
+            feedback = map(or_, feedback, map(ne, letters, self._letters))
+        texts = {}
+        for place in compress(count(), feedback):
+            message = state.feedback[place]
+            text = message if isinstance(message, str) else text_of(message)
+            if letters[place] != "-" and text != self._texts[place]:
+                self._texts[place] = texts[place] = text
+        changed = None if letters == self._letters else letters
+        error = None if state.error == before.error else state.error
+        self._letters = letters
+        return TreeChange(changed, texts, error) if changed or texts or error else None
 
-        Nodes that have a status have kept it where the tree was not.
-        """
-        if (self.runner.ticks != self.ticks) is not self.usual:
-            self._look()
-        self.ticks = self.runner.ticks
-
-    def check(self) -> None:
-        """Look again at the next tick, for what a node may have done to another one unseen."""
-        self._marks.changed = True
-
-    def _place_of_failed(self) -> int | None:
-        failed = self.runner.failed
-        return None if failed is None or failed.status is Status.INVALID else self._places.get(id(failed))
-
-    def _look(self) -> None:
-        ticks = self.runner.ticks - self.ticks
-        ticked, marks = ticks > 0, self._marks
-        # Of several ticks for one record only the first can do with what is new since the last record.
-        if not marks.changed and ticks == 1 and self.usual:
-            self._seen = ()
-            known = self._places
-            words = [(known[id(node)], node.feedback_message) for node in marks.words if id(node) in known]
-            if words:
-                self._notice(Look(None, None, None, True, (), tuple(words)))
-            return
-        now, marked = self._ask(), marks.seen
-        if now == self._seen and ticked is self.usual and marked == self._marked:
-            return
-        self._seen, self.usual, self._marked = now, ticked, marked.copy()
-        places = tuple([self._places.get(id(node), -1) for node in marked]) if ticked else ()
-        self._notice(Look(now[:-1], now[-1], self._place_of_failed(), ticked, places))
-
-    def _compare(self, seen: _Seen, before: _Seen, layout: _Layout, said: dict[int, str]) -> bool:
-        """Bring statuses and what was said up to date; whether a status changed."""
-        statuses, items = self._statuses, layout.items
-        if seen is None:
-            none = ["-"] * (layout.end - layout.start)
-            turned = statuses[layout.start : layout.end] != none
-            statuses[layout.start : layout.end] = none
-            return turned
-        turned = False
-        # Most are as they were, which is found out here without a step of the interpreter for each.
-        for index in range(len(seen)) if before is None else compress(count(), map(is_not, seen, before)):
-            item, old = seen[index], None if before is None else before[index]
-            inside = items[index]
-            if inside.__class__ is _Layout:
-                if item != old or before is None:
-                    known = old if old.__class__ is tuple else None
-                    turned = self._compare(item, known, inside, said) or turned
-            elif inside < 0:
-                if statuses[~inside] != "-":
-                    self._hear(~inside, item, said)
-            elif _LETTERS[item._value_] != statuses[inside]:
-                turned = True
-                statuses[inside] = letter = _LETTERS[item._value_]
-                if letter != "-" and index + 1 < len(items) and items[index + 1] == ~inside:
-                    # The same words as before may not have counted then.
-                    self._hear(inside, seen[index + 1], said)
-        return turned
-
-    def _hear(self, place: int, message: object, said: dict[int, str]) -> None:
-        text = message if isinstance(message, str) else text_of(message)
-        if text != self._said[place]:
-            self._said[place] = said[place] = text
-
-    def _tell_ticked(self, look: Look) -> str:
-        """The statuses' letters, small where a node was not ticked."""
-        statuses = self._statuses
-        if not look.ticked:
-            return "".join(statuses).lower()
-        marked = set(look.marked)
-        parents, reach = self._parents, self._reach
-        letters = statuses.copy()
-        # Nodes that were not ticked, and reactive selectors whose later children were not.
+    def _letters_of(self, state: TreeState) -> str:
+        letters = [_LETTERS[status._value_] for status in state.statuses]
+        if not state.ticked:
+            return "".join(letters).lower()
+        # Nodes that were not ticked, and selectors of which a child before the last one decided.
         idle: set[int] = set()
         decided: set[int] = set()
-        for place, letter in enumerate(statuses):
+        for place, letter in enumerate(letters):
             if letter == "-" or not place:
                 continue
-            parent = parents[place]
-            how = reach[parent]
-            if how == "some":
-                ticked = place in marked
+            parent = self._parents[place]
+            reach = self._reach[parent]
+            if reach == "some":
+                ticked = place in state.reached
             else:
                 ticked = parent not in idle and parent not in decided
-                if letter != "F" and how == "first":
+                if letter != "F" and reach == "first":
                     decided.add(parent)
             if not ticked:
                 idle.add(place)
@@ -230,118 +148,94 @@ class TreeWatch:
         return "".join(letters)
 
 
-class _Layout:
-    """Where the items of what was seen belong.
+class _Signature:
+    """Writes the expression whose value is another one whenever a tree has changed.
 
-    Attributes:
-        items: for each the place of the node whose status it is, ~place where it is what
-            the node said, a layout where it is a tuple.
-        start, end: the places that the whole covers.
+    It reads the status of every node and the feedback of most. Nodes below a node without
+    a status have none either, and are passed over; so are the children of a reactive
+    sequence after the first that has not succeeded.
     """
 
-    __slots__ = ("end", "items", "start")
-
-    def __init__(self, start: int, end: int) -> None:
-        self.start, self.end = start, end
-        self.items: list[Any] = []
-
-
-class _Question:
-    """Makes the function that asks a tree's nodes for their statuses and words."""
-
-    def __init__(self, nodes: SequenceOf[Behaviour], runner: TreeRunner) -> None:
-        self.nodes, self.runner = nodes, runner
-        places = {id(node): place for place, node in enumerate(nodes)}
-        self.children = [[places[id(child)] for child in node.children] for node in nodes]
-        self.ends = [0] * len(nodes)
+    def __init__(self, nodes: Sequence[Behaviour], places: dict[int, int]) -> None:
+        self._nodes = nodes
+        self._children = [[places[id(child)] for child in node.children] for node in nodes]
+        self._sizes = [1] * len(nodes)
         # Whether nothing below a node has a status unless the node has one.
-        self.whole = [False] * len(nodes)
+        self._whole = [False] * len(nodes)
         for place in range(len(nodes) - 1, -1, -1):
-            below = self.children[place]
-            self.ends[place] = self.ends[below[-1]] if below else place + 1
-            self.whole[place] = stops_children(nodes[place]) and all(self.whole[child] for child in below)
+            below = self._children[place]
+            self._sizes[place] += sum([self._sizes[child] for child in below])
+            self._whole[place] = stops_children(nodes[place]) and all(self._whole[each] for each in below)
 
-    def make(self) -> tuple[_Layout, Callable[[], tuple[Any, ...]]]:
-        """The function, whose last answer is the runner's error, and where the other answers belong."""
-        layout = _Layout(0, len(self.nodes))
-        text = ",".join(self._ask(0, layout, 0))
-        # Trees of the same shape share what is compiled; the names in it give way to the nodes.
-        code = _code(f"lambda:({text},'runner'.error)")
-        named: dict[object, object] = {"runner": self.runner}
-        named |= {f"n{place}": node for place, node in enumerate(self.nodes)}
-        constants = tuple([named.get(item, item) for item in code.co_consts])
-        ask = FunctionType(code.replace(co_consts=constants), {"I": Status.INVALID, "S": Status.SUCCESS})
-        return layout, ask
-
-    def _ask(self, place: int, layout: _Layout, depth: int) -> list[str]:
-        """The expressions for a node and what is below it; ``layout`` is told where they belong."""
-        # With a place in the code for each node, the interpreter remembers at each where in
-        # that class the attribute is found; in a loop over nodes of many classes it has to search
-        # every time, which takes three times as long.
-        node, name = self.nodes[place], f"'n{place}'"
-        below = self.children[place]
-        worth = self.ends[place] - place >= _WORTH_SKIPPING
-        skip = worth and bool(below) and self.whole[place] and depth < _DEEPEST
-        if skip:
-            inside = _Layout(place, self.ends[place])
-            layout.items.append(inside)
-            layout, depth = inside, depth + 1
-        layout.items.append(place)
-        parts = [f"{name}.status"]
+    def of(self, place: int, depth: int = 0) -> str:
+        """Return the items that read a node and what is below it, each with a comma behind it."""
+        node, below = self._nodes[place], self._children[place]
+        skip = bool(below) and self._worth_skipping([place], depth)
+        items = f"'{place}'.status,"
         if type(node) not in _SILENT:
-            layout.items.append(~place)
-            parts.append(f"{name}.feedback_message")
-        early = isinstance(node, Sequence) and ticked_children(node) == "all"
-        parts += self._ask_children(below, layout, depth, early)
-        return [f"(({','.join(parts)},) if {name}.status is not I else None)"] if skip else parts
+            items += f"'{place}'.feedback_message,"
+        items += self._of_children(
+            below, isinstance(node, composites.Sequence) and not node.memory, depth + skip
+        )
+        return f"({items})if'{place}'.status is not I else None," if skip else items
 
-    def _ask_children(self, below: list[int], layout: _Layout, depth: int, early: bool) -> list[str]:
-        parts: list[str] = []
-        for index, place in enumerate(below):
-            parts += self._ask(place, layout, depth)
-            rest = below[index + 1 :]
-            # In a reactive sequence nothing after the first child that has not succeeded has a status.
-            worth = rest and self.ends[rest[-1]] - rest[0] >= _WORTH_SKIPPING
-            if early and worth and depth < _DEEPEST and all(self.whole[other] for other in rest):
-                inside = _Layout(rest[0], self.ends[rest[-1]])
-                layout.items.append(inside)
-                others = self._ask_children(rest, inside, depth + 1, early)
-                return [*parts, f"(({','.join(others)},) if 'n{place}'.status is S else None)"]
-        return parts
+    def _of_children(self, below: list[int], reactive: bool, depth: int) -> str:
+        items = ""
+        for i, place in enumerate(below):
+            items += self.of(place, depth)
+            rest = below[i + 1 :]
+            if reactive and rest and self._worth_skipping(rest, depth):
+                others = self._of_children(rest, True, depth + 1)
+                return f"{items}({others})if'{place}'.status is S else None,"
+        return items
+
+    def _worth_skipping(self, places: list[int], depth: int) -> bool:
+        # Python reads no more than 200 brackets within each other.
+        enough = sum([self._sizes[place] for place in places]) >= 4 and depth < 40
+        return enough and all(self._whole[place] for place in places)
 
 
-_WORTH_SKIPPING = 4
-"""Nodes that are asked at once rather than upon a condition."""
+def make_reader(expression: str, objects: Sequence[object]) -> FunctionType:
+    """Make the function that reads attributes of objects.
 
-_DEEPEST = 40
-"""Conditions within conditions; Python reads no more than 200 brackets within each other."""
+    Args:
+        expression: what it returns; an object is written as its place in quotes, and I and S
+            are the statuses INVALID and SUCCESS.
+        objects: by their places.
+    """
+    # With a place in the code for each object, the interpreter remembers at each where in that class
+    # the attribute is found; in a loop over objects of many classes it has to search every time,
+    # which takes three times as long. Trees of one shape share what is compiled.
+    code = _compiled(f"lambda:{expression}")
+    named: dict[object, object] = {str(place): each for place, each in enumerate(objects)}
+    constants = tuple([named.get(constant, constant) for constant in code.co_consts])
+    return FunctionType(code.replace(co_consts=constants), {"I": Status.INVALID, "S": Status.SUCCESS})
 
 
 @lru_cache(maxsize=256)
-def _code(source: str) -> CodeType:
+def _compiled(source: str) -> CodeType:
     made: FunctionType = eval(source)
     return made.__code__
 
 
-def node_paths(names: SequenceOf[str], depths: SequenceOf[int]) -> list[str]:
-    """An id for each node of a tree: the names from the root down to it, joined by slashes.
+def node_ids(nodes: Sequence[Behaviour]) -> list[tuple[int, str]]:
+    """Return depth and id of each node of a tree, parents before children; the root has depth 0.
 
-    No two are the same: of two that would be, the later one ends in ``#2``, and so on.
+    The id is the names from the root down to the node, joined by slashes. No two are the
+    same: of two that would be, the later one ends in ``#2``, and so on.
 
     Args:
-        names, depths: of all nodes, parents before children; the root has depth 0.
+        nodes: all nodes of the tree.
     """
-    paths: list[str] = []
-    above: list[str] = []
+    found: dict[int, tuple[int, str]] = {}
     taken: set[str] = set()
-    for name, depth in zip(names, depths, strict=True):
-        del above[depth:]
-        wanted = path = "/".join([*above[-1:], name])
-        count = 1
+    for node in nodes:
+        depth, above = found[id(node.parent)] if found else (-1, "")
+        name = path = f"{above}/{node.name}" if found else str(node.name)
+        number = 1
         while path in taken:
-            count += 1
-            path = f"{wanted}#{count}"
+            number += 1
+            path = f"{name}#{number}"
         taken.add(path)
-        above.append(path)
-        paths.append(path)
-    return paths
+        found[id(node)] = (depth + 1, path)
+    return list(found.values())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import PurePath
 from typing import Literal
 
@@ -12,7 +12,7 @@ from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
 from robobt.config.errors import RobobtError
-from robobt.tree.engine import Marks, Tick, Visit, abandon, compile_tree
+from robobt.tree.engine import Tick, Visit, VisitSome, abandon, compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -59,8 +59,7 @@ class TreeRunner:
         self._failed: Behaviour | None = None
         self._stock = False
         self._visitor: VisitorBase | None = None
-        self._marks: Marks | None = None
-        self._after: Callable[[], None] = _nothing
+        self._noted: VisitSome | None = None
         bind(root, store)
         self._tick = compile_tree(root)
 
@@ -87,24 +86,7 @@ class TreeRunner:
         except BaseException:
             abandon(self.root)
             raise
-        finally:
-            if self._marks is not None:
-                self._tell_after(self._marks)
         return self.root.status
-
-    def _tell_after(self, marks: Marks) -> None:
-        # What becomes of a tree that was brought to rest is not what its leaves did before.
-        at_rest = self.error is not None or self.root.status is Status.INVALID
-        if marks.changed or marks.words or at_rest:
-            marks.changed = marks.changed or at_rest
-            self._after()
-            marks.words.clear()
-            marks.changed = at_rest
-
-    @property
-    def failed(self) -> Behaviour | None:
-        """The node that raised at the last tick, None when none did."""
-        return self._failed
 
     def _fail(self, error: BaseException) -> None:
         """Bring the tree to rest, with the node that raised as the one that failed."""
@@ -124,43 +106,30 @@ class TreeRunner:
         self._visitor = visitor
         self._renew()
 
-    def mark(self, nodes: Iterable[Behaviour], after: Callable[[], None]) -> Marks:
-        """Keep the nodes ticked by the last tick from now on, and notice when it changed something.
-
-        Args:
-            nodes: of all nodes of the tree at least these are entered.
-            after: called after every stop, and after every tick after which the tree may not be
-                what it was after the one before, while what was ticked is still at hand.
-        """
-        self._marks = marks = Marks(nodes)
-        self._after = after
+    def note_ticked(self, nodes: Iterable[Behaviour]) -> list[Behaviour]:
+        """Keep a list of the nodes that the last tick reached, at least of these, from now on."""
+        self._noted = VisitSome(nodes)
         self._renew()
-        return marks
+        return self._noted.seen
 
     def _renew(self) -> None:
         """Compile the tree for whoever watches its nodes."""
-        visitor, marks = self._visitor, self._marks
-        visit: Visit | None = marks
+        visitor, noted = self._visitor, self._noted
+        visit: Visit | None = noted
         if visitor is not None:
             run: Visit = visitor.run
 
             def visit_both(node: Behaviour) -> None:
-                if marks is not None:
-                    marks(node)
+                if noted is not None:
+                    noted(node)
                 run(node)
 
             visit = visit_both
         inner = self._by_py_trees(visit) if self._stock else compile_tree(self.root, visit)
-        blind = self._stock or visit is not marks
-        if visitor is None and (marks is None or not (blind or marks.nodes)):
-            self._tick = inner
-            return
 
         def tick() -> Status:
-            if marks is not None:
-                marks.seen.clear()
-                if blind:
-                    marks.changed = True
+            if noted is not None:
+                noted.seen.clear()
             if visitor is None:
                 return inner()
             visitor.initialise()
@@ -169,7 +138,7 @@ class TreeRunner:
             finally:
                 visitor.finalise()
 
-        self._tick = tick
+        self._tick = inner if visit is None else tick
 
     def _by_py_trees(self, visit: Visit | None) -> Tick:
         def tick() -> Status:
@@ -192,9 +161,6 @@ class TreeRunner:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
-        if self._marks is not None:
-            self._marks.changed = True
-            self._after()
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """Return the node that raised, and what it is, with the line of the skill's file."""
@@ -221,10 +187,6 @@ def text_of(said: object) -> str:
         return str(said)
     except (Exception, SystemExit) as error:
         return f"a {type(said).__name__} whose text is a {type(error).__name__}"
-
-
-def _nothing() -> None:
-    pass
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:

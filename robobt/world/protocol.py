@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -21,31 +21,6 @@ class Placement:
 
     robots: dict[RobotId, tuple[float, float, float]] = field(default_factory=dict)
     ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-
-
-class Snapshots(Protocol):
-    """A world's numbers as they lie in memory, for records.
-
-    Taking a frame apart number by number costs many times as much.
-    """
-
-    @property
-    def robots(self) -> Sequence[RobotId]:
-        """The robots, all of them always on the field, in the order of the numbers."""
-
-    def snapshot(self) -> bytes:
-        """Return the true state.
-
-        x, y, vx, vy of the ball [m, m/s], x, y, heading, vx, vy, omega of each robot
-        [m, rad, m/s, rad/s], all float64, and one byte a robot: whether it feels the ball.
-        """
-
-    def sent(self) -> bytes | None:
-        """Return the commands of the last ``act``, None where not all of them may have been taken down.
-
-        Of each robot vx, vy [m/s], omega [rad/s], kick speed [m/s], whether the kick waits
-        for contact and whether the dribbler turns, all float64.
-        """
 
 
 @runtime_checkable
@@ -83,8 +58,3 @@ class World(Protocol):
     def shows_truth(self) -> bool:
         """Whether :meth:`observe` always returns what :meth:`truth` does."""
         return False
-
-    @property
-    def snapshots(self) -> Snapshots | None:
-        """The world's numbers in memory, None where it does not offer them."""
-        return None

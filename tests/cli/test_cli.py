@@ -145,7 +145,7 @@ class TestMatch:
         assert page.read_text().startswith("<!doctype html>")
 
     def test_a_trial_can_be_chosen_for_recording(self, scenario: Path, tmp_path: Path):
-        recording = tmp_path / "second.robobt.jsonl.gz"
+        recording = tmp_path / "second.robobt.arrows"
         printed = robobt("match", scenario, "-n", "3", "--record", "1", "--replay", recording).stdout
         assert f"Replay of trial 1: {recording}" in printed
         assert load_recording(recording).header.trial == 1
@@ -155,7 +155,7 @@ class TestMatch:
     ):
         monkeypatch.chdir(tmp_path)
         robobt("match", scenario, "--record", "0")
-        assert (tmp_path / "test-0.robobt.jsonl.gz").exists()
+        assert (tmp_path / "test-0.robobt.arrows").exists()
 
     def test_a_name_with_a_path_in_it_leads_nowhere_else(
         self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -165,7 +165,7 @@ class TestMatch:
         inside.mkdir()
         monkeypatch.chdir(inside)
         robobt("match", scenario, "--record", "0")
-        assert [path.name for path in inside.iterdir()] == [".._elsewhere_mine-0.robobt.jsonl.gz"]
+        assert [path.name for path in inside.iterdir()] == [".._elsewhere_mine-0.robobt.arrows"]
 
     @pytest.mark.parametrize("name", ["mine.yaml", "results.jsonl", "replay.mp4", "replay"])
     def test_a_replay_does_not_replace_a_file_that_is_none(self, scenario: Path, tmp_path: Path, name: str):
@@ -176,11 +176,11 @@ class TestMatch:
         assert scenario.read_text() == before
 
     def test_replay_and_results_are_two_files(self, scenario: Path, tmp_path: Path):
-        both = tmp_path / "both.robobt.jsonl"
+        both = tmp_path / "both.robobt.arrows"
         assert "a file each" in complaint("match", scenario, "--replay", both, "--out", both, code=2)
 
     @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
-    @pytest.mark.parametrize("name", ["full.html", "full.robobt.jsonl", "full.robobt.jsonl.gz"])
+    @pytest.mark.parametrize("name", ["full.html", "full.robobt.arrows"])
     def test_a_full_disk_is_told_with_the_file(self, scenario: Path, tmp_path: Path, name: str):
         path = tmp_path / name
         path.symlink_to("/dev/full")
@@ -237,14 +237,14 @@ class TestMatch:
 
 class TestReplay:
     def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
-        recording = tmp_path / "a.robobt.jsonl.gz"
+        recording = tmp_path / "a.robobt.arrows"
         robobt("match", scenario, "--replay", recording)
         assert robobt("replay", recording).stdout == f"Replay: {tmp_path / 'a.html'}\n"
         robobt("replay", recording, "--html", tmp_path / "b.html")
         assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
 
     def test_a_page_does_not_replace_its_recording(self, scenario: Path, tmp_path: Path):
-        recording = tmp_path / "a.robobt.jsonl.gz"
+        recording = tmp_path / "a.robobt.arrows"
         robobt("match", scenario, "--replay", recording)
         before = recording.read_bytes()
         assert "is the recording itself" in complaint("replay", recording, "--html", recording, code=2)

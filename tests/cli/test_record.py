@@ -7,7 +7,7 @@ from robobt.cli import app
 from robobt.config.resources import bundled_scenarios
 from robobt.config.yaml import parse_marked, write_yaml
 from robobt.match import Match
-from robobt.match.regression_cases import check_case
+from robobt.match.regression_cases import check_regression_case
 from robobt.match.scenario.scenario import load_scenario
 from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import import_file
@@ -17,7 +17,7 @@ from tests.match.recording.made_recording import record
 
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
-    path = tmp_path / "made.robobt.jsonl"
+    path = tmp_path / "made.robobt.arrows"
     record(path)
     return path
 
@@ -48,7 +48,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
     scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "stands_still"}
     (tmp_path / "still.yaml").write_text(write_yaml(scenario))
-    recorded, case = tmp_path / "still.robobt.jsonl", tmp_path / "case.yaml"
+    recorded, case = tmp_path / "still.robobt.arrows", tmp_path / "case.yaml"
     with PLAYS.temporarily():
         import_file(file)
         Match(load_scenario(tmp_path / "still.yaml").lasting(0.3), 3, sim_world, recorded).play()
@@ -60,4 +60,4 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
     with PLAYS.temporarily():
         saved = CliRunner().invoke(app, [*wanted, "--import", str(file)])
         assert saved.exit_code == 0, saved.stderr
-        check_case(case)
+        check_regression_case(case)

@@ -217,12 +217,12 @@ class TestRepeatability:
         assert len({player.store.rng.random() for player in match.players}) == 4
 
     def test_recording_changes_nothing(self, tmp_path: Path):
-        path = tmp_path / "match.robobt.jsonl.gz"
+        path = tmp_path / "match.robobt.arrows"
         recorded = play_match(scenario(**self.RANDOM), 7, sim_world, path)
         assert recorded.trace == play_match(scenario(**self.RANDOM), 7, sim_world).trace
 
     def test_a_recording_holds_every_tick_and_the_end(self, tmp_path: Path):
-        path = tmp_path / "match.robobt.jsonl"
+        path = tmp_path / "match.robobt.arrows"
         result = play_match(scenario(), 7, PlainWorld, path, trial=3)
         recording = load_recording(path)
         assert recording.complete

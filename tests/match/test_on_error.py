@@ -49,7 +49,7 @@ def test_a_run_ends_with_file_trial_robot_and_node(workers: int) -> None:
 
 
 def test_the_recording_is_kept(tmp_path: Path) -> None:
-    path = tmp_path / "raised.robobt.jsonl.gz"
+    path = tmp_path / "raised.robobt.arrows"
     with pytest.raises(RunError):
         run_trials(breaking("raise", on_error="raise"), PlainWorld, record={0: path})
     assert load_recording(path).header.trial == 0

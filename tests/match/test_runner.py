@@ -135,7 +135,7 @@ class TestFailures:
             run_trials(wrong, sim_world, 2, workers)
 
     def test_trials_are_recorded_whoever_plays_them(self, workers: int, tmp_path: Path):
-        path = tmp_path / "second.robobt.jsonl"
+        path = tmp_path / "second.robobt.arrows"
         run_trials(scenario(), PlainWorld, 2, workers, record={1: path})
         assert load_recording(path).header.trial == 1
 

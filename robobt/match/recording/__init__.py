@@ -13,7 +13,7 @@ from robobt.match.recording.header import (
     RecordingHeader,
     RobotFlag,
 )
-from robobt.match.recording.reader import load_recording, parse_recording, recording_lines
+from robobt.match.recording.reader import load_recording
 from robobt.match.recording.recorder import Recorder
 from robobt.match.recording.recording import Recording
 
@@ -29,6 +29,4 @@ __all__ = [
     "RecordingHeader",
     "RobotFlag",
     "load_recording",
-    "parse_recording",
-    "recording_lines",
 ]

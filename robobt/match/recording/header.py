@@ -7,10 +7,10 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from robobt import __version__
-from robobt.config.errors import RobobtError
+from robobt.config.errors import RobobtError, one_line
 from robobt.tree.drawing import NodeKind
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -18,20 +18,22 @@ from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
 FORMAT = "robobt-recording"
-VERSION = 2
+VERSION = 3
 
 
 class RecordingError(RobobtError, ValueError):
     """A file is not a recording that can be read.
 
     Attributes:
-        path, line, field: where; ``line`` counts from 1, None when the file as a whole is meant.
+        path: the file.
+        tick: where in it, from 0; None when the file as a whole is meant.
+        field: what is wrong there.
     """
 
-    def __init__(self, path: Path, problem: str, line: int | None = None, field: str | None = None) -> None:
-        self.path, self.line, self.field = path, line, field
-        place = str(path) if line is None else f"{path}, line {line}"
-        super().__init__(f"{place}: {problem}" if field is None else f"{place}: {field}: {problem}")
+    def __init__(self, path: Path, problem: str, tick: int | None = None, field: str | None = None) -> None:
+        self.path, self.tick, self.field = path, tick, field
+        place = str(path) if tick is None else f"{path}, tick {tick}"
+        super().__init__(": ".join([place, *[one_line(part, 200) for part in (field, problem) if part]]))
 
 
 class RobotFlag(IntFlag):
@@ -126,7 +128,7 @@ class Event:
         text: what happened, for people.
     """
 
-    time: float
+    time: FiniteFloat
     kind: str
     team: Team | None = None
     robot: RobotId | None = None

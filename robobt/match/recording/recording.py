@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence as SequenceOf
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import JsonValue
 
 from robobt.match.recording.header import Event, RecordedNode, RecordingHeader, RobotFlag
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.geometry import FloatArray
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 T = TypeVar("T")
+K = TypeVar("K")
+
+Timeline: TypeAlias = list[tuple[int, T]]
+"""Values by the tick from which on they hold."""
 
 
 @dataclass(slots=True)
@@ -31,8 +34,8 @@ class Poses:
         contact: (T, K) whether the ball lay in the robot's mouth.
     """
 
-    ball: FloatArray
-    robots: FloatArray
+    ball: NDArray[np.float32]
+    robots: NDArray[np.float32]
     contact: NDArray[np.bool_]
 
 
@@ -46,39 +49,35 @@ class Recording:
         path: the file.
         header: what stayed the same.
         times: (T,) [s], never decreasing.
-        ball: (T, 4) x, y [m], vx, vy [m/s]; NaN where it was not known.
-        robots: (T, K, 6) x, y [m], heading [rad], vx, vy [m/s], omega [rad/s]; NaN off the field.
+        truth: what really was.
+        observed: what the trees were shown, None where that was the truth at every tick.
         flags: (T, K) :class:`RobotFlag`.
         commands: (T, K, 4) vx, vy [m/s], omega [rad/s], kick speed [m/s], in the robot's own
-            frame; NaN where it was sent none.
-        observed: what the trees were shown, None where that was the truth at every tick.
-        letters: for each robot the ticks at which its tree changed, with one letter a node: S, F, R
-            of a node that was ticked, s, f, r where it kept the status of an earlier tick, - without.
-        feedback: for each robot the ticks at which nodes said something new, by node.
-        outputs: for each robot the ticks at which its skills wrote something new, by entry of the store.
-        team_outputs: the same for what the robots of a team share.
-        games: the ticks at which the referee's word changed.
-        touches: the ticks at which the last touch changed hands.
+            frame; 0 where it was sent none.
+        letters: for each robot one letter a node whenever its tree changed: S, F, R of a node that
+            was ticked, s, f, r where it kept the status of an earlier tick, - without.
+        feedback: for each robot the new feedback of nodes, by their place.
+        written: by robot ("blue 3") or team ("blue") what skills wrote anew into that store, by entry.
+        games: what the referee said, whenever that changed.
+        touches: who touched the ball last, whenever that changed.
         events: in the order they were recorded.
         outcome: what the match ended with, None when its recorder was not closed.
     """
 
     path: Path
     header: RecordingHeader
-    times: FloatArray
-    ball: FloatArray
-    robots: FloatArray
-    flags: NDArray[np.uint8]
-    commands: FloatArray
+    times: NDArray[np.float64]
+    truth: Poses
     observed: Poses | None
-    letters: list[list[tuple[int, str]]]
-    feedback: list[list[tuple[int, dict[int, str]]]]
-    outputs: list[list[tuple[int, dict[str, Any]]]]
-    team_outputs: dict[Team, list[tuple[int, dict[str, Any]]]]
-    games: list[tuple[int, GameState]]
-    touches: list[tuple[int, RobotId | None]]
+    flags: NDArray[np.uint8]
+    commands: NDArray[np.float32]
+    letters: list[Timeline[str]]
+    feedback: list[Timeline[dict[int, str]]]
+    written: dict[str, Timeline[dict[str, JsonValue]]]
+    games: Timeline[GameState]
+    touches: Timeline[RobotId | None]
     events: list[Event]
-    outcome: dict[str, Any] | None
+    outcome: dict[str, JsonValue] | None
 
     @property
     def complete(self) -> bool:
@@ -86,39 +85,33 @@ class Recording:
         return self.outcome is not None
 
     @property
-    def statuses(self) -> list[list[tuple[int, str]]]:
-        """For each robot the ticks at which statuses changed, with one letter a node: S, F, R, -."""
-        told = []
-        for changes in self.letters:
-            statuses: list[tuple[int, str]] = []
-            for tick, letters in changes:
-                if not statuses or letters.upper() != statuses[-1][1]:
-                    statuses.append((tick, letters.upper()))
-            told.append(statuses)
-        return told
+    def statuses(self) -> list[Timeline[str]]:
+        """For each robot one letter a node (S, F, R, - without) whenever a status changed."""
+        return [
+            _without_repeats([(tick, letters.upper()) for tick, letters in tree]) for tree in self.letters
+        ]
 
     def __len__(self) -> int:
         return len(self.times)
 
     def frame(self, tick: int) -> Frame:
-        """What was on the field at a tick, from blue's side, as exactly as the file holds it.
+        """Return what was on the field at a tick, from blue's side, as exactly as the file holds it.
 
         Raises:
             IndexError: no such tick.
         """
-        contact = (self.flags & RobotFlag.BALL_CONTACT).astype(bool)
-        return self._frame(tick, Poses(self.ball, self.robots, contact))
+        return self._frame(tick, self.truth)
 
     def observation(self, tick: int) -> Frame:
-        """What the trees were shown at a tick, from blue's side, as exactly as the file holds it.
+        """Return what the trees were shown at a tick, from blue's side, as exactly as the file holds it.
 
         Raises:
             IndexError: no such tick.
         """
-        return self.frame(tick) if self.observed is None else self._frame(tick, self.observed)
+        return self._frame(tick, self.observed or self.truth)
 
     def command(self, robot: RobotId, tick: int) -> RobotCommand | None:
-        """What the robot was sent at a tick, None if nothing.
+        """Return what the robot was sent at a tick, None if nothing.
 
         Raises:
             KeyError: no such robot in this recording.
@@ -133,16 +126,15 @@ class Recording:
         return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags)
 
     def letters_at(self, robot: RobotId, tick: int) -> str:
-        """One letter a node, as in :attr:`letters`.
+        """Return one letter a node of the robot's tree, as in :attr:`letters`.
 
         Raises:
             KeyError: no such robot in this recording.
         """
-        slot = self.slot(robot)
-        return _latest(self.letters[slot], tick, "-" * len(self.header.robots[slot].tree))
+        return _latest(self.letters[self.slot(robot)], tick, "-" * len(self.nodes(robot)))
 
     def statuses_at(self, robot: RobotId, tick: int) -> str:
-        """One letter a node of the robot's tree (S, F, R, - without), in the order of its header.
+        """Return one letter a node of the robot's tree (S, F, R, - without), in the order of its header.
 
         Raises:
             KeyError: no such robot in this recording.
@@ -150,53 +142,48 @@ class Recording:
         return self.letters_at(robot, tick).upper()
 
     def ticked_path(self, robot: RobotId, tick: int) -> list[str]:
-        """Ids of the nodes that were ticked at this tick and had a status then, parents before children.
+        """Return the ids of the nodes that were ticked at this tick and had a status then, parents first.
 
         Raises:
             KeyError: no such robot in this recording.
         """
         letters = self.letters_at(robot, tick)
-        return [
-            node.path for node, letter in zip(self._nodes(robot), letters, strict=True) if letter in "SFR"
-        ]
+        return [node.path for node, it in zip(self.nodes(robot), letters, strict=True) if it in "SFR"]
 
     def feedback_at(self, robot: RobotId, tick: int) -> dict[int, str]:
-        """What the nodes of the robot's tree said last while they had a status, by place in the tree.
+        """Return the last feedback of nodes of the robot's tree while they had a status, by their place.
 
         Raises:
             KeyError: no such robot in this recording.
         """
-        said = _gathered(self.feedback[self.slot(robot)], tick)
-        return {place: message for place, message in said.items() if message}
+        feedback = _gathered(self.feedback[self.slot(robot)], tick)
+        return {place: text for place, text in feedback.items() if text}
 
     def failures_at(self, robot: RobotId, tick: int) -> dict[str, str]:
-        """The nodes that failed at this tick by their ids, each with the reason that it gave.
+        """Return the nodes that failed at this tick by their ids, each with the reason that it gave.
 
         Raises:
             KeyError: no such robot in this recording.
         """
-        letters, said = self.letters_at(robot, tick), self.feedback_at(robot, tick)
-        nodes = self._nodes(robot)
+        letters, feedback = self.letters_at(robot, tick), self.feedback_at(robot, tick)
         return {
-            node.path: said.get(place, "")
-            for place, (node, letter) in enumerate(zip(nodes, letters, strict=True))
-            if letter == "F"
+            node.path: feedback.get(place, "")
+            for place, node in enumerate(self.nodes(robot))
+            if letters[place] == "F"
         }
 
-    def outputs_at(self, robot: RobotId, tick: int) -> dict[str, Any]:
-        """What the robot's skills have written into its store, as plain data by entry.
+    def written_at(self, owner: RobotId | Team, tick: int) -> dict[str, JsonValue]:
+        """Return what skills have written into a robot's store, or into what a team shares, by entry.
 
         Raises:
             KeyError: no such robot in this recording.
         """
-        return _gathered(self.outputs[self.slot(robot)], tick)
-
-    def team_outputs_at(self, team: Team, tick: int) -> dict[str, Any]:
-        """What the skills of a team have written into what they share, as plain data by entry."""
-        return _gathered(self.team_outputs[team], tick)
+        if not isinstance(owner, Team):
+            self.slot(owner)
+        return _gathered(self.written.get(str(owner), []), tick)
 
     def slot(self, robot: RobotId) -> int:
-        """The robot's place in the header and in the arrays.
+        """Return the robot's place in the header and in the arrays.
 
         Raises:
             KeyError: no such robot in this recording.
@@ -207,45 +194,57 @@ class Recording:
         there = ", ".join(str(entry.id) for entry in self.header.robots)
         raise KeyError(f"robot {robot} is not in {self.path}; there are {there}")
 
-    def _nodes(self, robot: RobotId) -> tuple[RecordedNode, ...]:
+    def nodes(self, robot: RobotId) -> tuple[RecordedNode, ...]:
+        """Return the nodes of the robot's tree, parents first; none where no tree was recorded.
+
+        Raises:
+            KeyError: no such robot in this recording.
+        """
         return self.header.robots[self.slot(robot)].tree
 
     def _frame(self, tick: int, poses: Poses) -> Frame:
-        period = self.header.period
         tick = range(len(self))[tick]
         ball = BallState(*poses.ball[tick].tolist())
+        rows, contacts = poses.robots[tick].tolist(), poses.contact[tick].tolist()
         teams: dict[Team, list[RobotState]] = {team: [] for team in Team}
-        for robot, row, contact in zip(
-            self.header.robots, poses.robots[tick].tolist(), poses.contact[tick].tolist(), strict=True
-        ):
+        for robot, row, contact in zip(self.header.robots, rows, contacts, strict=True):
             if isfinite(row[0]):
                 x, y, heading, vx, vy, omega = row
                 state = RobotState(robot.number, x, y, heading, vx, vy, omega, contact, robot.limits)
                 teams[robot.team].append(state)
         own, opponents = (tuple(sorted(teams[team], key=_number)) for team in (Team.BLUE, Team.YELLOW))
-        game = _latest(self.games, tick, OPEN_PLAY)
-        touch = _latest(self.touches, tick, None)
-        time = float(self.times[tick])
-        return Frame(time, self.header.field, ball, own, opponents, Team.BLUE, period, game, touch)
+        return Frame(
+            float(self.times[tick]),
+            self.header.field,
+            ball,
+            own,
+            opponents,
+            Team.BLUE,
+            self.header.period,
+            _latest(self.games, tick, OPEN_PLAY),
+            _latest(self.touches, tick, None),
+        )
 
 
 def _number(robot: RobotState) -> int:
     return robot.id
 
 
-def _latest(changes: SequenceOf[tuple[int, T]], tick: int, default: T) -> T:
+def _without_repeats(changes: Timeline[str]) -> Timeline[str]:
+    return [change for i, change in enumerate(changes) if not i or change[1] != changes[i - 1][1]]
+
+
+def _latest(changes: Timeline[T], tick: int, default: T) -> T:
     place = bisect_right(changes, tick, key=_when)
     return changes[place - 1][1] if place else default
 
 
-def _gathered(changes: SequenceOf[tuple[int, dict[Any, T]]], tick: int) -> dict[Any, T]:
-    gathered: dict[Any, T] = {}
-    for when, change in changes:
-        if when > tick:
-            break
+def _gathered(changes: Timeline[dict[K, T]], tick: int) -> dict[K, T]:
+    gathered: dict[K, T] = {}
+    for _, change in changes[: bisect_right(changes, tick, key=_when)]:
         gathered.update(change)
     return gathered
 
 
-def _when(change: tuple[int, Any]) -> int:
+def _when(change: tuple[int, object]) -> int:
     return change[0]

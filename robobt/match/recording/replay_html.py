@@ -8,18 +8,21 @@ from __future__ import annotations
 import base64
 import html
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib.resources import files
-from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
+from pydantic import JsonValue
 
 from robobt.config.errors import naming
 from robobt.match.recording import Recording, RobotFlag, load_recording
+from robobt.match.recording.recording import Timeline
+from robobt.match.recording.stores import plain
+from robobt.skills.store import GoalLine
 from robobt.world.game import GameState
-from robobt.world.geometry import FloatArray
 
 MOST_FRAMES = 36_000
 """Frames a page holds, ten minutes at 60 Hz; of a longer recording every second, third, ... is shown."""
@@ -31,6 +34,8 @@ _ABSENT = -(2**15)
 _SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
 _FEEDBACK_PERIOD = 0.1
 _GOAL_LINE = "goal_line"
+
+_Written: TypeAlias = Timeline[dict[str, JsonValue]]
 
 
 def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
@@ -49,7 +54,7 @@ def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
 
 
 def replay_html(recording: Recording) -> str:
-    """The page: field, robots, ball, timeline, and the tree of the robot that is selected."""
+    """Return the page: field, robots, ball, timeline, and the tree of the robot that is selected."""
     page = files("robobt.match.recording").joinpath("replay.html").read_text(encoding="utf-8")
     header = recording.header
     title = html.escape(f"{header.scenario or 'match'}, trial {header.trial} · robobt replay")
@@ -59,14 +64,14 @@ def replay_html(recording: Recording) -> str:
     return f"{head}{title}{middle}{_for_script(page_data(recording))}{tail}"
 
 
-def _for_script(data: dict[str, Any]) -> str:
-    """JSON that a script element can hold: it has no tag, no comment and no entity in it."""
+def _for_script(data: dict[str, object]) -> str:
+    """Return JSON that a script element can hold: it has no tag, no comment and no entity in it."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def page_data(recording: Recording) -> dict[str, Any]:
-    """What the page is given, as JSON can hold it.
+def page_data(recording: Recording) -> dict[str, object]:
+    """Return what the page is given, as JSON can hold it.
 
     Arrays are little-endian and in base64: ``times`` float32 [s]; ``ball`` int16 x, y [mm],
     speed [mm/s]; a robot's ``rows`` int16 x, y [mm], heading [mrad], speed [mm/s]; -32768 off
@@ -80,9 +85,10 @@ def page_data(recording: Recording) -> dict[str, Any]:
     statuses = recording.statuses
     robots = []
     for slot, robot in enumerate(header.robots):
-        rows = recording.robots[::stride, slot]
+        rows = recording.truth.robots[::stride, slot]
         speed = np.hypot(rows[:, 3], rows[:, 4])
         feedback = _thinned(recording, slot) if thin else recording.feedback[slot]
+        written = recording.written[str(robot.id)]
         robots.append(
             {
                 "team": robot.team,
@@ -98,11 +104,11 @@ def page_data(recording: Recording) -> dict[str, Any]:
                 "flags": _steps(_runs((recording.flags[::stride, slot] & _SHOWN).tolist()), frames, 1),
                 "statuses": _steps(((tick, letters[word]) for tick, word in statuses[slot]), frames, stride),
                 "feedback": _feedback_steps(feedback, texts, frames, stride),
-                "outputs": _steps(_output_texts(recording.outputs[slot], texts), frames, stride),
-                "goal_line": _steps(_goal_lines(recording.outputs[slot], texts), frames, stride),
+                "outputs": _steps(_written_texts(written, texts), frames, stride),
+                "goal_line": _steps(_goal_lines(written, texts), frames, stride),
             }
         )
-    ball = recording.ball[::stride]
+    ball = recording.truth.ball[::stride]
     ball_rows = np.column_stack((ball[:, 0], ball[:, 1], np.hypot(ball[:, 2], ball[:, 3])))
     return {
         "scenario": header.scenario,
@@ -110,7 +116,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         # As text: a seed may have more digits than a script's numbers hold.
         "seed": str(header.seed),
         "robobt": header.robobt,
-        "outcome": _finite(recording.outcome),
+        "outcome": plain(recording.outcome),
         "field": header.field.model_dump(mode="json"),
         "teams": dict(header.teams),
         "frames": frames,
@@ -151,7 +157,7 @@ def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode("ascii")
 
 
-def _int16(values: FloatArray) -> str:
+def _int16(values: NDArray[np.floating]) -> str:
     most = 2.0**15 - 1.0
     known = np.isfinite(values).all(axis=-1, keepdims=True)
     whole = np.rint(np.clip(np.nan_to_num(values), -most, most))
@@ -166,22 +172,21 @@ def _runs(values: list[int]) -> Iterable[tuple[int, int]]:
             yield place, value
 
 
-def _steps(changes: Iterable[tuple[int, Any]], frames: int, stride: int) -> list[Any]:
-    """(tick, value) as a flat list of frame differences and values; the last of a frame counts."""
-    by_frame: dict[int, Any] = {}
+def _steps(changes: Iterable[tuple[int, object]], frames: int, stride: int) -> list[object]:
+    """Return changes as a flat list of frame differences and values; the last of a frame counts."""
+    by_frame: dict[int, object] = {}
     for tick, value in changes:
         # A change between two shown frames is seen from the second one on.
         by_frame[min(frames - 1, -(-tick // stride))] = value
-    flat, before = [], 0
+    flat: list[object] = []
+    before = 0
     for frame, value in by_frame.items():
         flat += [frame - before, value]
         before = frame
     return flat
 
 
-def _feedback_steps(
-    changes: Iterable[tuple[int, dict[int, str]]], texts: _Table, frames: int, stride: int
-) -> list[int]:
+def _feedback_steps(changes: Timeline[dict[int, str]], texts: _Table, frames: int, stride: int) -> list[int]:
     by_frame: dict[int, dict[int, str]] = {}
     for tick, said in changes:
         by_frame.setdefault(min(frames - 1, -(-tick // stride)), {}).update(said)
@@ -193,8 +198,8 @@ def _feedback_steps(
     return flat
 
 
-def _thinned(recording: Recording, slot: int) -> list[tuple[int, dict[int, str]]]:
-    """The feedback of one tree, a node's words ten times a second unless the tree changed as well."""
+def _thinned(recording: Recording, slot: int) -> Timeline[dict[int, str]]:
+    """Return the feedback of one tree, a node's ten times a second unless the tree changed as well."""
     turns = {tick for tick, _ in recording.letters[slot]}
     times = recording.times.tolist()
     shown: dict[int, float] = {}
@@ -212,9 +217,9 @@ def _thinned(recording: Recording, slot: int) -> list[tuple[int, dict[int, str]]
     return kept
 
 
-def _output_texts(changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table) -> Iterable[tuple[int, int]]:
-    """What the skills of a robot have written so far, as one text whenever that changed."""
-    written: dict[str, Any] = {}
+def _written_texts(changes: _Written, texts: _Table) -> Iterator[tuple[int, int]]:
+    """Give what the skills of a robot have written so far, as one text whenever that changed."""
+    written: dict[str, JsonValue] = {}
     for tick, change in changes:
         written.update(change)
         parts = [
@@ -225,24 +230,22 @@ def _output_texts(changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table) 
         yield tick, texts[" · ".join(parts)]
 
 
-def _goal_lines(
-    changes: Iterable[tuple[int, dict[str, Any]]], texts: _Table
-) -> Iterable[tuple[int, list[Any] | None]]:
-    """What a robot thought of the goal line: half its length [mm] and its text, None for nothing."""
+def _goal_lines(changes: _Written, texts: _Table) -> Iterator[tuple[int, tuple[JsonValue, int] | None]]:
+    """Give what a robot thought of the goal line: half its length [mm] and its text, None for nothing."""
     for tick, change in changes:
         if _GOAL_LINE not in change:
             continue
-        line = change[_GOAL_LINE]
         try:
-            found = [float(line["reach"]) * 1000.0, texts[_base64(base64.b64decode(line["chances"]))]]
-        except (KeyError, TypeError, ValueError):
+            line = GoalLine(**change[_GOAL_LINE])  # type: ignore[arg-type]
+            found = plain(float(line.reach) * 1000.0), texts[_base64(base64.b64decode(line.chances))]
+        except (TypeError, ValueError):
             # Some other skill's idea of it, which the page shows nothing of.
             yield tick, None
         else:
             yield tick, found
 
 
-def _say(value: Any) -> str:
+def _say(value: JsonValue) -> str:
     if isinstance(value, dict):
         return ", ".join([f"{key} {_say(item)}" for key, item in value.items()])
     if isinstance(value, list):
@@ -250,23 +253,12 @@ def _say(value: Any) -> str:
     return f"{value:.3g}" if isinstance(value, float) else "none" if value is None else str(value)
 
 
-def _game(game: GameState) -> dict[str, Any]:
+def _game(game: GameState) -> dict[str, object]:
     return {
         "command": game.command.name,
         "blue": game.blue_score,
         "yellow": game.yellow_score,
         "restart": game.restart,
         "team": game.restart_team,
-        "placement": _finite(game.placement),
+        "placement": plain(game.placement),
     }
-
-
-def _finite(value: Any) -> Any:
-    """The same without NaN and infinity, which JSON does not have."""
-    if isinstance(value, float):
-        return value if isfinite(value) else None
-    if isinstance(value, dict):
-        return {str(key): _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value

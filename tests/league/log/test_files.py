@@ -212,7 +212,7 @@ def test_a_log_without_robots_is_one_plain_error(tmp_path: Path) -> None:
 
 
 def test_a_log_becomes_a_recording(tmp_path: Path, played: Path) -> None:
-    recording = load_recording(record_log(played, tmp_path / "game.robobt.jsonl.gz"))
+    recording = load_recording(record_log(played, tmp_path / "game.robobt.arrows"))
     assert recording.header.field == DIVISION_A
     assert [str(robot.id) for robot in recording.header.robots] == [
         "blue 0",

@@ -37,8 +37,8 @@ def decode(data: bytes) -> tuple[ElementTree.Element, int, list[tuple[int, int, 
 
 @pytest.fixture
 def recording(tmp_path: Path) -> Recording:
-    record(tmp_path / "match.robobt.jsonl")
-    return load_recording(tmp_path / "match.robobt.jsonl")
+    record(tmp_path / "match.robobt.arrows")
+    return load_recording(tmp_path / "match.robobt.arrows")
 
 
 @pytest.mark.parametrize("robot", [BLUE_1, YELLOW_0])
@@ -85,10 +85,10 @@ def test_siblings_of_one_name_and_names_xml_cannot_hold_are_told_apart(tmp_path:
         return Selector('<"&\x00é', False, [Wait("a"), Sequence("a", True, [Wait("a/b")]), Wait("a")])
 
     runner: TreeRunner = TreeRunner(tree(), None)
-    with Recorder(tmp_path / "m.robobt.jsonl", header(), {BLUE_1: runner}) as recorder:
+    with Recorder(tmp_path / "m.robobt.arrows", header(), {BLUE_1: runner}) as recorder:
         runner.tick()
         recorder.tick(frame(0))
-    loaded = load_recording(tmp_path / "m.robobt.jsonl")
+    loaded = load_recording(tmp_path / "m.robobt.arrows")
     root, _, _ = decode(btlog(loaded, BLUE_1))
     paths = [node.attrib["_fullpath"] for node in root.iter() if "_uid" in node.attrib]
     assert paths == ['<"&\ufffdé', '<"&\ufffdé/a', '<"&\ufffdé/a#2', '<"&\ufffdé/a#2/a/b', '<"&\ufffdé/a#3']
@@ -96,7 +96,7 @@ def test_siblings_of_one_name_and_names_xml_cannot_hold_are_told_apart(tmp_path:
 
 
 def test_a_whole_matchs_tree_is_written_from_the_file_alone(tmp_path: Path) -> None:
-    path = tmp_path / "match.robobt.jsonl.gz"
+    path = tmp_path / "match.robobt.arrows"
     Match(load_scenario("striker_vs_goalie").lasting(1.0), 1, sim_world, path).play()
     loaded = load_recording(path)
     written = write_btlog(loaded, RobotId(Team.BLUE, 0), tmp_path / "x.btlog")

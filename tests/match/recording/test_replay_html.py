@@ -22,8 +22,8 @@ EVIL = "</script><script>alert(1)</script><img src=x onerror='alert(2)'>&lt;{{da
 
 @pytest.fixture
 def recording(tmp_path: Path) -> Recording:
-    record(tmp_path / "match.robobt.jsonl")
-    return load_recording(tmp_path / "match.robobt.jsonl")
+    record(tmp_path / "match.robobt.arrows")
+    return load_recording(tmp_path / "match.robobt.arrows")
 
 
 class Tags(HTMLParser):
@@ -74,11 +74,11 @@ def test_the_page_holds_the_positions_to_the_millimetre(recording: Recording) ->
     assert data["frames"] == 120
     np.testing.assert_allclose(numbers(data["times"], "<f4", 1)[:, 0], recording.times, atol=1e-6)
     ball = numbers(data["ball"], "<i2", 3) / 1000
-    np.testing.assert_allclose(ball[:, :2], recording.ball[:, :2], atol=5.1e-4)
+    np.testing.assert_allclose(ball[:, :2], recording.truth.ball[:, :2], atol=5.1e-4)
     np.testing.assert_allclose(ball[:, 2], np.hypot(0.74, 0.012), atol=1e-3)
     for slot, robot in enumerate(data["robots"]):
         rows = numbers(robot["rows"], "<i2", 4) / 1000
-        np.testing.assert_allclose(rows[:, :3], recording.robots[:, slot, :3], atol=5.1e-4)
+        np.testing.assert_allclose(rows[:, :3], recording.truth.robots[:, slot, :3], atol=5.1e-4)
         assert unroll(robot["flags"], 120, 0) == (recording.flags[:, slot] & 7).tolist()
 
 
@@ -123,7 +123,7 @@ def test_the_page_needs_nothing_but_itself(recording: Recording) -> None:
 
 
 def test_nothing_in_a_recording_becomes_markup(tmp_path: Path) -> None:
-    path = tmp_path / "match.robobt.jsonl"
+    path = tmp_path / "match.robobt.arrows"
     trees = {BLUE_1: TreeRunner(Selector(EVIL, memory=False, children=[Wait(EVIL)]), None)}
     robots = (RecordedRobot(team=Team.BLUE, number=1, play=EVIL),)
     evil = header(field=DIVISION_A, scenario=EVIL, teams={Team.BLUE: EVIL}, robots=robots)
@@ -143,9 +143,9 @@ def test_nothing_in_a_recording_becomes_markup(tmp_path: Path) -> None:
 
 
 def empty(tmp_path: Path) -> Recording:
-    with Recorder(tmp_path / "empty.robobt.jsonl", header()):
+    with Recorder(tmp_path / "empty.robobt.arrows", header()):
         pass
-    return load_recording(tmp_path / "empty.robobt.jsonl")
+    return load_recording(tmp_path / "empty.robobt.arrows")
 
 
 def test_a_recording_without_a_tick_has_a_page_too(tmp_path: Path) -> None:
@@ -154,22 +154,23 @@ def test_a_recording_without_a_tick_has_a_page_too(tmp_path: Path) -> None:
 
 
 def test_numbers_that_json_does_not_have_are_left_out(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "m.robobt.jsonl", header(seed=2**70)) as recorder:
+    with Recorder(tmp_path / "m.robobt.arrows", header(seed=2**70)) as recorder:
+        recorder.tick(frame(0))
         recorder.close({"mean": float("nan"), "all": [1.5, float("inf")]})
     data = json.loads(
-        parse(replay_html(load_recording(tmp_path / "m.robobt.jsonl"))).data, parse_constant=pytest.fail
+        parse(replay_html(load_recording(tmp_path / "m.robobt.arrows"))).data, parse_constant=pytest.fail
     )
     assert data["outcome"] == {"mean": None, "all": [1.5, None]}
     assert data["seed"] == str(2**70)
 
 
 def test_a_robot_off_the_field_is_marked_so(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "m.robobt.jsonl", header()) as recorder:
+    with Recorder(tmp_path / "m.robobt.arrows", header()) as recorder:
         for tick in range(3):
             each = frame(tick)
             each.opponents = each.opponents if tick else ()
             recorder.tick(each)
-    data = page_data(load_recording(tmp_path / "m.robobt.jsonl"))
+    data = page_data(load_recording(tmp_path / "m.robobt.arrows"))
     rows = numbers(data["robots"][2]["rows"], "<i2", 4)
     assert rows[0].tolist() == [-32768.0] * 4
     assert rows[1, 0] == 4400.0
@@ -206,10 +207,10 @@ def test_a_frame_of_a_full_match_costs_little(tmp_path: Path) -> None:
     sizes = []
     for ticks in (60, 360):
         robots = tuple(RecordedRobot(team=team, number=number) for team in Team for number in range(6))
-        with Recorder(tmp_path / "m.robobt.jsonl", header(robots=robots)) as recorder:
+        with Recorder(tmp_path / "m.robobt.arrows", header(robots=robots)) as recorder:
             for tick in range(ticks):
                 recorder.tick(frame(tick))
-        sizes.append(len(replay_html(load_recording(tmp_path / "m.robobt.jsonl"))))
+        sizes.append(len(replay_html(load_recording(tmp_path / "m.robobt.arrows"))))
     assert (sizes[1] - sizes[0]) / 300 < 200
 
 
@@ -244,7 +245,7 @@ def shooting(path: Path, rater: str) -> Recording:
 
 
 def test_the_page_holds_the_goal_line_as_a_robot_judges_it_when_that_changes(tmp_path: Path) -> None:
-    data = page_data(shooting(tmp_path / "shooting.robobt.jsonl", "expected_goal"))
+    data = page_data(shooting(tmp_path / "shooting.robobt.arrows", "expected_goal"))
     (shooter,) = data["robots"]
     assert shooter["goal_line"][::2] == [0, 3]
     for (reach, text), best in zip(shooter["goal_line"][1::2], (slice(0, 47), slice(47, 94)), strict=True):
@@ -256,17 +257,15 @@ def test_the_page_holds_the_goal_line_as_a_robot_judges_it_when_that_changes(tmp
 
 
 def test_a_robot_with_a_geometric_rater_has_no_goal_line(tmp_path: Path) -> None:
-    path = tmp_path / "shooting.robobt.jsonl"
-    data = page_data(shooting(path, "segment_clearance"))
-    assert data["robots"][0]["goal_line"] == []
-    assert "goal_line" not in path.read_text(encoding="utf-8")
+    recording = shooting(tmp_path / "shooting.robobt.arrows", "segment_clearance")
+    assert page_data(recording)["robots"][0]["goal_line"] == []
+    assert all("goal_line" not in values for _, values in recording.written["blue 0"])
 
 
 @pytest.mark.parametrize("other", ["far", {"reach": 0.4}, {"reach": 0.4, "chances": "not base64!"}, [1, 2]])
 def test_a_goal_line_of_some_other_kind_is_not_drawn(tmp_path: Path, other: Any) -> None:
-    path = tmp_path / "shooting.robobt.jsonl"
-    text = json.dumps(shooting(path, "expected_goal").outputs_at(RobotId(Team.BLUE, 0), 4)["goal_line"])
-    lines = path.read_text(encoding="utf-8").replace(text.replace(" ", ""), json.dumps(other))
-    path.write_text(lines, encoding="utf-8")
-    data = page_data(load_recording(path))
+    recording = shooting(tmp_path / "shooting.robobt.arrows", "expected_goal")
+    for _, values in recording.written["blue 0"][1:]:
+        values["goal_line"] = other
+    data = page_data(recording)
     assert data["robots"][0]["goal_line"][3] is None

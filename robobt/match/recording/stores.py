@@ -1,0 +1,142 @@
+"""What skills write into their stores, as plain data, whenever it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from itertools import compress, count
+from math import isfinite
+from operator import ne
+from typing import TypeAlias, get_args, get_type_hints
+
+from pydantic import JsonValue
+
+from robobt.skills.store import GIVEN, Store
+from robobt.tree import TreeRunner
+from robobt.tree.recording import make_reader
+from robobt.tree.runner import text_of
+from robobt.world.state import Frame, RobotId
+
+_LONGEST_TEXT = 200
+_MOST_ITEMS = 100
+_DEEPEST = 6
+
+
+Values: TypeAlias = tuple[object, ...]
+Written: TypeAlias = tuple[int, Values]
+"""A store by its place, and what its entries hold."""
+
+
+class StoreWatch:
+    """Finds what has changed in some stores since they were looked at last.
+
+    Looking is quick and can be done at every tick; :meth:`plain` makes plain data of what was
+    found, at any later time but in the same order. A value that is changed in place is noticed
+    in lists, sets and mappings.
+
+    Args:
+        stores: by a name each the store and the names of its entries to look at; an entry that
+            is missing counts as None.
+    """
+
+    def __init__(self, stores: Mapping[str, tuple[object, Sequence[str]]]) -> None:
+        self._watched = [(name, store, entries) for name, (store, entries) in stores.items() if entries]
+        items = [
+            "(" + "".join([f"'{place}'.{entry}," for entry in entries]) + ")"
+            for place, (_, _, entries) in enumerate(self._watched)
+        ]
+        self._read = make_reader(f"[{','.join(items)}]", [store for _, store, _ in self._watched])
+        self._values: list[Values] = [(None,) * len(entries) for _, _, entries in self._watched]
+        # As of the last values that were made plain.
+        self._before = self._values.copy()
+        self._plain: list[dict[str, JsonValue]] = [dict.fromkeys(entries) for _, _, entries in self._watched]
+
+    def look(self) -> list[Written]:
+        """Return the stores of which a value is not what it was at the last look."""
+        try:
+            values = self._read()
+            if values == self._values:
+                return []
+            places = [*compress(count(), map(ne, values, self._values))]
+        except Exception:
+            # An entry that is not there, or values that do not compare to a truth, as arrays.
+            values = [
+                tuple([getattr(store, entry, None) for entry in entries])
+                for _, store, entries in self._watched
+            ]
+            places = [*range(len(values))]
+        for place in places:
+            # What may be changed in place is kept as a copy.
+            self._values[place] = tuple(
+                [value.copy() if isinstance(value, list | set | dict) else value for value in values[place]]
+            )
+        return [(place, self._values[place]) for place in places]
+
+    def plain(self, written: list[Written]) -> dict[str, dict[str, JsonValue]]:
+        """Return by store and entry what is new in ``written``."""
+        changed: dict[str, dict[str, JsonValue]] = {}
+        for place, values in written:
+            name, _, entries = self._watched[place]
+            for entry, value, before in zip(entries, values, self._before[place], strict=True):
+                if value is before:
+                    continue
+                now = plain(value)
+                if now != self._plain[place][entry]:
+                    self._plain[place][entry] = changed.setdefault(name, {})[entry] = now
+            self._before[place] = values
+        return changed
+
+
+def stores_of(runners: Mapping[RobotId, TreeRunner], stores: Mapping[RobotId, Store]) -> StoreWatch:
+    """Watch what the skills of robots write, by "blue 3", and what they share, by "blue" and "yellow".
+
+    Of a robot's store that is what its nodes declare under ``writes``, of a team's everything
+    but frames, which a recording has anyway.
+    """
+    watched: dict[str, tuple[object, Sequence[str]]] = {}
+    for robot, store in stores.items():
+        if robot in runners:
+            written = [entry for node in runners[robot].nodes for entry in getattr(node, "writes", ())]
+            watched[str(robot)] = (store, [entry for entry in dict.fromkeys(written) if entry not in GIVEN])
+        shared = get_type_hints(type(store.team))
+        entries = [name for name, hint in shared.items() if Frame not in (hint, *get_args(hint))]
+        watched[robot.team.value] = (store.team, entries)
+    return StoreWatch(watched)
+
+
+def plain(value: object, depth: int = 0) -> JsonValue:
+    """Return a value as JSON can hold it: floats to six digits, dataclasses as objects, the rest as text."""
+    kind = type(value)
+    if kind is float:
+        return float(f"{value:.6g}") if isfinite(value) else None  # type: ignore[arg-type]
+    if value is None or kind is bool or kind is int:
+        return value  # type: ignore[return-value]
+    try:
+        return _plain(value, depth)
+    except (Exception, SystemExit):
+        return f"a {kind.__name__}"
+
+
+def _plain(value: object, depth: int) -> JsonValue:
+    if isinstance(value, Enum):
+        return plain(value.value, depth)
+    if isinstance(value, str):
+        return value if len(value) <= _LONGEST_TEXT else value[: _LONGEST_TEXT - 3] + "..."
+    if depth >= _DEEPEST:
+        return "..."
+    depth += 1
+    if is_dataclass(value):
+        return {each.name: plain(getattr(value, each.name), depth) for each in fields(value)}
+    if isinstance(value, list | tuple):
+        return [plain(item, depth) for item in value[:_MOST_ITEMS]]
+    if isinstance(value, Mapping):
+        return {text_of(key): plain(item, depth) for key, item in [*value.items()][:_MOST_ITEMS]}
+    if isinstance(value, set | frozenset):
+        # Sorted, for the same match gives the same file.
+        return sorted([plain(item, depth) for item in value], key=repr)[:_MOST_ITEMS]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist(), depth)
+    text = text_of(value)
+    # A default repr holds an address, which would differ from run to run.
+    return plain(f"a {type(value).__name__}" if " at 0x" in text else text)

@@ -1,0 +1,203 @@
+"""The table that a recording is: a row a tick, as a stream of Arrow record batches.
+
+| column | holds |
+| --- | --- |
+| ``time`` | [s] |
+| ``truth`` | ball x, y, vx, vy; each robot's x, y, heading, vx, vy, omega, ball contact |
+| ``observed`` | the same as the trees were shown it, null where that is the truth |
+| ``commands`` | each robot's vx, vy, omega, kick speed, :class:`RobotFlag` |
+| ``changes`` | what else changed: :class:`TickChanges` as JSON, null for nothing |
+
+Numbers are in SI units and world coordinates; NaN stands for what is not known. The header
+is JSON in the schema's metadata.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, BinaryIO
+
+import pyarrow as pa
+import pyarrow.ipc
+from pydantic import BaseModel, ConfigDict, Field, JsonValue, StringConstraints, ValidationError
+
+from robobt import __version__
+from robobt.match.recording.header import FORMAT, VERSION, Event, RecordingError, RecordingHeader
+from robobt.match.recording.numbers import BALL, COMMAND, POSE
+from robobt.world.game import GameState
+from robobt.world.state import RobotId
+
+COLUMNS = ("time", "truth", "observed", "commands", "changes")
+_FORMAT, _VERSION, _HEADER = b"format", b"version", b"header"
+
+MOST_BYTES = 200 * 2**20
+"""The most that is read, unpacked: an hour of play of six a side."""
+
+_FOREIGN = "is not a robobt recording"
+
+_STREAM, _END = b"\xff\xff\xff\xff", b"\xff\xff\xff\xff\x00\x00\x00\x00"
+_OLD = (b"\x1f\x8b", b'{"format":"robobt-recording"')
+"""How recordings of versions 1 and 2 begin, packed by gzip or plain."""
+
+_Letters = Annotated[str, StringConstraints(pattern="^[SFRsfr-]*$")]
+
+
+class TickChanges(BaseModel):
+    """What changed at a tick, or happened up to it; robots are called "blue 3"."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    statuses: dict[str, _Letters] = Field(
+        {},
+        description="by robot one letter a node: S, F, R when it was ticked, s, f, r when it was not and "
+        "kept its status, - without one",
+    )
+    feedback: dict[str, dict[int, str]] = Field(
+        {}, description="by robot and place of the node; it counts while the node has a status"
+    )
+    written: dict[str, dict[str, JsonValue]] = Field(
+        {}, description='what skills wrote into their stores, by robot, or "blue" and "yellow", and entry'
+    )
+    game: GameState | None = Field(None, description="what the referee says, in blue's coordinates")
+    touch: RobotId | None = Field(None, description="who touched the ball last")
+    events: list[Event] = []
+    outcome: dict[str, JsonValue] | None = Field(None, description="how the match ended, at its last tick")
+
+
+def _schema_of(header: RecordingHeader) -> pa.Schema:
+    """Return the schema of a recording with this header."""
+    poses = pa.list_(pa.float32(), BALL + POSE * len(header.robots))
+    commands = pa.list_(pa.float32(), COMMAND * len(header.robots))
+    types = (pa.float64(), poses, poses, commands, pa.string())
+    metadata = {_FORMAT: FORMAT, _VERSION: str(VERSION), _HEADER: header.model_dump_json()}
+    return pa.schema(list(zip(COLUMNS, types, strict=True)), metadata=metadata)
+
+
+def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ipc.RecordBatchStreamWriter:
+    """Start a recording with this header; each batch that is written is one of its schema, compressed."""
+    schema = _schema_of(header)
+    writer = pa.ipc.new_stream(sink, schema, options=pa.ipc.IpcWriteOptions(compression="zstd"))
+    # Arrow writes the schema with the first batch.
+    writer.write_batch(pa.RecordBatch.from_pylist([], schema))
+    return writer
+
+
+def read_bytes(path: Path) -> bytes:
+    """Return what is in a file.
+
+    Raises:
+        RecordingError: it cannot be read, or is larger than a recording.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise RecordingError(path, error.strerror or str(error)) from None
+    if len(data) > MOST_BYTES:
+        raise too_large(path)
+    return data
+
+
+def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.RecordBatch]]:
+    """Return the header and the batches of ticks, each as it is asked for.
+
+    Raises:
+        RecordingError: the header is none, or a batch is damaged; a last batch that was cut
+            off is left out.
+    """
+    if not data:
+        raise RecordingError(path, "is empty")
+    if data.startswith(_OLD):
+        raise RecordingError(
+            path,
+            f"is a recording in an older format, which robobt {__version__} does not read; "
+            "record the match again (robobt match --record) or use the robobt that wrote it",
+        )
+    source = pa.BufferReader(data)
+    try:
+        schema = pa.ipc.read_schema(_checked(pa.ipc.read_message(source), "schema"))
+        metadata: dict[bytes, bytes] = schema.metadata or {}
+    except (pa.ArrowException, OSError, EOFError):
+        cut = data.startswith(_STREAM[: len(data)])
+        raise RecordingError(
+            path, "is cut off inside its header" if cut else "is not a robobt recording"
+        ) from None
+    if metadata.get(_FORMAT) != FORMAT.encode():
+        raise RecordingError(path, _FOREIGN)
+    version = metadata.get(_VERSION, b"").decode("utf-8", "replace")
+    if version != str(VERSION):
+        problem = f"{version!r} cannot be read by robobt {__version__}, which reads {VERSION}"
+        raise RecordingError(path, problem, field="version")
+    try:
+        header = RecordingHeader.model_validate_json(metadata.get(_HEADER, b""))
+    except ValidationError as error:
+        raise invalid(path, error) from None
+    if not schema.equals(_schema_of(header)):
+        raise RecordingError(path, "its columns are not those of its header's robots")
+    return header, _batches(source, schema, path, data.endswith(_END))
+
+
+def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool) -> Iterator[pa.RecordBatch]:
+    unpacked = 0
+    while True:
+        start = source.tell()
+        try:
+            message = pa.ipc.read_message(source)
+        except (pa.ArrowException, OSError, EOFError) as error:
+            if ended and (source.tell() < source.size() or not isinstance(error, EOFError)):
+                raise RecordingError(path, f"is damaged after {start} bytes") from None
+            return
+        try:
+            unpacked += _unpacked_size(_checked(message, "record batch"))
+            if unpacked > MOST_BYTES:
+                raise too_large(path)
+            batch = pa.ipc.read_record_batch(message, schema)
+            batch.validate(full=True)
+        except (pa.ArrowException, OSError, struct.error) as error:
+            raise RecordingError(path, f"is damaged after {start} bytes ({error})") from None
+        yield batch
+
+
+def _checked(message: pa.Message, kind: str) -> pa.Message:
+    # Arrow reads a message of another kind for what it is asked for, wherever that leads.
+    if message.type != kind:
+        raise pa.ArrowInvalid(f"there is a {message.type} in place of a {kind}")
+    return message
+
+
+def _unpacked_size(message: pa.Message) -> int:
+    """Return how many bytes a batch takes once its buffers are unpacked, before Arrow does it unasked.
+
+    Raises:
+        struct.error: the message is damaged.
+    """
+
+    # A flatbuffer: tables find their fields by a table of offsets, which stands before them.
+    def number(kind: str, at: int, of: pa.Buffer = message.metadata) -> int:
+        return int(struct.unpack_from(f"<{kind}", of, at)[0])
+
+    def field(table: int, place: int) -> int:
+        at = table + number("H", table - number("i", table) + 4 + 2 * place)
+        return at + number("I", at)
+
+    buffers = field(field(number("I", 0), 2), 2)
+    total = 0
+    for place in range(buffers + 4, buffers + 4 + 16 * number("I", buffers), 16):
+        offset, length = number("q", place), number("q", place + 8)
+        # Every buffer begins with its size, -1 for one that is not packed.
+        total += max(length, number("q", offset, message.body)) if length else 0
+    return total
+
+
+def too_large(path: Path) -> RecordingError:
+    """Return the error of a file that no match could have been recorded to."""
+    return RecordingError(path, f"is larger than {MOST_BYTES >> 20} MiB unpacked, as no match is")
+
+
+def invalid(path: Path, error: ValidationError, tick: int | None = None) -> RecordingError:
+    """Return the error of a header or of a tick's changes that are not what they should be."""
+    first = error.errors(include_url=False)[0]
+    field = ".".join([str(part) for part in first["loc"]]) or ("header" if tick is None else "changes")
+    return RecordingError(path, first["msg"], tick, field)
