@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from typing import TypeVar, dataclass_transform
+
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
 from robobt.world.state import BallState, Frame, RobotState
 
 
+@dataclass(eq=False, repr=False)
 class Skill(Leaf[Store]):
     """A leaf that sees ``frame`` from its own team's side and moves one robot, ``me``.
 
     A skill moves its robot by setting ``self.store.command``; one that sets
-    nothing leaves it standing.
+    nothing leaves it standing. Its parameters are the fields of the class.
     """
+
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        """Make the node. A skill checks its parameters and sets up its state here, after this."""
+        super().__init__(self.name)
 
     @property
     def frame(self) -> Frame:
@@ -36,10 +46,20 @@ SKILLS: Registry[type[Skill]] = Registry(
 """Every skill and condition by its class name."""
 
 
-def skill(cls: type[Skill]) -> type[Skill]:
+SkillT = TypeVar("SkillT", bound=Skill)
+
+
+@dataclass_transform(kw_only_default=True, eq_default=False, field_specifiers=(field,))
+def skill(cls: type[SkillT]) -> type[SkillT]:
     """Class decorator: enter a skill under its class name.
+
+    The fields of the class become parameters of its constructor, by keyword,
+    unless it writes a constructor of its own.
 
     Raises:
         ValueError: another skill has that name.
     """
-    return SKILLS.register(cls.__name__)(cls)
+    if "__init__" not in vars(cls):
+        dataclass(kw_only=True, eq=False, repr=False)(cls)
+    SKILLS.register(cls.__name__)(cls)
+    return cls

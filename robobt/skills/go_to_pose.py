@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import hypot, radians
 
 from robobt.motion.pace import Pace
@@ -38,32 +39,21 @@ class GoToPose(Skill):
 
     reads = ("target",)
 
-    def __init__(
-        self,
-        *,
-        target: Point | None = None,
-        heading: float | None = None,
-        face_ball: bool = False,
-        tolerance: float = 0.01,
-        heading_tolerance: float = radians(2.0),
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        avoid_robots: bool = True,
-        avoid_ball: bool = False,
-        goalkeeper: bool = False,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.target = target
-        self.heading = heading
-        self.face_ball = face_ball
-        self.tolerance = tolerance
-        self.heading_tolerance = heading_tolerance
-        self.pace = Pace(limits, speed)
-        self.avoid_robots = avoid_robots
-        self.avoid_ball = avoid_ball
-        self.goalkeeper = goalkeeper
-        self._kept_heading = 0.0
+    target: Point | None = None
+    heading: float | None = None
+    face_ball: bool = False
+    tolerance: float = 0.01
+    heading_tolerance: float = radians(2.0)
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    avoid_robots: bool = True
+    avoid_ball: bool = False
+    goalkeeper: bool = False
+    _kept_heading: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_start(self) -> None:
         """Remember the heading to keep."""

@@ -17,9 +17,7 @@ class Stop(Skill):
         dribbler: whether the dribbler turns meanwhile.
     """
 
-    def __init__(self, *, dribbler: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.dribbler = dribbler
+    dribbler: bool = False
 
     def on_running(self) -> Status:
         """Ask for no velocity."""

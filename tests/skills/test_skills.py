@@ -24,15 +24,15 @@ class TestEverySkill:
         cls = SKILLS[name]
         assert cls().name == name
         assert cls(name="mine").name == "mine"
-        parameters = list(inspect.signature(cls).parameters.values())
-        assert all(parameter.kind is not parameter.POSITIONAL_OR_KEYWORD for parameter in parameters[:-1])
+        first, *parameters = inspect.signature(cls).parameters.values()
+        assert first.name == "name"
+        assert all(parameter.kind is parameter.KEYWORD_ONLY for parameter in parameters)
         assert all(parameter.annotation is not parameter.empty for parameter in parameters)
-        assert parameters[-1].name == "name"
 
     def test_says_what_it_does_and_what_its_parameters_mean(self, name: str) -> None:
         cls = SKILLS[name]
         assert cls.__doc__ is not None
-        for parameter in list(inspect.signature(cls).parameters)[:-1]:
+        for parameter in list(inspect.signature(cls).parameters)[1:]:
             assert parameter in cls.__doc__, f"{name} does not document {parameter}"
 
     def test_declares_entries_that_the_store_has(self, name: str) -> None:

@@ -20,10 +20,8 @@ class AimAtGoalPoint(Skill):
 
     writes = ("shot",)
 
-    def __init__(self, *, y: float = 0.0, tolerance: float = 0.02, name: str = "") -> None:
-        super().__init__(name)
-        self.y = y
-        self.tolerance = tolerance
+    y: float = 0.0
+    tolerance: float = 0.02
 
     def on_running(self) -> Status:
         """Write the shot."""

@@ -30,9 +30,7 @@ class AimUpfield(Skill):
 
     writes = ("shot",)
 
-    def __init__(self, *, reach: float = 2.5, name: str = "") -> None:
-        super().__init__(name)
-        self.reach = reach
+    reach: float = 2.5
 
     def on_running(self) -> Status:
         """Compare the lanes."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import inf
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
@@ -30,23 +31,18 @@ class DrawGoalkeeper(Skill):
         inset: how far inside the post it points [m].
     """
 
-    def __init__(
-        self,
-        *,
-        patience: float | None = None,
-        hold: float = 0.3,
-        max_turn: float = 4.0,
-        inset: float = 0.05,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.patience = patience
-        self.hold = hold
-        self.inset = inset
-        self._limits = dribbling_limits(2.0, max_turn)
-        self._side = 0.0
-        self._there_since = inf
-        self._began = self._last = -inf
+    patience: float | None = None
+    hold: float = 0.3
+    max_turn: float = 4.0
+    inset: float = 0.05
+    _side: float = field(default=0.0, init=False)
+    _there_since: float = field(default=inf, init=False)
+    _began: float = field(default=-inf, init=False)
+    _last: float = field(default=-inf, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._limits = dribbling_limits(2.0, self.max_turn)
 
     def on_start(self) -> None:
         """Begin the wait at a post anew."""

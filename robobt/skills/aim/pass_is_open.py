@@ -18,14 +18,16 @@ class PassIsOpen(Skill):
         min_score: worst score still accepted, 0 to 1.
     """
 
-    def __init__(self, *, rater: PassRater | None = None, min_score: float = 0.3, name: str = "") -> None:
-        super().__init__(name)
-        self.rater = rater or PassRater()
-        self.min_score = min_score
+    rater: PassRater | None = None
+    min_score: float = 0.3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._rater = self.rater or PassRater()
 
     def on_running(self) -> Status:
         """Rate and compare."""
-        passes = self.rater.rate_all(self.frame, self.me)
+        passes = self._rater.rate_all(self.frame, self.me)
         if not passes:
             return self.fail("no team-mate can be reached")
         best = passes[0]

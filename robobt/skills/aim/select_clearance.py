@@ -30,9 +30,7 @@ class SelectClearance(Skill):
 
     writes = ("pass_", "shot")
 
-    def __init__(self, *, lane: float = ROBOT_RADIUS + BALL_RADIUS + 0.03, name: str = "") -> None:
-        super().__init__(name)
-        self.lane = lane
+    lane: float = ROBOT_RADIUS + BALL_RADIUS + 0.03
 
     def on_running(self) -> Status:
         """Go through the team-mates from the front."""

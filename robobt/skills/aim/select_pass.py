@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import field
+
 from robobt.skills.aim.pass_rater import PassRater
 from robobt.skills.base import Skill, skill
 from robobt.skills.rate_limit import RateLimit
@@ -28,22 +30,17 @@ class SelectPass(Skill):
     writes = ("pass_",)
     optional = ("pass_",)
 
-    def __init__(
-        self,
-        *,
-        rater: PassRater | None = None,
-        min_score: float = 0.3,
-        keep: float = 0.1,
-        every: float = 0.1,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.rater = rater or PassRater()
-        self.min_score = min_score
-        self.keep = keep
-        self._look = RateLimit(every)
-        self._choice: Pass | None = None
-        self._remark = ""
+    rater: PassRater | None = None
+    min_score: float = 0.3
+    keep: float = 0.1
+    every: float = 0.1
+    _choice: Pass | None = field(default=None, init=False)
+    _remark: str = field(default="", init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._rater = self.rater or PassRater()
+        self._look = RateLimit(self.every)
 
     def on_running(self) -> Status:
         """Choose anew when it is time to."""
@@ -53,7 +50,7 @@ class SelectPass(Skill):
         return self.fail(self._remark) if self._choice is None else self.succeed(self._remark)
 
     def _choose(self) -> tuple[Pass | None, str]:
-        passes = self.rater.rate_all(self.frame, self.me)
+        passes = self._rater.rate_all(self.frame, self.me)
         if not passes:
             return None, "no team-mate can be reached"
         best = passes[0]

@@ -32,21 +32,15 @@ class SelectShot(Skill):
     writes = ("shot", "goal_line")
     optional = ("shot",)
 
-    def __init__(
-        self,
-        *,
-        rater: str | ShotRater = "segment_clearance",
-        tolerance: float | None = None,
-        min_score: float = 0.0,
-        max_distance: float | None = None,
-        keep: float = 0.1,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.rater = make_rater(rater, tolerance=tolerance)
-        self.min_score = min_score
-        self.max_distance = max_distance
-        self.keep = keep
+    rater: str | ShotRater = "segment_clearance"
+    tolerance: float | None = None
+    min_score: float = 0.0
+    max_distance: float | None = None
+    keep: float = 0.1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._rater = make_rater(self.rater, tolerance=self.tolerance)
 
     def on_running(self) -> Status:
         """Rate and choose."""
@@ -56,7 +50,7 @@ class SelectShot(Skill):
         origin = self.ball.position
         if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
             return self.fail(f"farther than {self.max_distance:g} m from the goal")
-        shots, chances = self.rater.judge(frame, origin, self.me)
+        shots, chances = self._rater.judge(frame, origin, self.me)
         if chances is not None:
             self.store.goal_line = judged_goal_line(*chances, judged)
         if not shots:

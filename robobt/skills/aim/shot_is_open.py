@@ -21,19 +21,14 @@ class ShotIsOpen(Skill):
         max_distance: no shots from farther than this from the goal's centre [m]; None is any.
     """
 
-    def __init__(
-        self,
-        *,
-        rater: str | ShotRater = "segment_clearance",
-        tolerance: float | None = None,
-        min_score: float = 0.0,
-        max_distance: float | None = None,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.rater = make_rater(rater, tolerance=tolerance)
-        self.min_score = min_score
-        self.max_distance = max_distance
+    rater: str | ShotRater = "segment_clearance"
+    tolerance: float | None = None
+    min_score: float = 0.0
+    max_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._rater = make_rater(self.rater, tolerance=self.tolerance)
 
     def on_running(self) -> Status:
         """Rate and compare."""
@@ -41,7 +36,7 @@ class ShotIsOpen(Skill):
         origin = self.ball.position
         if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
             return self.fail(f"farther than {self.max_distance:g} m from the goal")
-        shot = self.rater.rate(frame, origin, self.me)
+        shot = self._rater.rate(frame, origin, self.me)
         if shot is None:
             return self.fail("no way to the goal is free")
         if shot.score < self.min_score:

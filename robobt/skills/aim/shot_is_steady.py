@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import field
+
 from robobt.skills.base import Skill, skill
 from robobt.skills.debounce import Debounce
 from robobt.skills.store import Shot
@@ -25,10 +27,13 @@ class ShotIsSteady(Skill):
     reads = ("shot",)
     writes = ("shot",)
 
-    def __init__(self, *, rise: float = 0.1, fall: float = 0.2, name: str = "") -> None:
-        super().__init__(name)
-        self._steady = Debounce(rise, fall)
-        self._last: Shot | None = None
+    rise: float = 0.1
+    fall: float = 0.2
+    _last: Shot | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._steady = Debounce(self.rise, self.fall)
 
     def on_running(self) -> Status:
         """Weigh what was selected in this tick."""

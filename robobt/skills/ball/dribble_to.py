@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import cos, hypot
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
@@ -37,24 +38,18 @@ class DribbleTo(Skill):
 
     reads = ("target",)
 
-    def __init__(
-        self,
-        *,
-        target: Point | None = None,
-        tolerance: float = 0.3,
-        max_speed: float = 2.0,
-        max_turn: float = MAX_TURN,
-        max_acceleration: float = MAX_ACCELERATION,
-        max_distance: float | None = None,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.target = target
-        self.tolerance = tolerance
-        self.max_distance = max_distance
-        self.limits = dribbling_limits(max_speed, max_turn, max_acceleration)
-        self._taken_at: Point | None = None
-        self._last_held = 0.0
+    target: Point | None = None
+    tolerance: float = 0.3
+    max_speed: float = 2.0
+    max_turn: float = MAX_TURN
+    max_acceleration: float = MAX_ACCELERATION
+    max_distance: float | None = None
+    _taken_at: Point | None = field(default=None, init=False)
+    _last_held: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._limits = dribbling_limits(self.max_speed, self.max_turn, self.max_acceleration)
 
     def on_start(self) -> None:
         """Take the ball's present place as the start of the carry."""
@@ -85,7 +80,7 @@ class DribbleTo(Skill):
         return self.run("carrying the ball")
 
     def _carry(self, target: Point) -> None:
-        frame, me, limits = self.frame, self.me, self.limits
+        frame, me, limits = self.frame, self.me, self._limits
         point, speed_there = next_waypoint(frame, me, target)
         heading = direction(me.position, point)
         dx, dy = point[0] - me.x, point[1] - me.y

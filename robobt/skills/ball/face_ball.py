@@ -20,10 +20,8 @@ class FaceBall(Skill):
         dribbler: whether the dribbler turns meanwhile.
     """
 
-    def __init__(self, *, tolerance: float = radians(3.0), dribbler: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.tolerance = tolerance
-        self.dribbler = dribbler
+    tolerance: float = radians(3.0)
+    dribbler: bool = False
 
     def on_running(self) -> Status:
         """Turn for one tick."""

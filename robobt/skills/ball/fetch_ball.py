@@ -37,17 +37,13 @@ class FetchBall(Skill):
         before_goal: where to, in front of the goal's centre [m].
     """
 
-    def __init__(
-        self,
-        *,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        before_goal: float = 0.15,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.before_goal = before_goal
-        self.pace = Pace(limits, speed)
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    before_goal: float = 0.15
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """Go behind the ball, then up to it, then back with it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Literal
 
@@ -95,26 +95,20 @@ class GoToBall(Skill):
     reads = ("shot", "target")
     optional = ("shot", "target")
 
-    def __init__(
-        self,
-        *,
-        policy: str = "geometric",
-        approach: Literal["nearest", "behind_target"] = "nearest",
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        goalkeeper: bool = False,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        if approach not in ("nearest", "behind_target"):
-            raise ValueError(f"approach must be 'nearest' or 'behind_target', not {approach!r}")
-        self.policy = policy
-        self.approach = approach
-        self.goalkeeper = goalkeeper
-        self.pace = Pace(limits, speed)
-        self._decide = find_policy(policy, POLICIES, SHIPPED, LearnedApproach)
+    policy: str = "geometric"
+    approach: Literal["nearest", "behind_target"] = "nearest"
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    goalkeeper: bool = False
+    _handed_over: bool = field(default=False, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.approach not in ("nearest", "behind_target"):
+            raise ValueError(f"approach must be 'nearest' or 'behind_target', not {self.approach!r}")
+        self.pace = Pace(self.limits, self.speed)
+        self._decide = find_policy(self.policy, POLICIES, SHIPPED, LearnedApproach)
         self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
-        self._handed_over = False
 
     def on_running(self) -> Status:
         """Drive one tick."""

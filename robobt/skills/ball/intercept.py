@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import atan2, cos, hypot, inf, sin
 
 from robobt.motion.ball_model import DEFAULT_BALL
@@ -111,21 +112,16 @@ class Intercept(Skill):
         goalkeeper: may enter the own defence area.
     """
 
-    def __init__(
-        self,
-        *,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        settle: float = 0.05,
-        goalkeeper: bool = False,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.settle = settle
-        self.goalkeeper = goalkeeper
-        self.pace = Pace(limits, speed)
-        self._watch = BallWatch()
-        self._grip = Grip()
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    settle: float = 0.05
+    goalkeeper: bool = False
+    _watch: BallWatch = field(default_factory=BallWatch, init=False)
+    _grip: Grip = field(default_factory=Grip, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """Drive one tick."""

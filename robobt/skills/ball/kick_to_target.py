@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, cos, radians, sin
 from typing import Literal
 
@@ -87,34 +87,26 @@ class KickToTarget(Skill):
     reads = ("shot", "pass_")
     writes = ("team",)
 
-    def __init__(
-        self,
-        *,
-        target: Point | None = None,
-        style: Literal["default", "robobulls"] = "default",
-        kick_speed: float | None = None,
-        tolerance: float | None = None,
-        max_turn: float = 4.0,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        goalkeeper: bool = False,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        if style not in ("default", "robobulls"):
-            raise ValueError(f"style must be 'default' or 'robobulls', not {style!r}")
-        self.target = target
-        self.style = style
-        self.kick_speed = kick_speed
-        self.tolerance = tolerance
-        self.goalkeeper = goalkeeper
-        self.pace = Pace(limits, speed)
-        self._carry = dribbling_limits(_CARRY_SPEED, max_turn, _CARRY_ACCELERATION)
-        self._robobulls = RobobullsKick(goalkeeper=goalkeeper) if style == "robobulls" else None
-        if self._robobulls is not None and limits is not None:
-            self._robobulls.limits = limits
-        self._kicking: _Order | None = None
-        self._was_near = False
+    target: Point | None = None
+    style: Literal["default", "robobulls"] = "default"
+    kick_speed: float | None = None
+    tolerance: float | None = None
+    max_turn: float = 4.0
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    goalkeeper: bool = False
+    _kicking: _Order | None = field(default=None, init=False)
+    _was_near: bool = field(default=False, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.style not in ("default", "robobulls"):
+            raise ValueError(f"style must be 'default' or 'robobulls', not {self.style!r}")
+        self.pace = Pace(self.limits, self.speed)
+        self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
+        self._robobulls = RobobullsKick(goalkeeper=self.goalkeeper) if self.style == "robobulls" else None
+        if self._robobulls is not None and self.limits is not None:
+            self._robobulls.limits = self.limits
 
     def needs(self) -> list[tuple[str, ...]]:
         """Require a shot or a pass, unless ``target`` is given."""

@@ -25,10 +25,11 @@ class LearnedSkill(Skill):
         ModelError: the model cannot be used; the message names the file and the reason.
     """
 
-    def __init__(self, *, model: str = "", name: str = "") -> None:
-        super().__init__(name)
-        self.model = model
-        self._control = LearnedControl(model) if model else None
+    model: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._control = LearnedControl(self.model) if self.model else None
 
     def on_running(self) -> Status:
         """Decide one tick."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import atan2, cos, hypot, inf, pi, sin
 
 from robobt.motion.dribbling import settle
@@ -74,11 +75,9 @@ class PickUpBall(Skill):
         settle: how long the ball has to stay in the mouth [s].
     """
 
-    def __init__(self, *, speed: float | None = 0.5, settle: float = 0.05, name: str = "") -> None:
-        super().__init__(name)
-        self.speed = speed
-        self.settle = settle
-        self._grip = Grip()
+    speed: float | None = 0.5
+    settle: float = 0.05
+    _grip: Grip = field(default_factory=Grip, init=False)
 
     def on_running(self) -> Status:
         """Creep for one tick."""

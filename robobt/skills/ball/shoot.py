@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import field
 from math import atan2, cos, hypot, inf, sin, sqrt
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
@@ -57,12 +58,13 @@ class Shoot(Skill):
     reads = ("shot",)
     optional = ("shot",)
 
-    def __init__(self, *, policy: str = "geometric", name: str = "") -> None:
-        super().__init__(name)
-        self.policy = policy
-        self._decide = find_policy(policy, POLICIES, SHIPPED, LearnedShot)
-        self._kicked = False
-        self._had_it = -inf
+    policy: str = "geometric"
+    _kicked: bool = field(default=False, init=False)
+    _had_it: float = field(default=-inf, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._decide = find_policy(self.policy, POLICIES, SHIPPED, LearnedShot)
 
     def on_start(self) -> None:
         """Forget the last shot."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import field
+
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import distance
@@ -24,10 +26,8 @@ class BallAtDefenseEdge(Skill):
         rest_speed: fastest ball that rests [m/s].
     """
 
-    def __init__(self, *, rest_speed: float = 0.1, name: str = "") -> None:
-        super().__init__(name)
-        self.rest_speed = rest_speed
-        self._fetching = False
+    rest_speed: float = 0.1
+    _fetching: bool = field(default=False, init=False)
 
     def on_running(self) -> Status:
         """Look where the ball is and who is near."""

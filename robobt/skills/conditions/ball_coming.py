@@ -23,10 +23,8 @@ class BallComing(Skill):
         late: how much too late the robot may be [s]; it then takes the ball a little farther on.
     """
 
-    def __init__(self, *, slowest: float = 0.4, late: float = 0.2, name: str = "") -> None:
-        super().__init__(name)
-        self.slowest = slowest
-        self.late = late
+    slowest: float = 0.4
+    late: float = 0.2
 
     def on_running(self) -> Status:
         """Compare the ball's way to abreast of the robot with the robot's way to there."""

@@ -15,9 +15,7 @@ class BallInOwnDefenseArea(Skill):
         margin: how much the area is grown at its front and sides [m].
     """
 
-    def __init__(self, *, margin: float = 0.0, name: str = "") -> None:
-        super().__init__(name)
-        self.margin = margin
+    margin: float = 0.0
 
     def on_running(self) -> Status:
         """Look where the ball is."""

@@ -14,9 +14,7 @@ class BallInOwnHalf(Skill):
         x: where the own side ends [m]; 0 is the half-way line.
     """
 
-    def __init__(self, *, x: float = 0.0, name: str = "") -> None:
-        super().__init__(name)
-        self.x = x
+    x: float = 0.0
 
     def on_running(self) -> Status:
         """Compare the ball's x."""

@@ -14,9 +14,7 @@ class BallIsMoving(Skill):
         speed: below this it counts as resting [m/s].
     """
 
-    def __init__(self, *, speed: float = 0.2, name: str = "") -> None:
-        super().__init__(name)
-        self.speed = speed
+    speed: float = 0.2
 
     def on_running(self) -> Status:
         """Compare the ball's speed."""

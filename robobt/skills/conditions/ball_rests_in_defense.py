@@ -17,9 +17,7 @@ class BallRestsInDefense(Skill):
         rest_speed: fastest ball that rests [m/s].
     """
 
-    def __init__(self, *, rest_speed: float = 0.1, name: str = "") -> None:
-        super().__init__(name)
-        self.rest_speed = rest_speed
+    rest_speed: float = 0.1
 
     def on_running(self) -> Status:
         """Look where the ball is and how fast."""

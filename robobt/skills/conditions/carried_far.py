@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import hypot, inf
 
 from robobt.skills.base import Skill, skill
@@ -28,11 +29,9 @@ class CarriedFar(Skill):
         limit: [m].
     """
 
-    def __init__(self, *, limit: float = 0.8, name: str = "") -> None:
-        super().__init__(name)
-        self.limit = limit
-        self._start: Point | None = None
-        self._seen = -inf
+    limit: float = 0.8
+    _start: Point | None = field(default=None, init=False)
+    _seen: float = field(default=-inf, init=False)
 
     def on_running(self) -> Status:
         """Measure."""

@@ -20,12 +20,8 @@ class FacesTarget(Skill):
 
     reads = ("target",)
 
-    def __init__(
-        self, *, target: Point | None = None, tolerance: float = radians(5.0), name: str = ""
-    ) -> None:
-        super().__init__(name)
-        self.target = target
-        self.tolerance = tolerance
+    target: Point | None = None
+    tolerance: float = radians(5.0)
 
     def on_running(self) -> Status:
         """Compare the heading."""

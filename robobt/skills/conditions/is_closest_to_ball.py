@@ -16,10 +16,8 @@ class IsClosestToBall(Skill):
         of_all: compare with the opponents too.
     """
 
-    def __init__(self, *, margin: float = 0.0, of_all: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.margin = margin
-        self.of_all = of_all
+    margin: float = 0.0
+    of_all: bool = False
 
     def on_running(self) -> Status:
         """Compare the distances."""

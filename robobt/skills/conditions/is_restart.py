@@ -16,10 +16,8 @@ class IsRestart(Skill):
         ours: whether it has to be the own team's or the opponents'; None is either.
     """
 
-    def __init__(self, *, kind: Restart | None = None, ours: bool | None = None, name: str = "") -> None:
-        super().__init__(name)
-        self.kind = kind
-        self.ours = ours
+    kind: Restart | None = None
+    ours: bool | None = None
 
     def on_running(self) -> Status:
         """Listen to the referee."""

@@ -15,9 +15,7 @@ class TeamHasBall(Skill):
         others_only: this robot itself does not count.
     """
 
-    def __init__(self, *, others_only: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.others_only = others_only
+    others_only: bool = False
 
     def on_running(self) -> Status:
         """See who owns the ball."""

@@ -16,9 +16,7 @@ class UnderPressure(Skill):
         distance: [m].
     """
 
-    def __init__(self, *, distance: float = 0.3, name: str = "") -> None:
-        super().__init__(name)
-        self.distance = distance
+    distance: float = 0.3
 
     def on_running(self) -> Status:
         """Look for one."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from math import sqrt
 
 from robobt.motion.ball_model import DEFAULT_BALL
@@ -39,20 +40,15 @@ class BlockShot(Skill):
 
     reads = ("target",)
 
-    def __init__(
-        self,
-        *,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        dribbler: bool = True,
-        dive: bool = True,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.dribbler = dribbler
-        self.dive = dive
-        self.pace = Pace(limits, speed)
-        self._watch = BallWatch()
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    dribbler: bool = True
+    dive: bool = True
+    _watch: BallWatch = field(default_factory=BallWatch, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the line."""

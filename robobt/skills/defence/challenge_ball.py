@@ -24,9 +24,7 @@ class ChallengeBall(Skill):
         gap: from the ball to the robot's centre [m].
     """
 
-    def __init__(self, *, gap: float = 3.0 * ROBOT_RADIUS, name: str = "") -> None:
-        super().__init__(name)
-        self.gap = gap
+    gap: float = 3.0 * ROBOT_RADIUS
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

@@ -27,17 +27,13 @@ class CoverAngle(Skill):
         stand_out: farthest from the goal line [m].
     """
 
-    def __init__(
-        self,
-        *,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        stand_out: float = 0.5,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.stand_out = stand_out
-        self.pace = Pace(limits, speed)
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    stand_out: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

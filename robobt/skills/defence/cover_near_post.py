@@ -26,17 +26,13 @@ class CoverNearPost(Skill):
         before_goal: balls farther back than this count as beside the goal [m].
     """
 
-    def __init__(
-        self,
-        *,
-        limits: RobotLimits | None = None,
-        speed: float = 1.0,
-        before_goal: float = 0.15,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.before_goal = before_goal
-        self.pace = Pace(limits, speed)
+    limits: RobotLimits | None = None
+    speed: float = 1.0
+    before_goal: float = 0.15
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the line."""

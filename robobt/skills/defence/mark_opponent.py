@@ -26,9 +26,7 @@ class MarkOpponent(Skill):
     reads = ("team",)
     writes = ("team",)
 
-    def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
-        super().__init__(name)
-        self.gap = gap
+    gap: float = 0.25
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

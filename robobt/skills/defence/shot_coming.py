@@ -24,10 +24,8 @@ class ShotComing(Skill):
 
     writes = ("target",)
 
-    def __init__(self, *, min_speed: float = 0.1, margin: float = 0.0, name: str = "") -> None:
-        super().__init__(name)
-        self.min_speed = min_speed
-        self.margin = margin
+    min_speed: float = 0.1
+    margin: float = 0.0
 
     def on_running(self) -> Status:
         """Extend the ball's way to the goal line."""

@@ -29,12 +29,13 @@ class Wall(Skill):
         size: how many robots the wall has.
     """
 
-    def __init__(self, *, place: int = 0, size: int = 1, name: str = "") -> None:
-        super().__init__(name)
-        if not 0 <= place < size:
-            raise ValueError(f"place {place} is not one of a wall of {size}")
-        self.place = place
-        self.size = size
+    place: int = 0
+    size: int = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 <= self.place < self.size:
+            raise ValueError(f"place {self.place} is not one of a wall of {self.size}")
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

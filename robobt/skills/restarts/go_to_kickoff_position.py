@@ -25,9 +25,7 @@ class GoToKickoffPosition(Skill):
 
     reads = ("team",)
 
-    def __init__(self, *, spread: float = 0.6, name: str = "") -> None:
-        super().__init__(name)
-        self.spread = spread
+    spread: float = 0.6
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

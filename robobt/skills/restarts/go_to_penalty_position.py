@@ -23,9 +23,7 @@ class GoToPenaltyPosition(Skill):
         goalkeeper: whether this robot is the goalkeeper.
     """
 
-    def __init__(self, *, goalkeeper: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.goalkeeper = goalkeeper
+    goalkeeper: bool = False
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

@@ -27,10 +27,8 @@ class KeepDistance(Skill):
         goalkeeper: may stay in the own defence area.
     """
 
-    def __init__(self, *, distance: float = STOP_DISTANCE, goalkeeper: bool = False, name: str = "") -> None:
-        super().__init__(name)
-        self.distance = distance
-        self.goalkeeper = goalkeeper
+    distance: float = STOP_DISTANCE
+    goalkeeper: bool = False
 
     def on_running(self) -> Status:
         """Straight away from the one that is too near."""

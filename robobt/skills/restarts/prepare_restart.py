@@ -29,9 +29,7 @@ class PrepareRestart(Skill):
     reads = ("shot", "pass_")
     optional = ("shot", "pass_")
 
-    def __init__(self, *, gap: float = 0.25, name: str = "") -> None:
-        super().__init__(name)
-        self.gap = gap
+    gap: float = 0.25
 
     def on_running(self) -> Status:
         """One period on the way to the place."""

@@ -35,17 +35,10 @@ class BestFieldPosition(FieldSearch):
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
-    def __init__(
-        self,
-        *,
-        travel: float = 0.05,
-        spacing: float = 0.1,
-        every: float = 0.2,
-        keep: float = 0.02,
-        name: str = "",
-    ) -> None:
-        super().__init__(spacing=spacing, every=every, keep=keep, name=name)
-        self.travel = travel
+    travel: float = 0.05
+    spacing: float = 0.1
+    every: float = 0.2
+    keep: float = 0.02
 
     def value(self, grid: PositionGrid) -> GridArray:
         """See the class."""

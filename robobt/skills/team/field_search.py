@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import dataclass, field
 from math import inf
 
 from robobt.skills.base import Skill
@@ -12,6 +13,7 @@ from robobt.tree import Status
 from robobt.world.geometry import Point
 
 
+@dataclass(kw_only=True, eq=False, repr=False)
 class FieldSearch(Skill):
     """Write the grid point with the largest :meth:`value` to ``target``.
 
@@ -26,14 +28,16 @@ class FieldSearch(Skill):
 
     writes = ("target",)
 
-    def __init__(self, *, spacing: float, every: float, keep: float, name: str) -> None:
-        super().__init__(name)
-        if not spacing > 0.0:
-            raise ValueError(f"spacing must be positive, not {spacing}")
-        self.spacing = spacing
-        self.keep = keep
-        self._look = RateLimit(every)
-        self._target: Point | None = None
+    spacing: float
+    every: float
+    keep: float
+    _target: Point | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.spacing > 0.0:
+            raise ValueError(f"spacing must be positive, not {self.spacing}")
+        self._look = RateLimit(self.every)
 
     @abstractmethod
     def value(self, grid: PositionGrid) -> GridArray:

@@ -24,15 +24,13 @@ class IsAttacker(Skill):
     reads = ("team",)
     writes = ("team",)
 
-    def __init__(self, *, farthest: float | None = None, name: str = "") -> None:
-        super().__init__(name)
-        self.farthest = inf if farthest is None else farthest
+    farthest: float | None = None
 
     def on_running(self) -> Status:
         """Enter oneself and see who it is."""
         team, number = self.store.team, self.me.id
         if number not in team.attackers:
-            team.attackers[number] = self.farthest
+            team.attackers[number] = inf if self.farthest is None else self.farthest
             team.agreed_on = None
         chosen = attacker(self.frame, team)
         if chosen == number:

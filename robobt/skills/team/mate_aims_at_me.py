@@ -23,18 +23,13 @@ class MateAimsAtMe(Skill):
         rise: how long it must have faced this robot [s].
     """
 
-    def __init__(
-        self,
-        *,
-        tolerance: float = radians(10.0),
-        nearest: float = 1.0,
-        rise: float = 0.2,
-        name: str = "",
-    ) -> None:
-        super().__init__(name)
-        self.tolerance = tolerance
-        self.nearest = nearest
-        self._steady = Debounce(rise, rise, on=False)
+    tolerance: float = radians(10.0)
+    nearest: float = 1.0
+    rise: float = 0.2
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._steady = Debounce(self.rise, self.rise, on=False)
 
     def on_running(self) -> Status:
         """Look at the team-mate with the ball."""

@@ -21,10 +21,8 @@ class PassIsComing(Skill):
 
     reads = ("team",)
 
-    def __init__(self, *, slowest: float = 0.2, patience: float = 4.0, name: str = "") -> None:
-        super().__init__(name)
-        self.slowest = slowest
-        self.patience = patience
+    slowest: float = 0.2
+    patience: float = 4.0
 
     def on_running(self) -> Status:
         """Look after the ball."""

@@ -39,25 +39,18 @@ class SelectSupportPosition(FieldSearch):
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
-    def __init__(
-        self,
-        *,
-        mate_distance: float = 2.0,
-        lane_clearance: float = 0.275,
-        shot_room: float = 0.6,
-        travel: float = 0.05,
-        spacing: float = 0.1,
-        every: float = 0.2,
-        keep: float = 0.05,
-        name: str = "",
-    ) -> None:
-        super().__init__(spacing=spacing, every=every, keep=keep, name=name)
-        if not mate_distance > 0.0:
-            raise ValueError(f"mate_distance must be positive, not {mate_distance}")
-        self.mate_distance = mate_distance
-        self.lane_clearance = lane_clearance
-        self.shot_room = shot_room
-        self.travel = travel
+    mate_distance: float = 2.0
+    lane_clearance: float = 0.275
+    shot_room: float = 0.6
+    travel: float = 0.05
+    spacing: float = 0.1
+    every: float = 0.2
+    keep: float = 0.05
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.mate_distance > 0.0:
+            raise ValueError(f"mate_distance must be positive, not {self.mate_distance}")
 
     def value(self, grid: PositionGrid) -> GridArray:
         """See the class."""
