@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.select_shot import SelectShot
@@ -12,7 +12,7 @@ from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
-from robobt.tree import Behaviour, Selector, Sequence
+from robobt.tree import Behaviour
 
 
 @PLAYS.register("attack_expected")
@@ -45,37 +45,25 @@ def attack_expected(
         dribble_speed: top speed with the ball [m/s].
     """
     rater = ExpectedGoal(model=model, threshold=threshold)
-    return Selector(
+    return first_of(
         "attack expected",
-        memory=False,
-        children=[
-            Sequence(
-                "score",
-                memory=False,
-                children=[
-                    SelectShot(rater=rater, min_score=threshold, max_distance=max_distance),
-                    KickToTarget(kick_speed=shot_speed, speed=speed),
-                ],
-            ),
-            Sequence(
-                "make an opening",
-                memory=False,
-                children=[
-                    HasBall(),
-                    BestFieldPosition(),
-                    DribbleTo(max_speed=dribble_speed),
-                    DrawGoalkeeper(patience=patience),
-                ],
-            ),
-            Sequence(
-                "last resort",
-                memory=False,
-                children=[
-                    HasBall(),
-                    SelectShot(rater=rater, min_score=last_resort, max_distance=max_distance),
-                    KickToTarget(kick_speed=shot_speed, speed=speed),
-                ],
-            ),
-            Sequence("get the ball", memory=False, children=[GoToBall(speed=speed), PickUpBall()]),
-        ],
+        when(
+            "score",
+            SelectShot(rater=rater, min_score=threshold, max_distance=max_distance),
+            KickToTarget(kick_speed=shot_speed, speed=speed),
+        ),
+        when(
+            "make an opening",
+            HasBall(),
+            BestFieldPosition(),
+            DribbleTo(max_speed=dribble_speed),
+            DrawGoalkeeper(patience=patience),
+        ),
+        when(
+            "last resort",
+            HasBall(),
+            SelectShot(rater=rater, min_score=last_resort, max_distance=max_distance),
+            KickToTarget(kick_speed=shot_speed, speed=speed),
+        ),
+        when("get the ball", GoToBall(speed=speed), PickUpBall()),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from robobt.motion.pilot import ROBOBULLS_LIMITS
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.pass_is_steady import PassIsSteady
 from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
@@ -16,7 +16,7 @@ from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
-from robobt.tree import Behaviour, FailureIsSuccess, Selector, Sequence
+from robobt.tree import Behaviour, FailureIsSuccess
 
 
 @PLAYS.register("attack_main")
@@ -53,40 +53,21 @@ def attack_main(
         steady: see above [s]; RoboBulls' own is 0.9.
     """
     limits = ROBOBULLS_LIMITS if kick == "robobulls" else None
-    return Selector(
+    look = SelectShot(rater=rater, tolerance=tolerance, min_score=min_score, max_distance=max_distance)
+    return first_of(
         "attack main",
-        memory=False,
-        children=[
-            Sequence(
-                "score",
-                memory=False,
-                children=[
-                    FailureIsSuccess(
-                        "look for a shot",
-                        SelectShot(
-                            rater=rater, tolerance=tolerance, min_score=min_score, max_distance=max_distance
-                        ),
-                    ),
-                    ShotIsSteady(rise=steady, fall=steady),
-                    KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed=speed),
-                ],
-            ),
-            Sequence(
-                "pass",
-                memory=False,
-                children=[
-                    FailureIsSuccess("look for a pass", SelectPass()),
-                    PassIsSteady(rise=steady, fall=steady),
-                    KickToTarget(style=kick, limits=limits, speed=speed),
-                ],
-            ),
-            Sequence(
-                "dribble",
-                memory=False,
-                children=[HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed)],
-            ),
-            Sequence(
-                "get the ball", memory=False, children=[GoToBall(limits=limits, speed=speed), PickUpBall()]
-            ),
-        ],
+        when(
+            "score",
+            FailureIsSuccess("look for a shot", look),
+            ShotIsSteady(rise=steady, fall=steady),
+            KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed=speed),
+        ),
+        when(
+            "pass",
+            FailureIsSuccess("look for a pass", SelectPass()),
+            PassIsSteady(rise=steady, fall=steady),
+            KickToTarget(style=kick, limits=limits, speed=speed),
+        ),
+        when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed)),
+        when("get the ball", GoToBall(limits=limits, speed=speed), PickUpBall()),
     )

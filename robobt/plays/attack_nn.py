@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.aim.raters.nn_filtered import NNFiltered
 from robobt.skills.aim.select_shot import SelectShot
@@ -13,7 +13,7 @@ from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
-from robobt.tree import Behaviour, FailureIsSuccess, Selector, Sequence
+from robobt.tree import Behaviour, FailureIsSuccess
 
 
 @PLAYS.register("attack_nn")
@@ -47,29 +47,14 @@ def attack_nn(
         steady: how long a shot must have been open before it is begun [s].
     """
     rater = NNFiltered(model=model, threshold=threshold, tolerance=tolerance)
-    return Selector(
+    return first_of(
         "attack nn",
-        memory=False,
-        children=[
-            Sequence(
-                "score",
-                memory=False,
-                children=[
-                    FailureIsSuccess("look for a shot", SelectShot(rater=rater, max_distance=max_distance)),
-                    ShotIsSteady(rise=steady, fall=steady),
-                    KickToTarget(kick_speed=shot_speed, speed=speed),
-                ],
-            ),
-            Sequence(
-                "dribble",
-                memory=False,
-                children=[
-                    HasBall(),
-                    BestFieldPosition(),
-                    DribbleTo(max_speed=dribble_speed),
-                    DrawGoalkeeper(),
-                ],
-            ),
-            Sequence("get the ball", memory=False, children=[GoToBall(speed=speed), PickUpBall()]),
-        ],
+        when(
+            "score",
+            FailureIsSuccess("look for a shot", SelectShot(rater=rater, max_distance=max_distance)),
+            ShotIsSteady(rise=steady, fall=steady),
+            KickToTarget(kick_speed=shot_speed, speed=speed),
+        ),
+        when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed), DrawGoalkeeper()),
+        when("get the ball", GoToBall(speed=speed), PickUpBall()),
     )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.ball.face_ball import FaceBall
 from robobt.skills.ball.intercept import Intercept
 from robobt.skills.go_to_pose import GoToPose
 from robobt.skills.team.mate_aims_at_me import MateAimsAtMe
 from robobt.skills.team.pass_is_coming import PassIsComing
 from robobt.skills.team.select_support_position import SelectSupportPosition
-from robobt.tree import Behaviour, Selector, Sequence
+from robobt.tree import Behaviour
 
 
 @PLAYS.register("attack_support")
@@ -21,12 +21,9 @@ def attack_support(*, speed: float = 1.0) -> Behaviour:
     Args:
         speed: factor on the top speed to a pass.
     """
-    return Selector(
+    return first_of(
         "attack support",
-        memory=False,
-        children=[
-            Sequence("receive", memory=False, children=[PassIsComing(), Intercept(speed=speed)]),
-            Sequence("expect", memory=False, children=[MateAimsAtMe(), FaceBall(dribbler=True)]),
-            Sequence("position", memory=False, children=[SelectSupportPosition(), GoToPose(face_ball=True)]),
-        ],
+        when("receive", PassIsComing(), Intercept(speed=speed)),
+        when("expect", MateAimsAtMe(), FaceBall(dribbler=True)),
+        when("position", SelectSupportPosition(), GoToPose(face_ball=True)),
     )

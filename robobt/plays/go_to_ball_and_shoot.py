@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.shoot import Shoot
 from robobt.skills.conditions.has_ball import HasBall
-from robobt.tree import Behaviour, Selector, Sequence
+from robobt.tree import Behaviour
 
 
 @PLAYS.register("go_to_ball_and_shoot")
@@ -46,29 +46,17 @@ def go_to_ball_and_shoot(
         rater: name of the shot rater that chooses the point to shoot at.
     """
     if style == "robobulls":
-        return Sequence(
-            "go to ball and shoot",
-            memory=False,
-            children=[SelectShot(rater=rater), KickToTarget(style="robobulls")],
-        )
+        return when("go to ball and shoot", SelectShot(rater=rater), KickToTarget(style="robobulls"))
     if shoot == "ddpg":
-        shot: list[Behaviour] = [HasBall(), Shoot(policy=shoot_model)]
-    elif shoot == "geometric":
-        shot = [HasBall(), SelectShot(rater=rater), Shoot()]
+        shot: list[Behaviour] = [Shoot(policy=shoot_model)]
     else:
-        shot = [HasBall(), SelectShot(rater=rater), KickToTarget()]
-    return Selector(
+        shot = [SelectShot(rater=rater), Shoot() if shoot == "geometric" else KickToTarget()]
+    return first_of(
         "go to ball and shoot",
-        memory=False,
-        children=[
-            Sequence("shoot", memory=False, children=shot),
-            Sequence(
-                "get the ball",
-                memory=False,
-                children=[
-                    GoToBall(policy=policy, approach="behind_target"),
-                    PickUpBall(speed=pickup_speed),
-                ],
-            ),
-        ],
+        when("shoot", HasBall(), *shot),
+        when(
+            "get the ball",
+            GoToBall(policy=policy, approach="behind_target"),
+            PickUpBall(speed=pickup_speed),
+        ),
     )

@@ -6,7 +6,7 @@ from typing import Literal
 
 from robobt.motion.pace import check_factor
 from robobt.motion.pilot import ROBOBULLS_LIMITS
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_clearance import SelectClearance
 from robobt.skills.ball.fetch_ball import FetchBall
@@ -19,13 +19,13 @@ from robobt.skills.defence.cover_angle import CoverAngle
 from robobt.skills.defence.cover_near_post import CoverNearPost
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
-from robobt.tree import Behaviour, Selector, Sequence
+from robobt.tree import Behaviour
 from robobt.world.limits import RobotLimits
 
 
 @PLAYS.register("goalkeeper")
 def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
-    """Keep the ball out of the own goal; the first case that holds is played.
+    """Keep the ball out of the own goal; the first branch whose condition holds is played.
 
     1. Somebody aims at the goal: onto the line of the shot to come.
     2. A shot comes: onto its line.
@@ -46,49 +46,38 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
     """
     if style == "robobulls":
         quick, calm = robobulls_limits(1.5 * speed), robobulls_limits(speed)
-        return Selector(
+        return first_of(
             "goalkeeper",
-            memory=False,
-            children=[
-                case("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False, dive=False)),
-                case("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False, dive=False)),
-                case("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
-                case(
-                    "clear",
-                    BallRestsInDefense(),
-                    where_to_clear(),
-                    KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
-                ),
-                CoverNearPost(limits=quick),
-                ReturnToGoal(limits=calm),
-            ],
+            when("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False, dive=False)),
+            when("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False, dive=False)),
+            when("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
+            when(
+                "clear",
+                BallRestsInDefense(),
+                where_to_clear(),
+                KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
+            ),
+            CoverNearPost(limits=quick),
+            ReturnToGoal(limits=calm),
         )
-    return Selector(
+    return first_of(
         "goalkeeper",
-        memory=False,
-        children=[
-            case("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
-            case("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
-            case("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)),
-            case("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
-            CoverAngle(speed=speed),
-            ReturnToGoal(speed=speed),
-        ],
+        when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
+        when("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
+        when("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)),
+        when("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
+        CoverAngle(speed=speed),
+        ReturnToGoal(speed=speed),
     )
 
 
-def case(name: str, *steps: Behaviour) -> Behaviour:
-    """Return one of the goalkeeper's cases: conditions, then what to do, checked at every tick."""
-    return Sequence(name, memory=False, children=list(steps))
-
-
 def where_to_clear() -> Behaviour:
-    """Choose where to clear: to a team-mate, else to where there is room."""
-    return Selector("where to", memory=False, children=[SelectClearance(), AimUpfield()])
+    """Aim at a team-mate, else to where there is room."""
+    return first_of("where to", SelectClearance(), AimUpfield())
 
 
 def robobulls_limits(factor: float) -> RobotLimits:
-    """Return the limits of RoboBulls' pilot with its velocity multiplier, which scales only the top speed."""
+    """Apply the velocity multiplier of RoboBulls' pilot: it scales the top speed and nothing else."""
     return ROBOBULLS_LIMITS.model_copy(
         update={"max_speed": ROBOBULLS_LIMITS.max_speed * check_factor(factor)}
     )

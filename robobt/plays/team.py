@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from robobt.plays.attack_main import attack_main
 from robobt.plays.attack_support import attack_support
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.goalkeeper import goalkeeper
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_pass import SelectPass
@@ -78,19 +78,16 @@ def field_player(
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
     shooting = Shooting(rater, min_score, shot_distance)
-    return Selector(
+    return first_of(
         "field player",
-        memory=False,
-        children=[
-            when("halted", IsHalted(), Stop()),
-            take_penalty(farthest),
-            take_restart(shooting, farthest),
-            when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
-            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-            when("ball is dead", ball_dead(), KeepDistance(), off_the_ball()),
-            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
-            off_the_ball(),
-        ],
+        when("halted", IsHalted(), Stop()),
+        take_penalty(farthest),
+        take_restart(shooting, farthest),
+        when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
+        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+        when("ball is dead", ball_dead(), KeepDistance(), off_the_ball()),
+        when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
+        off_the_ball(),
     )
 
 
@@ -117,18 +114,15 @@ def defender(
         farthest: largest x of the ball at which it goes for it [m].
     """
     shooting = Shooting(rater, min_score, shot_distance)
-    return Selector(
+    return first_of(
         "defender",
-        memory=False,
-        children=[
-            when("halted", IsHalted(), Stop()),
-            take_penalty(farthest),
-            take_restart(shooting, farthest),
-            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-            when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
-            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
-            Wall(place=place, size=size),
-        ],
+        when("halted", IsHalted(), Stop()),
+        take_penalty(farthest),
+        take_restart(shooting, farthest),
+        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+        when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
+        when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
+        Wall(place=place, size=size),
     )
 
 
@@ -139,21 +133,13 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
     Args:
         speed: factor on its top speed.
     """
-    return Selector(
+    return first_of(
         "keeper",
-        memory=False,
-        children=[
-            when("halted", IsHalted(), Stop()),
-            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
-            when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
-            goalkeeper(speed=speed),
-        ],
+        when("halted", IsHalted(), Stop()),
+        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
+        when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
+        goalkeeper(speed=speed),
     )
-
-
-def when(name: str, *steps: Behaviour) -> Behaviour:
-    """Return conditions, then what to do while they hold, checked at every tick."""
-    return Sequence(name, memory=False, children=list(steps))
 
 
 def ball_dead() -> Behaviour:
@@ -167,7 +153,7 @@ def take_penalty(farthest: float | None) -> Behaviour:
         "our penalty",
         IsRestart(kind=Restart.PENALTY, ours=True),
         IsAttacker(farthest=farthest),
-        Selector("where to", memory=False, children=[SelectShot(), AimUpfield()]),
+        first_of("where to", SelectShot(), AimUpfield()),
         PrepareRestart(),
         KickToTarget(),
     )
@@ -176,12 +162,12 @@ def take_penalty(farthest: float | None) -> Behaviour:
 def take_restart(shooting: Shooting, farthest: float | None) -> Behaviour:
     """Take an own restart when nearest to it; where it goes is settled when it may be taken."""
     take_it = Sequence("take it", memory=True, children=[MayTouchBall(), kick_away(shooting, settled=True)])
-    where_to = Selector("where to", memory=False, children=[*aims(shooting)])
+    where_to = first_of("where to", *aims(shooting))
     return when(
         "our restart",
         IsRestart(ours=True),
         IsAttacker(farthest=farthest),
-        Selector("restart", memory=False, children=[take_it, when("get ready", where_to, PrepareRestart())]),
+        first_of("restart", take_it, when("get ready", where_to, PrepareRestart())),
     )
 
 
@@ -207,30 +193,24 @@ def aims(shooting: Shooting) -> tuple[Behaviour, Behaviour, Behaviour]:
 
 def on_the_ball(shooting: Shooting, dribble_speed: float) -> Behaviour:
     """Attack, and let the ball go before it has been carried as far as the rules allow."""
-    return Selector(
+    return first_of(
         "attack",
-        memory=False,
-        children=[
-            when("let go", CarriedFar(limit=0.8), Stop()),
-            when("receive", BallComing(), Intercept()),
-            when("pressed", HasBall(), UnderPressure(), kick_away(shooting, settled=False)),
-            attack_main(
-                rater=shooting.rater,
-                min_score=shooting.min_score,
-                max_distance=shooting.distance,
-                dribble_speed=dribble_speed,
-            ),
-        ],
+        when("let go", CarriedFar(limit=0.8), Stop()),
+        when("receive", BallComing(), Intercept()),
+        when("pressed", HasBall(), UnderPressure(), kick_away(shooting, settled=False)),
+        attack_main(
+            rater=shooting.rater,
+            min_score=shooting.min_score,
+            max_distance=shooting.distance,
+            dribble_speed=dribble_speed,
+        ),
     )
 
 
 def off_the_ball() -> Behaviour:
     """Mark an opponent while the ball is in the own half and not ours, else support."""
-    return Selector(
+    return first_of(
         "off the ball",
-        memory=False,
-        children=[
-            when("mark", BallInOwnHalf(), Inverter("not ours", TeamHasBall()), MarkOpponent()),
-            attack_support(),
-        ],
+        when("mark", BallInOwnHalf(), Inverter("not ours", TeamHasBall()), MarkOpponent()),
+        attack_support(),
     )

@@ -6,10 +6,9 @@ from math import hypot
 
 import numpy as np
 from pydantic import Field
-from scipy.special import ndtr
 
 from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, runs
+from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, normal_cdf, runs
 from robobt.skills.aim.raters.openings import goal_mouth
 from robobt.skills.aim.raters.shot_predictor import shot_predictor
 from robobt.skills.store import Shot
@@ -83,7 +82,7 @@ class ExpectedGoal(ShotRater):
             return None
         aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
         low, high = mouth
-        chances = ndtr((high - aims) / self.kick_error) - ndtr((low - aims) / self.kick_error)
+        chances = normal_cdf((high - aims) / self.kick_error) - normal_cdf((low - aims) / self.kick_error)
         ahead = [robot for robot in frame.others(me.id) if robot.x >= me.x]
         if ahead:
             centres = np.array([robot.position for robot in ahead])

@@ -6,10 +6,9 @@ from math import atan, atan2, hypot
 
 import numpy as np
 from pydantic import Field
-from scipy.special import ndtr
 
 from robobt.skills.aim.raters.base import RATERS, ShotRater, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, runs
+from robobt.skills.aim.raters.goal_line import goal_candidates, normal_cdf, runs
 from robobt.skills.aim.raters.openings import Interval, goal_mouth
 from robobt.skills.store import Shot
 from robobt.world.geometry import FloatArray, Point
@@ -69,7 +68,7 @@ class Gaussian(ShotRater):
         """
         low, high = mouth
         error = self.kick_error
-        chance = ndtr((high - aims) / error) - ndtr((low - aims) / error)
+        chance = normal_cdf((high - aims) / error) - normal_cdf((low - aims) / error)
         if blockers:
             centre, width = np.array(blockers).T[:, None, :]
             aim = aims[:, None]
@@ -78,7 +77,7 @@ class Gaussian(ShotRater):
             mean = (aim * (width * width) + centre * (error * error)) / variance
             deviation = error * width / np.sqrt(variance)
             peak = deviation / error * np.exp(np.square(aim - centre) / (-2.0 * variance))
-            stopped = peak * (ndtr((high - mean) / deviation) - ndtr((low - mean) / deviation))
+            stopped = peak * (normal_cdf((high - mean) / deviation) - normal_cdf((low - mean) / deviation))
             chance -= stopped.sum(axis=1)
         return np.maximum(chance, 0.0)
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from base64 import b64decode, b64encode
 from functools import lru_cache
+from math import atan2
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.skills.store import GoalLine
+from robobt.skills.aim.raters.base import best_first
+from robobt.skills.store import GoalLine, Shot
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.state import BALL_RADIUS, Frame, RobotState
@@ -95,6 +97,32 @@ def runs(clear: NDArray[np.bool_]) -> list[tuple[int, int]]:
     padded[1:-1] = clear
     edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
     return list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def shots_at_groups(
+    points: FloatArray, good: NDArray[np.bool_], spacing: float, origin: Point, heading: float
+) -> list[Shot]:
+    """Return a shot at the middle of each group of neighbouring good points, the best first.
+
+    The score is the group's share of all points, the tolerance half the angle the group spans.
+    """
+    goal_x = float(points[0, 0])
+    shots = []
+    for first, stop in runs(good):
+        low, high = float(points[first, 1]), float(points[stop - 1, 1])
+        reach = goal_x - origin[0]
+        margin = spacing / 2.0
+        angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
+        shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
+    return best_first(shots, origin, heading)
+
+
+def normal_cdf(values: FloatArray) -> FloatArray:
+    """Return the cumulative distribution of the standard normal, elementwise."""
+    # Imported here because scipy takes longer to import than all skills together.
+    from scipy.special import ndtr
+
+    return ndtr(values)
 
 
 def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine | None = None) -> GoalLine:

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.skills.aim.raters.base import RATERS, ShotRater
-from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_mouth, opening_shots
+from robobt.skills.aim.raters.openings import opening_shots
 from robobt.skills.store import Shot
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
@@ -39,16 +39,9 @@ class MovingHorizon(ShotRater):
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""
-        field = frame.field
-        mouth = goal_mouth(field, origin, field.goal_width * (1.0 - self.goal_share) / 2.0)
-        if mouth is None:
-            return []
-        shadows = []
-        for robot in frame.others(me.id):
-            shadow = disc_shadow(field, origin, *self.reach(robot, origin, delay))
-            if shadow is not None:
-                shadows.append(shadow)
-        return opening_shots(field, origin, me.heading, free_intervals(mouth, shadows), self.full_angle)
+        inset = frame.field.goal_width * (1.0 - self.goal_share) / 2.0
+        discs = [self.reach(robot, origin, delay) for robot in frame.others(me.id)]
+        return opening_shots(frame.field, origin, me.heading, inset, discs, self.full_angle)
 
     def reach(self, robot: RobotState, origin: Point, delay: float = 0.0) -> tuple[Point, float]:
         """Return centre and radius of the disc in which ``robot`` can meet a ball from ``origin`` [m]."""

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import atan2
-
 import numpy as np
 from pydantic import Field
 
-from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, runs
+from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater
+from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, shots_at_groups
 from robobt.skills.aim.raters.shot_predictor import shot_predictor
 from robobt.skills.store import Shot
 from robobt.world.features import SHOT, shot_features
@@ -47,8 +45,7 @@ class NNFiltered(ShotRater):
         delay: float = 0.0,  # noqa: ARG002
     ) -> tuple[list[Shot], Chances | None]:
         """See :meth:`ShotRater.judge`; a point that is not clear has no chance."""
-        goal_x = frame.field.half_length
-        if origin[0] >= goal_x:
+        if origin[0] >= frame.field.half_length:
             return [], None
         points = goal_candidates(frame.field, self.spacing)
         good = np.all(lane_clearances(origin, points, obstacles(frame, me)) > self.tolerance, axis=1)
@@ -56,14 +53,7 @@ class NNFiltered(ShotRater):
         if good.any():
             chances[good] = self.chances(frame, me, points[good])
             good &= chances >= self.threshold
-        shots = []
-        for first, stop in runs(good):
-            low, high = float(points[first, 1]), float(points[stop - 1, 1])
-            reach = goal_x - origin[0]
-            margin = self.spacing / 2.0
-            angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
-            shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
-        return best_first(shots, origin, me.heading), (points, chances)
+        return shots_at_groups(points, good, self.spacing, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
         """Compute the least chance that any robot leaves each target point.

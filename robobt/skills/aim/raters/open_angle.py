@@ -7,7 +7,7 @@ from math import radians
 from pydantic import Field
 
 from robobt.skills.aim.raters.base import RATERS, ShotRater
-from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_mouth, opening_shots
+from robobt.skills.aim.raters.openings import opening_shots
 from robobt.skills.store import Shot
 from robobt.world.geometry import Point
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
@@ -29,13 +29,6 @@ class OpenAngle(ShotRater):
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002
         """See :meth:`ShotRater.rate_all`."""
-        mouth = goal_mouth(frame.field, origin, self.clearance)
-        if mouth is None:
-            return []
         radius = ROBOT_RADIUS + self.clearance
-        shadows = []
-        for robot in frame.others(me.id):
-            shadow = disc_shadow(frame.field, origin, (robot.x, robot.y), radius)
-            if shadow is not None:
-                shadows.append(shadow)
-        return opening_shots(frame.field, origin, me.heading, free_intervals(mouth, shadows), self.full_angle)
+        discs = [(robot.position, radius) for robot in frame.others(me.id)]
+        return opening_shots(frame.field, origin, me.heading, self.clearance, discs, self.full_angle)

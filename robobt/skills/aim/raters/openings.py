@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import asin, atan2, hypot, pi, tan
 
 from robobt.skills.aim.raters.base import best_first
@@ -63,15 +64,32 @@ def free_intervals(mouth: Interval, shadows: list[Interval]) -> list[Interval]:
 
 
 def opening_shots(
-    field: FieldGeometry, origin: Point, heading: float, openings: list[Interval], full_angle: float
+    field: FieldGeometry,
+    origin: Point,
+    heading: float,
+    inset: float,
+    discs: Iterable[tuple[Point, float]],
+    full_angle: float,
 ) -> list[Shot]:
-    """Return a shot along the bisector of each opening, best first.
+    """Return a shot along the bisector of each opening that discs leave of the goal, best first.
 
-    The score is the opening's width as a share of ``full_angle`` [rad], at most 1.
+    The score is the opening's width as a share of ``full_angle``, at most 1.
+
+    Args:
+        field: dimensions.
+        origin: where the ball will be kicked from [m].
+        heading: of the robot that kicks [rad].
+        inset: what either post takes off the goal [m].
+        discs: centre and radius of everything in the way [m].
+        full_angle: width of an opening that scores 1 [rad].
     """
+    mouth = goal_mouth(field, origin, inset)
+    if mouth is None:
+        return []
+    shadows = [disc_shadow(field, origin, centre, radius) for centre, radius in discs]
     reach = field.half_length - origin[0]
     shots = []
-    for low, high in openings:
+    for low, high in free_intervals(mouth, [shadow for shadow in shadows if shadow is not None]):
         target = (field.half_length, origin[1] + reach * tan((low + high) / 2.0))
         shots.append(Shot(target, (high - low) / 2.0, min((high - low) / full_angle, 1.0)))
     return best_first(shots, origin, heading)

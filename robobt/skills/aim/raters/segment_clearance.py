@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from math import atan2
-
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from robobt.skills.aim.raters.base import RATERS, ShotRater, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, runs
+from robobt.skills.aim.raters.base import RATERS, ShotRater
+from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, shots_at_groups
 from robobt.skills.store import Shot
 from robobt.world.geometry import Point
 from robobt.world.state import Frame, RobotState
@@ -38,17 +36,9 @@ class SegmentClearance(ShotRater):
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002
         """See :meth:`ShotRater.rate_all`."""
-        goal_x = frame.field.half_length
-        if origin[0] >= goal_x:
+        if origin[0] >= frame.field.half_length:
             return []
         points = goal_candidates(frame.field, self.spacing)
         distances = lane_clearances(origin, points, obstacles(frame, me), behind=True)
         clear: NDArray[np.bool_] = np.all(distances > self.tolerance, axis=1)
-        shots = []
-        for first, stop in runs(clear):
-            low, high = float(points[first, 1]), float(points[stop - 1, 1])
-            reach = goal_x - origin[0]
-            margin = self.spacing / 2.0
-            angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
-            shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
-        return best_first(shots, origin, me.heading)
+        return shots_at_groups(points, clear, self.spacing, origin, me.heading)
