@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import field
 from math import hypot, radians
 
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import allowed_target, travel
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
-from robobt.world.limits import RobotLimits
 
 _STANDING = 0.1
 """Speed below which a robot has arrived [m/s]."""
 
 
 @skill
-class GoToPose(Skill):
+class GoToPose(DrivingSkill):
     """Drive to a pose round everything in the way, and stop there.
 
     Succeeds when the robot stands within the tolerances; it goes on holding the
@@ -44,16 +43,10 @@ class GoToPose(Skill):
     face_ball: bool = False
     tolerance: float = 0.01
     heading_tolerance: float = radians(2.0)
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     avoid_robots: bool = True
     avoid_ball: bool = False
     goalkeeper: bool = False
     _kept_heading: float = field(default=0.0, init=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
 
     def on_start(self) -> None:
         """Remember the heading to keep."""
@@ -71,7 +64,7 @@ class GoToPose(Skill):
             me,
             target,
             heading,
-            self.pace.of(me.limits),
+            self.drive_limits,
             avoid_robots=self.avoid_robots,
             avoid_ball=self.avoid_ball,
             goalkeeper=self.goalkeeper,

@@ -69,28 +69,6 @@ def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
     return start[1] + reach / step * sin(angle)
 
 
-def clearances(origin: ArrayLike, targets: ArrayLike, obstacles: ArrayLike) -> FloatArray:
-    """Compute the distance of every obstacle from every segment origin -> target.
-
-    Args:
-        origin: (..., 2).
-        targets: (..., T, 2).
-        obstacles: (..., K, 2).
-
-    Returns:
-        (..., T, K) distances [m].
-    """
-    start = np.asarray(origin, dtype=np.float64)[..., None, :]
-    along = np.asarray(targets, dtype=np.float64) - start
-    to_obstacle = np.asarray(obstacles, dtype=np.float64) - start
-    dx, dy = along[..., :, None, 0], along[..., :, None, 1]
-    ox, oy = to_obstacle[..., None, :, 0], to_obstacle[..., None, :, 1]
-    length_squared = dx * dx + dy * dy
-    share = (ox * dx + oy * dy) / np.where(length_squared > 0.0, length_squared, 1.0)
-    share = np.minimum(np.maximum(share, 0.0), 1.0)
-    return np.hypot(ox - share * dx, oy - share * dy)
-
-
 def to_robot_frame(vx: float, vy: float, heading: float) -> Point:
     """Return a field-frame vector in the frame of a robot with this heading."""
     c, s = cos(heading), sin(heading)

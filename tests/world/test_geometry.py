@@ -1,4 +1,4 @@
-"""Angles, segments and clearances."""
+"""Angles and segments."""
 
 from __future__ import annotations
 
@@ -34,29 +34,6 @@ def test_the_closest_point_is_on_the_segment_and_no_sampled_point_is_closer(
     for share in np.linspace(0, 1, 11):
         sample = (a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]))
         assert g.segment_distance(p, a, b) <= g.distance(p, sample) + 1e-9
-
-
-@given(point, st.lists(point, min_size=1, max_size=4), st.lists(point, min_size=1, max_size=3))
-def test_clearances_agree_with_the_scalar_helper(
-    origin: g.Point, targets: list[g.Point], obstacles: list[g.Point]
-) -> None:
-    table = g.clearances(origin, targets, obstacles)
-    assert table.shape == (len(targets), len(obstacles))
-    for i, target in enumerate(targets):
-        for j, obstacle in enumerate(obstacles):
-            assert table[i, j] == pytest.approx(g.segment_distance(obstacle, origin, target), abs=1e-9)
-
-
-def test_clearances_take_batches() -> None:
-    rng = np.random.default_rng(0)
-    origins, targets, obstacles = (
-        rng.normal(size=(5, 2)),
-        rng.normal(size=(5, 7, 2)),
-        rng.normal(size=(5, 3, 2)),
-    )
-    batch = g.clearances(origins, targets, obstacles)
-    for i in range(5):
-        np.testing.assert_allclose(batch[i], g.clearances(origins[i], targets[i], obstacles[i]))
 
 
 @given(point, st.floats(-3.1, 3.1), coordinate)

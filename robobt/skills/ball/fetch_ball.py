@@ -5,14 +5,13 @@ from __future__ import annotations
 from math import cos, radians, sin
 
 from robobt.motion.dribbling import dribbling_limits
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import drive
 from robobt.skills.ball.pick_up_ball import grab
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance, wrap_angle
-from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _IN_LINE = radians(25.0)
@@ -24,7 +23,7 @@ _PULL = dribbling_limits(max_speed=0.5, max_turn=1.0, max_acceleration=0.8)
 
 
 @skill
-class FetchBall(Skill):
+class FetchBall(DrivingSkill):
     """Take the ball from the side of the own goal and drive backwards with it to before the goal.
 
     SUCCESS when the ball lies within 0.3 m of the place.
@@ -37,13 +36,7 @@ class FetchBall(Skill):
         before_goal: where to, in front of the goal's centre [m].
     """
 
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     before_goal: float = 0.15
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """Go behind the ball, then up to it, then back with it."""
@@ -62,7 +55,7 @@ class FetchBall(Skill):
             self.store.command = grab(me, self.ball, _GRAB_SPEED, period)
             return self.run("taking it")
         behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
-        limits = self.pace.of(me.limits)
+        limits = self.drive_limits
         self.store.command = travel(
             self.frame, me, behind, outwards, limits, avoid_ball=True, goalkeeper=True
         )

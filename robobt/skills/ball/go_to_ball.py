@@ -8,12 +8,12 @@ from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Literal
 
 from robobt.motion.ball_model import DEFAULT_BALL
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import allowed_target, travel
 from robobt.motion.pilot import travel_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import RobotCommand
@@ -67,7 +67,7 @@ SHIPPED = {"ddpg": "go_to_ball_ddpg"}
 
 
 @skill
-class GoToBall(Skill):
+class GoToBall(DrivingSkill):
     """Approach the ball until it is within 0.2 m and ahead; then :class:`PickUpBall` takes over.
 
     A moving ball is met where it will be. Once handed over, the skill goes on
@@ -97,8 +97,6 @@ class GoToBall(Skill):
 
     policy: str = "geometric"
     approach: Literal["nearest", "behind_target"] = "nearest"
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     goalkeeper: bool = False
     _handed_over: bool = field(default=False, init=False)
 
@@ -106,14 +104,13 @@ class GoToBall(Skill):
         super().__post_init__()
         if self.approach not in ("nearest", "behind_target"):
             raise ValueError(f"approach must be 'nearest' or 'behind_target', not {self.approach!r}")
-        self.pace = Pace(self.limits, self.speed)
         self._decide = find_policy(self.policy, POLICIES, SHIPPED, LearnedApproach)
         self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
 
     def on_running(self) -> Status:
         """Drive one tick."""
         me, ball = self.me, self.ball
-        limits = self.pace.of(me.limits)
+        limits = self.drive_limits
         meeting = meeting_point(self.frame, me, limits)
         facing = None if self._learned is not None else self._facing(meeting)
         try:

@@ -7,11 +7,11 @@ from math import atan2, cos, hypot, inf, sin
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import travel_time
 from robobt.skills.ball.pick_up_ball import Grip, grab
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
@@ -100,7 +100,7 @@ def meet(
 
 
 @skill
-class Intercept(Skill):
+class Intercept(DrivingSkill):
     """Go where a moving ball can be met soonest, face it and take it.
 
     Succeeds when the ball has been in the mouth for ``settle`` seconds.
@@ -112,22 +112,16 @@ class Intercept(Skill):
         goalkeeper: may enter the own defence area.
     """
 
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     settle: float = 0.05
     goalkeeper: bool = False
     _watch: BallWatch = field(default_factory=BallWatch, init=False)
     _grip: Grip = field(default_factory=Grip, init=False)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
-
     def on_running(self) -> Status:
         """Drive one tick."""
         frame, me = self.frame, self.me
         rolling = self._watch.rolling_speed(frame)
-        self.store.command = meet(frame, me, self.pace.of(me.limits), rolling, goalkeeper=self.goalkeeper)
+        self.store.command = meet(frame, me, self.drive_limits, rolling, goalkeeper=self.goalkeeper)
         if self._grip.held_for(frame, me) >= self.settle - 1e-9:
             return self.succeed("it has the ball")
         return self.run("meeting the ball")

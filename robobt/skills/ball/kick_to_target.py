@@ -7,18 +7,17 @@ from math import atan2, cos, radians, sin
 from typing import Literal
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick
 from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, direction, distance, wrap_angle
-from robobt.world.limits import RobotLimits
 from robobt.world.rules import has_ball
 
 SHOT_SPEED = 6.4
@@ -57,7 +56,7 @@ class _Order:
 
 
 @skill
-class KickToTarget(Skill):
+class KickToTarget(DrivingSkill):
     """Kick the ball at a point: turn with it when the robot has it, else come from behind and kick it.
 
     Running until the ball has left, then succeeding. Fails without a target and
@@ -92,8 +91,6 @@ class KickToTarget(Skill):
     kick_speed: float | None = None
     tolerance: float | None = None
     max_turn: float = 4.0
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     goalkeeper: bool = False
     _kicking: _Order | None = field(default=None, init=False)
     _was_near: bool = field(default=False, init=False)
@@ -102,7 +99,6 @@ class KickToTarget(Skill):
         super().__post_init__()
         if self.style not in ("default", "robobulls"):
             raise ValueError(f"style must be 'default' or 'robobulls', not {self.style!r}")
-        self.pace = Pace(self.limits, self.speed)
         self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
         self._robobulls = RobobullsKick(goalkeeper=self.goalkeeper) if self.style == "robobulls" else None
         if self._robobulls is not None and self.limits is not None:
@@ -168,7 +164,7 @@ class KickToTarget(Skill):
 
     def _come_from_behind(self, order: _Order) -> None:
         frame, me, ball = self.frame, self.me, self.ball
-        limits = self.pace.of(me.limits)
+        limits = self.drive_limits
         near = distance(me.position, ball.position) < _NEAR
         x, y = ball.position if near else meeting_point(frame, me, limits)
         line = direction((x, y), order.target)

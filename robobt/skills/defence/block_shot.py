@@ -7,9 +7,9 @@ from math import sqrt
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
-from robobt.motion.pace import Pace
 from robobt.motion.pilot import drive, travel_time
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.limits import RobotLimits
@@ -22,7 +22,7 @@ _THERE = 0.04
 
 
 @skill
-class BlockShot(Skill):
+class BlockShot(DrivingSkill):
     """Drive to the nearest point of the line from the ball to the store's ``target``, facing the ball.
 
     Never ends by itself; FAILURE without a target. Avoids nothing: there is no
@@ -40,15 +40,9 @@ class BlockShot(Skill):
 
     reads = ("target",)
 
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     dribbler: bool = True
     dive: bool = True
     _watch: BallWatch = field(default_factory=BallWatch, init=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the line."""
@@ -57,7 +51,7 @@ class BlockShot(Skill):
             return self.fail("no target to block the way to")
         me, ball = self.me, self.ball
         place = closest_point_on_segment(me.position, ball.position, target)
-        limits = self.pace.of(me.limits)
+        limits = self.drive_limits
         final_speed = self._dive_speed(place, limits) if self.dive else 0.0
         facing = direction(me.position, ball.position)
         self.store.command = drive(me, place, facing, limits, self.frame.period, final_speed)

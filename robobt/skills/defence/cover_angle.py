@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from math import hypot
 
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import travel
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import direction
-from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
 @skill
-class CoverAngle(Skill):
+class CoverAngle(DrivingSkill):
     """Stand on the bisector of the angle between the posts as the ball sees them, facing the ball.
 
     How far out is as far as ``stand_out``, but no farther than the own defence
@@ -27,13 +26,7 @@ class CoverAngle(Skill):
         stand_out: farthest from the goal line [m].
     """
 
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     stand_out: float = 0.5
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the place."""
@@ -59,7 +52,7 @@ class CoverAngle(Skill):
             me,
             (min(x, line + field.defense_depth - ROBOT_RADIUS), y),
             direction(me.position, ball.position),
-            self.pace.of(me.limits),
+            self.drive_limits,
             avoid_robots=False,
             goalkeeper=True,
         )

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from robobt.motion.pace import Pace
 from robobt.motion.path_planner import travel
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import skill
+from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import closest_point_on_segment, direction
-from robobt.world.limits import RobotLimits
 from robobt.world.state import ROBOT_RADIUS
 
 
 @skill
-class CoverNearPost(Skill):
+class CoverNearPost(DrivingSkill):
     """Drive to the nearest point of the line from the ball to the nearest point of the goal mouth.
 
     Never ends by itself. FAILURE while the ball lies beside the goal or that
@@ -26,13 +25,7 @@ class CoverNearPost(Skill):
         before_goal: balls farther back than this count as beside the goal [m].
     """
 
-    limits: RobotLimits | None = None
-    speed: float = 1.0
     before_goal: float = 0.15
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.pace = Pace(self.limits, self.speed)
 
     def on_running(self) -> Status:
         """One period on the way to the line."""
@@ -51,7 +44,7 @@ class CoverNearPost(Skill):
             me,
             place,
             direction(me.position, ball),
-            self.pace.of(me.limits),
+            self.drive_limits,
             avoid_robots=False,
             goalkeeper=True,
         )
