@@ -186,7 +186,7 @@ def kick_away(shooting: Shooting, *, settled: bool) -> Behaviour:
 
 
 def aims(shooting: Shooting) -> tuple[Behaviour, Behaviour, Behaviour]:
-    """Choose where to kick the ball, the best first: at the goal, to a team-mate, upfield."""
+    """Return where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
     shot = SelectShot(rater=shooting.rater, min_score=shooting.min_score, max_distance=shooting.distance)
     return shot, SelectPass(min_score=0.1), AimUpfield()
 

@@ -49,7 +49,7 @@ class DrawGoalkeeper(Skill):
         self._there_since = inf
 
     def on_running(self) -> Status:
-        """One period of the swing."""
+        """Swing for one tick."""
         frame, me, ball = self.frame, self.me, self.ball
         if not has_ball(me, ball):
             return self.fail("it does not have the ball")

@@ -8,6 +8,7 @@ from typing import Literal
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
+from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
@@ -100,9 +101,10 @@ class KickToTarget(DrivingSkill):
         if self.style not in ("default", "robobulls"):
             raise ValueError(f"style must be 'default' or 'robobulls', not {self.style!r}")
         self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
-        self._robobulls = RobobullsKick(goalkeeper=self.goalkeeper) if self.style == "robobulls" else None
-        if self._robobulls is not None and self.limits is not None:
-            self._robobulls.limits = self.limits
+        self._robobulls: RobobullsKick | None = None
+        if self.style == "robobulls":
+            limits = self.limits or ROBOBULLS_LIMITS
+            self._robobulls = RobobullsKick(goalkeeper=self.goalkeeper, limits=limits)
 
     def needs(self) -> list[tuple[str, ...]]:
         """Require a shot or a pass, unless ``target`` is given."""

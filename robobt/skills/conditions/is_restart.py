@@ -20,7 +20,7 @@ class IsRestart(Skill):
     ours: bool | None = None
 
     def on_running(self) -> Status:
-        """Listen to the referee."""
+        """Ask the referee's state."""
         frame = self.frame
         restart = frame.game.restart
         if restart is None or frame.game.halted:

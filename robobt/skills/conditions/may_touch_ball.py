@@ -18,7 +18,7 @@ class MayTouchBall(Skill):
     reads = ("team",)
 
     def on_running(self) -> Status:
-        """Listen to the referee and remember who kicked."""
+        """Ask the referee's state and remember who kicked."""
         frame, team = self.frame, self.store.team
         attacker(frame, team)
         game = frame.game

@@ -45,7 +45,7 @@ class BlockShot(DrivingSkill):
     _watch: BallWatch = field(default_factory=BallWatch, init=False)
 
     def on_running(self) -> Status:
-        """One period on the way to the line."""
+        """Drive to the line for one tick."""
         target = self.store.target
         if target is None:
             return self.fail("no target to block the way to")

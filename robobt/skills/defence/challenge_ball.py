@@ -27,7 +27,7 @@ class ChallengeBall(Skill):
     gap: float = 3.0 * ROBOT_RADIUS
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me, ball = self.frame, self.me, self.ball
         who = owner(frame)
         if who is None or who.team is frame.team:

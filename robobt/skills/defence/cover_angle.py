@@ -29,7 +29,7 @@ class CoverAngle(DrivingSkill):
     stand_out: float = 0.5
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         field, me, ball = self.frame.field, self.me, self.ball
         if ball.x <= -field.half_length:
             return self.fail("the ball is behind the goal line")

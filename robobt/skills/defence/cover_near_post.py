@@ -28,7 +28,7 @@ class CoverNearPost(DrivingSkill):
     before_goal: float = 0.15
 
     def on_running(self) -> Status:
-        """One period on the way to the line."""
+        """Drive to the line for one tick."""
         field, me, ball = self.frame.field, self.me, self.ball.position
         if ball[0] < self.before_goal - field.half_length:
             return self.fail("the ball is beside the goal")

@@ -29,7 +29,7 @@ class MarkOpponent(Skill):
     gap: float = 0.25
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me, team = self.frame, self.me, self.store.team
         if me.id not in team.markers:
             team.markers.add(me.id)

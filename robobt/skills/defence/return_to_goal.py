@@ -24,7 +24,7 @@ class ReturnToGoal(DrivingSkill):
     before_goal: float = 0.15
 
     def on_running(self) -> Status:
-        """One period on the way home."""
+        """Drive home for one tick."""
         me = self.me
         home = (self.before_goal - self.frame.field.half_length, 0.0)
         facing = direction(home, (0.0, 0.0))

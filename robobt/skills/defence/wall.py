@@ -38,7 +38,7 @@ class Wall(Skill):
             raise ValueError(f"place {self.place} is not one of a wall of {self.size}")
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me = self.frame, self.me
         edge = DefenseEdge(frame.field, ROBOT_RADIUS + _AREA_GAP)
         width = 2.0 * ROBOT_RADIUS + _MATE_GAP

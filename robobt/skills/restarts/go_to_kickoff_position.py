@@ -28,7 +28,7 @@ class GoToKickoffPosition(Skill):
     spread: float = 0.6
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me, team = self.frame, self.me, self.store.team
         field = frame.field
         taker = attacker(frame, team) if frame.game.restart_team is frame.team else None

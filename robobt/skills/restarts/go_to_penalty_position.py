@@ -26,7 +26,7 @@ class GoToPenaltyPosition(Skill):
     goalkeeper: bool = False
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me = self.frame, self.me
         field, game = frame.field, frame.game
         spot = game.placement or frame.ball.position

@@ -31,7 +31,7 @@ class KeepDistance(Skill):
     goalkeeper: bool = False
 
     def on_running(self) -> Status:
-        """Straight away from the one that is too near."""
+        """Drive straight away from the place that is too near."""
         frame, me = self.frame, self.me
         keep = self.distance + ROBOT_RADIUS + _MARGIN
         places = [frame.ball.position]
@@ -49,7 +49,7 @@ class KeepDistance(Skill):
         return self.run("clearing the ball")
 
     def _way_out(self, place: Point, reach: float) -> Point:
-        """Straight away from ``place`` or, where no robot may stand there, as little aside as need be."""
+        """Return a point straight away from ``place``, or as little aside as robots may stand there."""
         frame, me = self.frame, self.me
         away = direction(place, me.position)
         for turn in _TURNS:

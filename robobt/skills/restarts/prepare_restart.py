@@ -32,7 +32,7 @@ class PrepareRestart(Skill):
     gap: float = 0.25
 
     def on_running(self) -> Status:
-        """One period on the way to the place."""
+        """Drive to the place for one tick."""
         frame, me, game = self.frame, self.me, self.frame.game
         if game.restart is None or game.restart_team is not frame.team:
             return self.fail("no restart of ours")

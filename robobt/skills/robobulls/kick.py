@@ -6,6 +6,7 @@ are times here, so that the skill does the same at any control period.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from math import atan2, cos, hypot, radians, sin
 
@@ -50,6 +51,7 @@ class Stage(StrEnum):
     KICK = "kicking"
 
 
+@dataclass(kw_only=True)
 class RobobullsKick:
     """One robot's way to kick the ball at a point; a plain object to be ticked.
 
@@ -78,18 +80,12 @@ class RobobullsKick:
         stage: what it is busy with.
     """
 
-    def __init__(
-        self,
-        *,
-        tolerance: float = radians(1.0),
-        kick_speed: float = ROBOBULLS_KICK_SPEED,
-        limits: RobotLimits = ROBOBULLS_LIMITS,
-        goalkeeper: bool = False,
-    ) -> None:
-        self.tolerance = tolerance
-        self.kick_speed = kick_speed
-        self.limits = limits
-        self.goalkeeper = goalkeeper
+    tolerance: float = radians(1.0)
+    kick_speed: float = ROBOBULLS_KICK_SPEED
+    limits: RobotLimits = ROBOBULLS_LIMITS
+    goalkeeper: bool = False
+
+    def __post_init__(self) -> None:
         self.start()
 
     def start(self) -> None:

@@ -41,7 +41,7 @@ class BestFieldPosition(FieldSearch):
     keep: float = 0.02
 
     def value(self, grid: PositionGrid) -> GridArray:
-        """See the class."""
+        """Rate as the class describes."""
         value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(self.ball.position)
         for rows, hidden in grid.goal_hidden(self.frame.opponents, extra=0.1):
             value[rows][hidden] -= 10.0

@@ -27,7 +27,7 @@ class IsAttacker(Skill):
     farthest: float | None = None
 
     def on_running(self) -> Status:
-        """Enter oneself and see who it is."""
+        """Enter this robot and see who it is."""
         team, number = self.store.team, self.me.id
         if number not in team.attackers:
             team.attackers[number] = inf if self.farthest is None else self.farthest

@@ -53,7 +53,7 @@ class SelectSupportPosition(FieldSearch):
             raise ValueError(f"mate_distance must be positive, not {self.mate_distance}")
 
     def value(self, grid: PositionGrid) -> GridArray:
-        """See the class."""
+        """Rate as the class describes."""
         frame, me, ball = self.frame, self.me, self.ball.position
         value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(me.position)
         regions = [lane_shadow(ball, opponent, self.lane_clearance) for opponent in frame.opponents]
