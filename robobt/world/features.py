@@ -99,13 +99,13 @@ def _observe_go_to_ball(robot: Row, ball: Row, row: FloatArray) -> None:
     c, s = cos(robot[2]), sin(robot[2])
     dx, dy = ball[0] - robot[0], ball[1] - robot[1]
     distance = hypot(dx, dy)
-    if distance > 0.0:
-        row[0] = (c * dy - s * dx) / distance
-        row[1] = (c * dx + s * dy) / distance
-    else:
-        # A ball at the robot's very centre counts as straight ahead.
+    if distance == 0.0:
+        # A ball at the robot's very centre counts as straight ahead. NaN has to stay NaN.
         row[0] = 0.0
         row[1] = 1.0
+    else:
+        row[0] = (c * dy - s * dx) / distance
+        row[1] = (c * dx + s * dy) / distance
     row[2] = distance
     row[3] = c * robot[3] + s * robot[4]
     row[4] = c * robot[4] - s * robot[3]
