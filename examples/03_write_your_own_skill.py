@@ -1,8 +1,8 @@
 """3. Write your own skill: a leaf of your own, first alone, then in a tree, then in a match.
 
-A skill takes its parameters in the constructor, names in ``reads`` and
+A skill's parameters are the fields of its class. It names in ``reads`` and
 ``writes`` what it shares with the other skills of its robot, and decides in
-``on_running`` what the robot is told at this tick.
+``on_running`` what the robot is commanded at this tick.
 
     python examples/03_write_your_own_skill.py
 """
@@ -20,16 +20,15 @@ from robobt.world import DIVISION_B
 
 @skill
 class CircleBall(Skill):
-    """Drives around the ball, facing it. SUCCESS when the time is over, never FAILURE.
+    """Drive around the ball, facing it. SUCCESS when the time is over, never FAILURE.
 
     Args:
         radius: of the circle [m].
         seconds: how long [s].
     """
 
-    def __init__(self, *, radius: float = 0.6, seconds: float = 3.0, name: str = "") -> None:
-        super().__init__(name)
-        self.radius, self.seconds = radius, seconds
+    radius: float = 0.6
+    seconds: float = 3.0
 
     def on_start(self) -> None:
         # The frame's time is the only clock a skill may read.

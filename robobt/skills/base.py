@@ -15,7 +15,7 @@ class Skill(Leaf[Store]):
     """A leaf that sees ``frame`` from its own team's side and moves one robot, ``me``.
 
     A skill moves its robot by setting ``self.store.command``; one that sets
-    nothing leaves it standing. Its parameters are the fields of the class.
+    nothing leaves it standing. Its parameters are the fields of its class.
     """
 
     name: str = ""
