@@ -50,7 +50,7 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
 
     Raises:
         KeyError: no play has that name.
-        TreeFileError: the file is no play.
+        TreeFileError: the file does not hold a play.
     """
     if not is_play_file(name):
         return PLAYS[name]
@@ -71,7 +71,7 @@ def tree_yaml(root: Behaviour, name: str) -> str:
     """Write a tree as the YAML of a play.
 
     Raises:
-        ValueError: a node is not registered, or has a parameter that is no plain data.
+        ValueError: a node is not registered, or has a parameter that is not plain data.
     """
     return write_yaml(describe_tree(root, VOCABULARY, name))
 
@@ -80,6 +80,6 @@ def tree_xml(root: Behaviour, name: str) -> str:
     """Write a tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
 
     Raises:
-        ValueError: as :func:`tree_yaml`, or XML cannot say it.
+        ValueError: as :func:`tree_yaml`, or XML cannot express it.
     """
     return write_xml(describe_tree(root, VOCABULARY, name), VOCABULARY)

@@ -44,7 +44,7 @@ class Arenas:
         arena_parameters, robot_parameters: what the kernels use; columns are
             named in :mod:`robobt.sim.columns`. Writing to them randomises arenas.
         switch: (n,) sub-step of a period from which a command is in force, the
-            part of the command delay that is no whole period; also to be written to.
+            part of the command delay beyond whole periods; may be written to as well.
     """
 
     def __init__(

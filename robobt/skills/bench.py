@@ -42,7 +42,7 @@ def bench_policy(
         under names in ``_us``.
 
     Raises:
-        ModelError: the model cannot be used, or is no TorchScript one.
+        ModelError: the model cannot be used, or is not a TorchScript file.
     """
     policy = load_policy(model)
     cases: dict[str, Callable[[], object]] = {

@@ -96,9 +96,9 @@ class Store:
         rng: the tree's generator; the only randomness a leaf may use.
         team: what the team shares.
         target: where a skill wants the robot or the ball to go [m].
-        shot: the shot selected last, None when there is none.
+        shot: the shot selected last, None without one.
         goal_line: how a rater that judges every point of it did so then, None without one.
-        pass_: the pass selected last, None when there is none.
+        pass_: the pass selected last, None without one.
     """
 
     frame: Frame

@@ -23,7 +23,7 @@ class RobotCommand:
     Attributes:
         vx, vy: velocity [m/s].
         omega: turning rate, counter-clockwise positive [rad/s].
-        kick_speed: speed the ball shall leave with [m/s]; 0 is no kick.
+        kick_speed: speed at which the ball is to leave [m/s]; 0 is no kick.
         kick_trigger: when the kick fires.
         dribbler: whether the dribbler turns.
     """

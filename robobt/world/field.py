@@ -41,12 +41,12 @@ class FieldGeometry(BaseModel):
 
     @cached_property
     def half_length(self) -> float:
-        """x of the opponent's goal line [m]."""
+        """The opponent's goal line, its x [m]."""
         return self.length / 2
 
     @cached_property
     def half_width(self) -> float:
-        """y of the left touch line [m]."""
+        """The left touch line, its y [m]."""
         return self.width / 2
 
     @cached_property

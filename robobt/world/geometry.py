@@ -58,7 +58,7 @@ def segment_distance(point: Point, start: Point, end: Point) -> float:
 
 
 def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
-    """Return y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
+    """Return Return the y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
 
     None when the ray points away from the line or runs along it.
     """

@@ -49,7 +49,7 @@ class RobotLimits(BaseModel):
     def scaled(self, factor: float) -> RobotLimits:
         """Return the same robot with its top speed and turning rate times ``factor``.
 
-        Accelerations stay: a goalkeeper at half speed is a robot told to drive
+        Accelerations stay: a goalkeeper at half speed is a robot commanded to drive
         half as fast, not a weaker one.
         """
         return self.model_copy(

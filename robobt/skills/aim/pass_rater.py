@@ -23,7 +23,7 @@ _LANE_SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
 class PassRater(BaseModel):
     """Rates a straight pass to every team-mate.
 
-    A mate is aimed at where it comes to rest if it brakes now. It is no receiver
+    A mate is aimed at where it comes to rest if it brakes now. It does not count
     while that point is too near, outside the field or in a defence area, or while
     any robot stands in the lane. The others score
 

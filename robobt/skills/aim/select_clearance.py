@@ -18,7 +18,7 @@ class SelectClearance(Skill):
     """Write to ``pass_`` the foremost team-mate that the ball can reach, and no ``shot``.
 
     A team-mate counts when it is at least a third of the own half off our goal
-    line and no other robot stands in the lane. FAILURE when there is none, and
+    line and no other robot stands in the lane. FAILURE without one, and
     ``pass_`` is None.
 
     Source: RoboBulls' published code, Goalie, which counts team-mates beyond

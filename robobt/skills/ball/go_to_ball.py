@@ -76,7 +76,7 @@ class GoToBall(DrivingSkill):
 
     A trained policy hands over where it was trained to end: by the contact rule
     in its model card, and from any side, so that it ignores ``approach``. When
-    its answer is no valid action, the skill fails and the robot stops.
+    its answer is not a valid action, the skill fails and the robot stops.
 
     Args:
         policy: what decides the motion, by name: "geometric", or another of
@@ -197,7 +197,7 @@ class LearnedApproach:
         """Compute the command of one tick.
 
         Raises:
-            PolicyError: the policy's answer is no valid action.
+            PolicyError: the policy's answer is not a valid action.
         """
         command, limits = self._control.decide(store.frame, store.me), approach.limits
         speed = hypot(command.vx, command.vy)

@@ -30,7 +30,7 @@ _LIMIT = 1.0 + 1e-4
 
 
 class PolicyError(RobobtError, RuntimeError):
-    """A policy's answer is no valid action; the robot must not act on it."""
+    """A policy's answer is not a valid action; the robot must not act on it."""
 
 
 class LearnedControl:

@@ -13,7 +13,7 @@ class LearnedSkill(Skill):
     """Drive the robot by a trained policy, tick by tick; runs for as long as it is ticked.
 
     When to begin and when it is done is the tree's affair: put conditions beside
-    it. Fails, and stops the robot, when the policy's answer is no valid
+    it. Fails, and stops the robot, when the policy's answer is not a valid
     action.
 
     Args:

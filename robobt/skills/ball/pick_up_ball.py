@@ -14,7 +14,7 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.state import BallState, Frame, RobotState
 
 LOST_DISTANCE = 0.3
-"""A ball farther away is no longer one to pick up [m]."""
+"""A ball farther away is not picked up [m]."""
 
 
 def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotCommand:

@@ -44,7 +44,7 @@ class Shoot(Skill):
 
     Succeeds when the ball has left after a kick, fails when the ball does not lie in
     the mouth: one that merely lies before it cannot be kicked from the spot. When
-    a trained policy's answer is no valid action, the skill fails and the robot stops.
+    a trained policy's answer is not a valid action, the skill fails and the robot stops.
 
     Args:
         policy: what decides turning and kick, by name: "geometric" aims at
@@ -123,7 +123,7 @@ class LearnedShot:
         """Compute the command of one tick.
 
         Raises:
-            PolicyError: the policy's answer is no valid action.
+            PolicyError: the policy's answer is not a valid action.
         """
         decided, me = self._control.decide(store.frame, store.me), store.me
         held = me.limits.hold_acceleration

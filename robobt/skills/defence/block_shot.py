@@ -15,7 +15,7 @@ from robobt.world.geometry import Point, closest_point_on_segment, direction, di
 from robobt.world.limits import RobotLimits
 
 _SLOW = 0.5
-"""A slower ball is no reason to dive [m/s]."""
+"""The robot does not dive for a slower ball [m/s]."""
 
 _THERE = 0.04
 """A robot this near to the line stops the ball with its front [m]."""
@@ -27,7 +27,7 @@ class BlockShot(DrivingSkill):
 
     Never ends by itself; FAILURE without a target. Avoids nothing: there is no
     time to. A robot that cannot stop on the line before the ball is there does
-    not try to: it dives, which is to say it drives through.
+    not try to: it dives, that is, it drives through.
 
     Source: RoboBulls' published code, Goalie, which always brakes.
 

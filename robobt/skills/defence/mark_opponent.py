@@ -15,7 +15,7 @@ class MarkOpponent(Skill):
 
     The robots of a team that mark share the opponents: those nearest to the own
     goal first, each the nearest free marker, none the holder of the ball. FAILURE
-    while there is none left for this robot; otherwise it never ends by itself.
+    while no opponent is left for this robot; otherwise it never ends by itself.
 
     Source: RoboBulls' published code (MarkBot).
 

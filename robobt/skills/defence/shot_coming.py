@@ -12,10 +12,10 @@ from robobt.world.state import ROBOT_RADIUS
 class ShotComing(Skill):
     """SUCCESS while the ball, straight on, crosses our goal line between the posts.
 
-    A ball that a robot carries is no shot yet. Writes where to block: the store's
+    A ball that a robot carries does not count as a shot. Writes where to block: the store's
     ``target`` is the point of the crossing, a robot's radius before the line.
 
-    Source: RoboBulls' published code, Goalie, where only the goalkeeper's own ball is none.
+    Source: RoboBulls' published code, Goalie, where this holds for the goalkeeper's own ball alone.
 
     Args:
         min_speed: slowest approach to the goal line that counts [m/s].

@@ -55,7 +55,7 @@ class RefereeSwitch(Switch, Bound[Store]):
         otherwise: the child for every other phase.
 
     Raises:
-        ValueError: a case is no phase; the message lists those there are.
+        ValueError: a case does not name a phase; the message lists those there are.
     """
 
     def __init__(

@@ -66,7 +66,7 @@ def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> 
 
 
 def _in_the_way(start: Point, end: Point, ball: Point, others: list[Point]) -> Point | None:
-    # A place behind the ball lies inside the distance itself; to reach it is no hit.
+    # A place behind the ball lies inside the distance itself; to reach it does not count as a hit.
     if segment_distance(ball, start, end) <= _BALL_HIT:
         return ball
     for other in others:
