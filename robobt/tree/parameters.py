@@ -108,7 +108,10 @@ class Parameter:
 
 def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
     """Return the parameters that can be given by name, in the order of the signature."""
-    target = builder.__init__ if inspect.isclass(builder) else builder
+    target: object = builder
+    # The fields of a dataclass have their types in the modules of the classes that they come from.
+    if inspect.isclass(builder) and "__dataclass_fields__" not in vars(builder):
+        target = builder.__init__
     hints = typing.get_type_hints(target, include_extras=True)
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return [

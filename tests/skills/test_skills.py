@@ -6,11 +6,13 @@ import inspect
 import pkgutil
 from dataclasses import fields
 from importlib import import_module
+from typing import Any
 
 import pytest
 
 import robobt.skills
 from robobt.skills import SKILLS, Skill, Store
+from robobt.tree.parameters import parameters_of
 
 
 @pytest.mark.parametrize("name", list(SKILLS))
@@ -27,7 +29,7 @@ class TestEverySkill:
         first, *parameters = inspect.signature(cls).parameters.values()
         assert first.name == "name"
         assert all(parameter.kind is parameter.KEYWORD_ONLY for parameter in parameters)
-        assert all(parameter.annotation is not parameter.empty for parameter in parameters)
+        assert all(parameter.hint is not Any for parameter in parameters_of(cls))
 
     def test_says_what_it_does_and_what_its_parameters_mean(self, name: str) -> None:
         cls = SKILLS[name]
