@@ -33,7 +33,7 @@ class Match:
 
     Args:
         scenario: what is played.
-        seed: fixes placement, world and trees; the same seed gives the same match, bit for bit.
+        seed: fixes placement and world; the same seed gives the same match, bit for bit.
         world_factory: makes the world.
         record: file to record the match to; its name ends in ``.robobt.arrows``.
         trial: which repetition this is; only written down.
@@ -60,10 +60,10 @@ class Match:
     ) -> None:
         self.scenario, self.seed, self.trial = scenario, seed, trial
         self.world = world_factory(scenario)
-        placement_seed, world_seed, tree_seeds = np.random.SeedSequence(seed).spawn(3)
+        placement_seed, world_seed = np.random.SeedSequence(seed).spawn(2)
         placement = scenario.place(np.random.default_rng(placement_seed))
         self.world.reset(placement, int(world_seed.generate_state(1)[0]))
-        self.players = make_players(scenario, self.world.observe(), tree_seeds)
+        self.players = make_players(scenario, self.world.observe())
         self.measures = Measures({player.robot: None for player in self.players})
         self.game: GameState = OPEN_PLAY
         self.outcome: Outcome | None = None

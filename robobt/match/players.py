@@ -5,8 +5,6 @@ from __future__ import annotations
 import logging
 from dataclasses import dataclass
 
-import numpy as np
-
 from robobt.config.errors import one_line, short_repr
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
@@ -64,21 +62,17 @@ class Player:
         return None
 
 
-def make_players(scenario: Scenario, start: Frame, seeds: np.random.SeedSequence) -> list[Player]:
+def make_players(scenario: Scenario, start: Frame) -> list[Player]:
     """Build every robot's tree and store, in the order of teams and scenario.
 
     Args:
         scenario: the scenario to play.
         start: the first frame.
-        seeds: source of the robots' random numbers.
     """
     teams = {team: TeamStore() for team in Team}
     players = []
     for robot, setup in scenario.robots:
-        # The robot is part of its seed, so one more robot changes nobody else's random numbers.
-        entropy = (*seeds.spawn_key, list(Team).index(robot.team), robot.number)
-        rng = np.random.default_rng(np.random.SeedSequence(seeds.entropy, spawn_key=entropy))
-        store = Store(start, RobotState(robot.number, 0.0, 0.0), rng=rng, team=teams[robot.team])
+        store = Store(start, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
         players.append(Player(robot, TreeRunner(setup.build_tree(), store, scenario.on_error), store))
     return players
 

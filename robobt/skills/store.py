@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point
 from robobt.world.state import Frame, RobotState
@@ -93,7 +91,6 @@ class Store:
         frame: what is on the field, from the own team's side.
         me: the robot this tree moves.
         command: what is sent to it after the tick.
-        rng: the tree's generator; the only randomness a leaf may use.
         team: what the team shares.
         target: where a skill wants the robot or the ball to go [m].
         shot: the shot selected last, None without one.
@@ -104,7 +101,6 @@ class Store:
     frame: Frame
     me: RobotState
     command: RobotCommand = field(default_factory=RobotCommand)
-    rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
     team: TeamStore = field(default_factory=TeamStore)
     target: Point | None = None
     shot: Shot | None = None
@@ -117,5 +113,5 @@ class Store:
         return self.frame.time
 
 
-GIVEN = ("frame", "me", "command", "rng", "team", "time")
+GIVEN = ("frame", "me", "command", "team", "time")
 """The entries of a :class:`Store` that are there without any leaf's doing."""

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from math import cos, hypot, sin
 from typing import Any
 
+import numpy as np
+
 from robobt.match import Scenario
 from robobt.plays import PLAYS
 from robobt.skills.base import Skill
@@ -52,8 +54,7 @@ class Scripted(Skill):
         if me.ball_contact:
             self.store.command = RobotCommand(kick_speed=self.kick)
             return self.run("kicks")
-        jitter = 1.0 + 0.1 * float(self.store.rng.random())
-        speed = min(self.speed * jitter, (gap - MOUTH) / self.frame.period)
+        speed = min(self.speed, (gap - MOUTH) / self.frame.period)
         dx, dy = (ball.x - me.x) / max(gap, 1e-9), (ball.y - me.y) / max(gap, 1e-9)
         c, s = cos(me.heading), sin(me.heading)
         self.store.command = RobotCommand(speed * (c * dx + s * dy), speed * (c * dy - s * dx))
@@ -73,11 +74,12 @@ if "scripted" not in PLAYS:
 
 
 class PlainWorld(World):
-    """Robots that do what they are told at once and a ball that rolls without friction."""
+    """Robots that drive at once, a little slower by the seed, and a ball that rolls without friction."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.field, self.period = scenario.field, scenario.period
         self.ticks = 0
+        self.pace = 1.0
         self.robots: dict[RobotId, tuple[float, float, float]] = {}
         self.ball = (0.0, 0.0, 0.0, 0.0)
         self.touch: RobotId | None = None
@@ -85,6 +87,7 @@ class PlainWorld(World):
 
     def reset(self, placement: Placement, seed: int) -> None:
         self.robots, self.ball = dict(placement.robots), placement.ball
+        self.pace = 1.0 - 0.1 * float(np.random.default_rng(seed).random())
 
     def observe(self) -> Frame:
         return self.truth()
@@ -115,8 +118,8 @@ class PlainWorld(World):
                 self.touch = robot
             c, s = cos(heading), sin(heading)
             self.robots[robot] = (
-                rx + self.period * (c * command.vx - s * command.vy),
-                ry + self.period * (s * command.vx + c * command.vy),
+                rx + self.pace * self.period * (c * command.vx - s * command.vy),
+                ry + self.pace * self.period * (s * command.vx + c * command.vy),
                 wrap_angle(heading + self.period * command.omega),
             )
         self.ball = (x + self.period * vx, y + self.period * vy, vx, vy)

@@ -35,8 +35,8 @@ def test_a_robot_that_reaches_the_ball_and_kicks_it_scores():
     assert result.outcome == "goal_blue"
     assert (result.blue_score, result.yellow_score) == (1, 0)
     figures = result.robots["blue 0"]
-    # 1.9 m at 1 m/s and up to a tenth more, then one tick until the ball has left.
-    assert figures.go_to_ball == pytest.approx(1.9 / 1.05, rel=0.05)
+    # 1.9 m at 1 m/s and up to a tenth less, then one tick until the ball has left.
+    assert figures.go_to_ball == pytest.approx(1.9 / 0.95, rel=0.06)
     assert figures.shoot == pytest.approx(0.02)
     assert figures.total == pytest.approx(figures.go_to_ball + 0.02)
     assert (figures.kicks, figures.errors) == (1, 0)
@@ -203,18 +203,8 @@ class TestRepeatability:
     def test_another_seed_is_another_match(self):
         assert play(1, **self.RANDOM).trace != play(2, **self.RANDOM).trace
 
-    def test_the_trace_sees_the_trees_random_numbers(self):
+    def test_the_trace_sees_the_worlds_random_numbers(self):
         assert play(1).trace != play(2).trace
-
-    def test_another_robot_does_not_change_anybody_elses_random_numbers(self):
-        alone = Match(scenario(), 3, PlainWorld)
-        both = Match(scenario(robots={"blue": [robot(1, y=2.0), robot()]}), 3, PlainWorld)
-        assert alone.players[0].store.rng.random() == both.players[1].store.rng.random()
-
-    def test_team_mates_and_opponents_draw_different_random_numbers(self):
-        robots = {"blue": [robot(), robot(1, y=2.0)], "yellow": [robot(), robot(1, y=2.0)]}
-        match = Match(scenario(robots=robots), 3, PlainWorld)
-        assert len({player.store.rng.random() for player in match.players}) == 4
 
     def test_recording_changes_nothing(self, tmp_path: Path):
         path = tmp_path / "match.robobt.arrows"
