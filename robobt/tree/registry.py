@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from importlib.metadata import EntryPoint, entry_points
 from types import ModuleType
-from typing import Generic, Self, TypeVar
+from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -63,15 +62,6 @@ class Registry(Generic[T]):
             return entry
 
         return enter
-
-    @contextmanager
-    def temporarily(self) -> Iterator[Self]:
-        """Undo, after this context, what is registered within it."""
-        undo = self.undo_point()
-        try:
-            yield self
-        finally:
-            undo()
 
     def undo_point(self) -> Callable[[], None]:
         """Return a function that undoes what is registered later, except other packages' entries."""

@@ -18,6 +18,7 @@ from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
 from tests.match.scripted import data
+from tests.registries import temporarily
 
 COMMANDS = (
     "match",
@@ -86,7 +87,7 @@ def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr(sys, "path", list(sys.path))
     path = tmp_path / "mine.py"
     path.write_text(MINE)
-    with PLAYS.temporarily(), SKILLS.temporarily():
+    with temporarily(PLAYS), temporarily(SKILLS):
         yield path
 
 

@@ -13,6 +13,7 @@ from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import import_file
 from robobt.worlds import sim_world
 from tests.match.recording.made_recording import record
+from tests.registries import temporarily
 
 
 @pytest.fixture
@@ -49,7 +50,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
     scenario["robots"]["blue"][0] |= {"play": "stands_still"}
     (tmp_path / "still.yaml").write_text(write_yaml(scenario))
     recorded, case = tmp_path / "still.robobt.arrows", tmp_path / "case.yaml"
-    with PLAYS.temporarily():
+    with temporarily(PLAYS):
         import_file(file)
         Match(load_scenario(tmp_path / "still.yaml").lasting(0.3), 3, sim_world, recorded).play()
     wanted = ["record", "case", str(recorded), "--tick", "3", "--robot", "blue 0", "--out", str(case)]
@@ -57,7 +58,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
     assert refused.exit_code == 1
     assert "stands_still" in refused.stderr
     python_files._imported.clear()
-    with PLAYS.temporarily():
+    with temporarily(PLAYS):
         saved = CliRunner().invoke(app, [*wanted, "--import", str(file)])
         assert saved.exit_code == 0, saved.stderr
         check_regression_case(case)

@@ -19,6 +19,7 @@ from robobt.plays import PLAYS
 from robobt.worlds import sim_world
 from tests.conftest import StartPython
 from tests.match.scripted import PlainWorld, Scripted, data
+from tests.registries import temporarily
 
 
 def scenario(**changes: Any) -> Scenario:
@@ -194,7 +195,7 @@ def test_a_play_that_only_this_process_has_is_said_so(monkeypatch: pytest.Monkey
     cell = ModuleType("cell")
     cell.notebook, notebook.__module__, notebook.__qualname__ = notebook, "cell", "notebook"  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "cell", cell)
-    with PLAYS.temporarily():
+    with temporarily(PLAYS):
         PLAYS.register("notebook")(notebook)
         robot = {"number": 0, "play": "notebook", "start": {"position": [-2.0, 0.0], "heading": 0.0}}
         played = scenario(robots={"blue": [robot], "yellow": []})

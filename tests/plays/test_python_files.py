@@ -20,6 +20,7 @@ from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
+from tests.registries import temporarily
 
 Write = Callable[..., Path]
 
@@ -58,7 +59,7 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
     monkeypatch.setattr(python_files, "_imported", {})
     monkeypatch.setattr(sys, "path", list(sys.path))
     before = set(sys.modules)
-    with PLAYS.temporarily(), SKILLS.temporarily(), RATERS.temporarily(), POLICIES.temporarily():
+    with temporarily(PLAYS), temporarily(SKILLS), temporarily(RATERS), temporarily(POLICIES):
 
         def make(source: str = MINE, name: str = "mine.py") -> Path:
             path = tmp_path / name

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from robobt.tree.discovery import import_all
+from tests.registries import temporarily
 
 
 def test_every_module_below_a_package_is_imported_in_order(
@@ -39,7 +40,7 @@ def test_a_new_skill_needs_no_list(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         "        return self.succeed()\n"
     )
     monkeypatch.setattr(robobt.skills, "__path__", [*robobt.skills.__path__, str(tmp_path)])
-    with SKILLS.temporarily():
+    with temporarily(SKILLS):
         import_all("robobt.skills", robobt.skills.__path__)
         assert "DroppedIn" in SKILLS
     assert "DroppedIn" not in SKILLS

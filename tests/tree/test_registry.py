@@ -14,6 +14,7 @@ from robobt.plays import PLAYS
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.tree import Registry
+from tests.registries import temporarily
 
 Install = Callable[[str, dict[str, str], dict[str, str]], None]
 
@@ -224,7 +225,7 @@ def test_skills_plays_and_raters_take_in_other_packages(registry: Registry[objec
 def test_what_is_registered_temporarily_is_gone_afterwards() -> None:
     registry = things()
     own = registry["own"]
-    with registry.temporarily() as same:
+    with temporarily(registry) as same:
         assert same is registry
         registry.register("guest")("guest")
         assert registry["guest"] == "guest"
@@ -234,7 +235,7 @@ def test_what_is_registered_temporarily_is_gone_afterwards() -> None:
 
 
 def _fail_with_a_guest(registry: Registry[object]) -> None:
-    with registry.temporarily():
+    with temporarily(registry):
         registry.register("guest")("guest")
         raise RuntimeError
 
@@ -249,6 +250,6 @@ def test_an_exception_takes_it_back_too() -> None:
 def test_what_other_packages_bring_while_something_is_temporary_stays(install: Install) -> None:
     install("extra", {"staying": "thing = object()\n"}, {"thing": "staying:thing"})
     registry = things()
-    with registry.temporarily():
+    with temporarily(registry):
         assert "thing" in registry
     assert list(registry) == ["own", "thing"]
