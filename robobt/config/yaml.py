@@ -1,4 +1,4 @@
-"""Plain data, with its positions, from YAML 1.2 that anybody may have written.
+"""Plain data, with its positions, from YAML 1.2 of unknown origin.
 
 Only what JSON has comes out: null, booleans, numbers, strings, lists and mappings with string
 keys, by the core schema of YAML 1.2 (``yes``, ``1:30`` and dates are strings, ``010`` is ten).
@@ -181,7 +181,7 @@ def _node(events: Iterator[Event], event: Event, depth: int) -> Marked:
 
 
 def _parts(events: Iterator[Event]) -> Iterator[Event]:
-    """Yield events up to the end of a collection; whoever asks consumes what belongs to each."""
+    """Yield events up to the end of a collection; the caller consumes what belongs to each."""
     for event in events:
         if not isinstance(event, NodeEvent):
             return

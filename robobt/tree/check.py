@@ -1,4 +1,4 @@
-"""Checks, before the first tick, that what the nodes of a tree read is written by somebody."""
+"""Checks, before the first tick, that what the nodes of a tree read is also written."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> Non
     Args:
         root: the tree.
         store: the class of the store it will be bound to.
-        given: entries that somebody outside the tree fills in.
+        given: entries that are filled in from outside the tree.
 
     Raises:
         WiringError: with everything that is wrong.
@@ -115,7 +115,7 @@ def _fits(verb: str, declared: object, kept: object) -> bool:
     if Any in (declared, kept):
         return True
     if verb == "reads":
-        # None is what an entry holds before anybody has written it.
+        # None is what an entry holds before it is written.
         source, target = members_of(kept) - {types.NoneType}, members_of(declared)
     else:
         source, target = members_of(declared), members_of(kept)

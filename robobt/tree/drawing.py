@@ -133,8 +133,8 @@ def tree_text(root: Behaviour, statuses: bool = False) -> str:
 
 
 def _text_lines(node: Behaviour, lead: str, below: str, statuses: bool) -> Iterator[str]:
-    told = describe(node)
-    line = f"{lead}{told.title}" + (f" ({told.remark})" if told.remark else "")
+    shown = describe(node)
+    line = f"{lead}{shown.title}" + (f" ({shown.remark})" if shown.remark else "")
     if statuses:
         feedback = "" if node.status is Status.INVALID else " ".join(node.feedback_message.split())
         line = f"{_MARKS[node.status]} {line}" + (f" — {feedback}" if feedback else "")
@@ -157,10 +157,10 @@ def tree_dot(root: Behaviour, statuses: bool = False) -> str:
     places: dict[Behaviour, int] = {}
     for place, node in enumerate(preorder(root)):
         places[node] = place
-        told = describe(node)
-        label = _dot_text("\n".join(part for part in (told.title, told.remark) if part))
-        shape = {"composite": "box", "decorator": "hexagon", "leaf": "ellipse"}[told.kind]
-        style = ' style="filled",' if told.kind != "composite" else ""
+        shown = describe(node)
+        label = _dot_text("\n".join(part for part in (shown.title, shown.remark) if part))
+        shape = {"composite": "box", "decorator": "hexagon", "leaf": "ellipse"}[shown.kind]
+        style = ' style="filled",' if shown.kind != "composite" else ""
         colour = f', color="{_COLOURS[node.status]}", penwidth=2' if statuses else ""
         lines.append(f"  n{place} [label={label},{style} shape={shape}{colour}];")
     lines += [f"  n{places[node]} -> n{places[child]};" for node in places for child in node.children]
@@ -181,7 +181,7 @@ class _Box:
     """A node's place in the drawing: its layer, the middle of its row and its width [px]."""
 
     node: Behaviour
-    told: NodeDescription
+    shown: NodeDescription
     layer: int
     y: float = 0.0
     width: float = 0.0
@@ -239,7 +239,7 @@ _STYLE = (
 def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
     """Place a subtree from ``row`` on and return the row after it; parents stand amid their children."""
     box = _Box(node, describe(node), layer)
-    texts = _text_width(box.told.title, 7.7), _text_width(box.told.remark, 6.2)
+    texts = _text_width(box.shown.title, 7.7), _text_width(box.shown.remark, 6.2)
     box.width = 22.0 + max(texts)
     boxes.append(box)
     after = row
@@ -256,21 +256,21 @@ def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
 
 
 def _svg_box(box: _Box, x: float, statuses: bool) -> str:
-    told, status = box.told, box.node.status
+    shown, status = box.shown, box.node.status
     top = box.y - _BOX / 2
-    radius = _BOX / 2 if told.kind == "leaf" else 7
+    radius = _BOX / 2 if shown.kind == "leaf" else 7
     # As a style: an attribute would be weaker than the style sheet.
     ticked = statuses and status is not Status.INVALID
     colour = f' style="stroke:{_COLOURS[status]};stroke-width:2.4"' if ticked else ""
     faint = ' opacity="0.5"' if statuses and not ticked else ""
-    base = box.y - 1.5 if told.remark else box.y + 4.5
-    glyph = f"<tspan>{_xml(told.glyph)}</tspan> " if told.glyph else ""
-    name = _xml(told.title.removeprefix(f"{told.glyph} "))
-    remark = f'<text class="r" x="{x + 11:g}" y="{box.y + 11:g}">{_xml(told.remark)}</text>'
+    base = box.y - 1.5 if shown.remark else box.y + 4.5
+    glyph = f"<tspan>{_xml(shown.glyph)}</tspan> " if shown.glyph else ""
+    name = _xml(shown.title.removeprefix(f"{shown.glyph} "))
+    remark = f'<text class="r" x="{x + 11:g}" y="{box.y + 11:g}">{_xml(shown.remark)}</text>'
     return (
-        f'<g{faint}><rect class="{told.kind}" x="{x:g}" y="{top:g}" width="{box.width:g}" height="{_BOX:g}" '
+        f'<g{faint}><rect class="{shown.kind}" x="{x:g}" y="{top:g}" width="{box.width:g}" height="{_BOX:g}" '
         f'rx="{radius:g}"{colour}/><text x="{x + 11:g}" y="{base:g}">{glyph}{name}</text>'
-        f"{remark if told.remark else ''}</g>"
+        f"{remark if shown.remark else ''}</g>"
     )
 
 

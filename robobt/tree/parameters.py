@@ -61,7 +61,7 @@ class Parameter:
         """Convert plain data to this parameter's type.
 
         The rules are those of strict JSON: a list fits a tuple and an integer a
-        float, but "1.5" is no number.
+        float, but "1.5" is not a number.
 
         Raises:
             ParameterError: it does not fit.
@@ -70,7 +70,7 @@ class Parameter:
         try:
             text = json.dumps(value)
         except (TypeError, ValueError, RecursionError) as error:
-            raise ParameterError(self.name, f"{short_repr(value)} is no plain data") from error
+            raise ParameterError(self.name, f"{short_repr(value)} is not plain data") from error
         try:
             return adapter.validate_json(text, strict=True)
         except ValidationError as error:
@@ -78,7 +78,7 @@ class Parameter:
             place = ".".join([self.name, *[str(part) for part in problem["loc"]]])
             raise ParameterError(place, f"{problem['msg']}, not {short_repr(problem['input'])}") from error
         except Exception as error:
-            # Validators are anybody's code, and an abstract model cannot be made at all.
+            # Validators run foreign code, and an abstract model cannot be made at all.
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
 
     def plain(self, value: object) -> Any:

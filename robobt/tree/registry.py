@@ -140,7 +140,7 @@ class Registry(Generic[T]):
         if isinstance(entry, ModuleType):
             return
         if self._fits is not None and not self._fits(entry):
-            raise TypeError(f"{_say(entry, None)} is no {self.kind}")
+            raise TypeError(f"{_say(entry, None)} is not a {self.kind}")
         # Importing its module may have entered it already, through a decorator.
         if point.name not in self._entries or self._entries[point.name] is not entry:
             self.register(point.name)(entry)

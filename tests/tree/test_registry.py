@@ -179,7 +179,7 @@ def test_what_is_of_another_kind_is_a_problem(install: Install) -> None:
     install("extra", {"odd_things": "thing = 3\n"}, {"odd": "odd_things:thing"})
     registry: Registry[object] = Registry("thing", group="test.things", fits=callable)
     assert list(registry) == []
-    assert "is no thing" in registry.problems[0]
+    assert "is not a thing" in registry.problems[0]
 
 
 def test_another_packages_duplicate_is_refused_and_both_are_named(install: Install) -> None:

@@ -38,10 +38,10 @@ class FastTree(BehaviourTree):
             handler(self)
         for visitor in self.visitors:
             visitor.initialise()
-        wanted = (self.root, any(not visitor.full for visitor in self.visitors))
-        if self._compiled is None or self._compiled_for != wanted:
-            self._compiled = compile_tree(self.root, self._visit if wanted[1] else None)
-            self._compiled_for = wanted
+        key = (self.root, any(not visitor.full for visitor in self.visitors))
+        if self._compiled is None or self._compiled_for != key:
+            self._compiled = compile_tree(self.root, self._visit if key[1] else None)
+            self._compiled_for = key
         try:
             self._compiled()
         except BaseException:

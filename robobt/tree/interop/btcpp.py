@@ -1,6 +1,6 @@
 """The tags of BehaviorTree.CPP and the nodes that do the same.
 
-docs/tree_files.md has the table and says where the same is not quite the same.
+docs/tree_files.md has the table and lists where they differ in detail.
 """
 
 from __future__ import annotations

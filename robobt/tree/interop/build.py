@@ -1,4 +1,4 @@
-"""From what a tree file says to the tree."""
+"""Builds the trees of a tree file."""
 
 from __future__ import annotations
 
@@ -154,7 +154,9 @@ class _Builder:
                     name, f"{known.name} uses the entry {name!r} and cannot be wired to {value.entry!r}"
                 )
         elif name not in known.parameters:
-            raise ParameterError(name, f"is an entry that {known.name} uses; it takes {{{name}}}, no value")
+            raise ParameterError(
+                name, f"is an entry that {known.name} uses; it takes {{{name}}}, not a value"
+            )
         return False
 
     def _check_entry(self, entry: Entry) -> None:
@@ -162,7 +164,7 @@ class _Builder:
         if store is not None and entry.entry not in entries_of(store):
             raise ParameterError(
                 entry.entry,
-                f"is no parameter of the tree, and {store.__name__} has no such entry; "
+                f"is not a parameter of the tree, and {store.__name__} has no such entry; "
                 f"there are {', '.join(entries_of(store))}",
             )
 

@@ -1,4 +1,4 @@
-"""From a tree to what a tree file says."""
+"""Describes a tree as the content of a tree file."""
 
 from __future__ import annotations
 

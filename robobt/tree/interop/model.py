@@ -1,4 +1,4 @@
-"""What a tree file says, whichever language it is written in."""
+"""The content of a tree file, whichever language it is written in."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class FilePlay:
     checked and called as a play that is written in Python.
 
     Attributes:
-        file: what the file says.
+        file: content of the file.
     """
 
     def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
@@ -43,7 +43,7 @@ class FilePlay:
                 annotation=entry.hint,
             )
             for entry in main.parameters.values()
-            # What is no plain data of a known type is XML's own affair.
+            # Defaults that name entries, or whose type is unknown, exist only in XML.
             if not isinstance(entry.default, Name | Text)
         ]
         self.__annotations__ = {entry.name: entry.annotation for entry in entries}

@@ -1,4 +1,4 @@
-"""Checks all that a tree file says, whether it would be built or not."""
+"""Checks the whole content of a tree file, whether or not it would be built."""
 
 from __future__ import annotations
 

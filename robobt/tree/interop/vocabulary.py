@@ -128,7 +128,7 @@ class Vocabulary:
                 first = first or error
                 if self._is_refused(parameter, value):
                     raise
-        raise ParameterError(parameter.name, f"{short_repr(text)} is no {parameter.kind}") from first
+        raise ParameterError(parameter.name, f"{short_repr(text)} is not of type {parameter.kind}") from first
 
     def to_text(self, parameter: Parameter | None, value: object) -> str:
         """Return the text that :meth:`from_text` reads as this plain data."""

@@ -1,4 +1,4 @@
-"""XML elements, with lines, out of a text that anybody may have written.
+"""XML elements, with lines, from text of unknown origin.
 
 No document type, no entities, no processing instructions: there is no file
 beside this one and nothing grows as it is read.
@@ -55,7 +55,7 @@ def read_element(content: bytes | str, source: str) -> Element:
     try:
         reader.parser.Parse(content, True)
     except expat.ExpatError as error:
-        problem = f"is no XML: {expat.ErrorString(error.code)}"
+        problem = f"is not XML: {expat.ErrorString(error.code)}"
         raise TreeFileError(source, problem, line=error.lineno) from error
     except (LookupError, UnicodeError, ValueError) as error:
         # An encoding that does not exist, or that the text does not keep to.

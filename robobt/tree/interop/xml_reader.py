@@ -30,7 +30,7 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
     """Return the trees of an XML text.
 
     The main tree is what ``main_tree_to_execute`` names, else the only tree, else
-    the one that is no other's sub-tree.
+    the one that is not a sub-tree of another.
 
     Args:
         text: the text.
@@ -217,7 +217,7 @@ class _Reader(ElementChecker):
         if shown not in TAGS and shown not in OTHER_TAGS and tags_of(kind.name):
             raise self.error(element, f"<{shown}> is written {' or '.join(tags_of(kind.name))} in XML")
         if long_form and element.tag not in long_tags(kind):
-            raise self.error(element, f"{shown} is no <{element.tag}> but a <{long_tags(kind)[0]}>")
+            raise self.error(element, f"{shown} is not a <{element.tag}> but a <{long_tags(kind)[0]}>")
         return shown, tag, kind
 
     def _branches(self, element: Element, node: Node, kind: NodeType, cases: str | None) -> None:
@@ -246,7 +246,7 @@ class _Reader(ElementChecker):
             node.branches[branch] = children[0]
 
     def _model(self, model: Element, trees: dict[str, Definition]) -> None:
-        """Look at the palette; what it says of sub-trees counts."""
+        """Check the palette and take over the ports it gives to sub-trees."""
         self.attributes(model, (), ())
         self.no_text(model)
         for part in model.children:
@@ -274,7 +274,7 @@ class _Reader(ElementChecker):
         try:
             hint = hint_of(port.attributes.get("type", ""))
         except ValueError:
-            # A type of somebody's C++; what it means shows where the port is used.
+            # A C++ type; what it means shows where the port is used.
             hint = Any
         parameter = Parameter(name, hint)
         if text is None:
@@ -291,7 +291,7 @@ class _Reader(ElementChecker):
     def _pointer(self, element: Element, attribute: str, text: str) -> Name:
         name = attribute if text == "{=}" else text[1:-1].strip()
         if not _POINTER.fullmatch(name):
-            raise self.error(element, f"{attribute}: {text} is no name of an entry")
+            raise self.error(element, f"{attribute}: {text} is not the name of an entry")
         return Name(name)
 
 

@@ -101,7 +101,7 @@ class _Writer:
         if attribute is not None and attribute.milliseconds and isinstance(value, int | float):
             milliseconds = value * 1000.0
             if not isfinite(milliseconds) or round(milliseconds) / 1000.0 != value:
-                raise ValueError(f"{value} s is no whole number of milliseconds, as XML has it")
+                raise ValueError(f"{value} s is not a whole number of milliseconds, which XML needs")
             return str(round(milliseconds))
         return self._text(parameter, value)
 

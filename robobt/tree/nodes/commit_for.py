@@ -1,4 +1,4 @@
-"""Staying with a decision for a while: a reactive selector that keeps its child's word."""
+"""Staying with a decision for a while: a reactive selector that keeps to its child."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class CommitFor(Decorator, Bound[HasTime]):
         seconds: how long, from the first tick of a run [s].
 
     Raises:
-        RuntimeError: at the first tick, when it is no branch of a CommittingSelector.
+        RuntimeError: at the first tick, when it is not a branch of a CommittingSelector.
     """
 
     def __init__(self, name: str, child: Behaviour, *, seconds: float) -> None:

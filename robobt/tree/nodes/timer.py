@@ -8,7 +8,7 @@ _SLACK = 1e-9
 
 
 class HasTime(Protocol):
-    """A store that tells the time; timed nodes are bound to one like leaves."""
+    """A store that has the time; timed nodes are bound to one like leaves."""
 
     @property
     def time(self) -> float:
@@ -17,7 +17,7 @@ class HasTime(Protocol):
 
 
 class Timer:
-    """Runs for a while once started, on a clock that it is told.
+    """Runs for a while once started, on a clock that its caller reads.
 
     A clock that has gone backwards (a new match on an old tree) ends it, so that
     nothing waits for a time that is long past.
