@@ -90,10 +90,10 @@ def fill_commands(
     scaling: ActionScaling = numbers.view(_SCALING)[0]
     for i in range(len(actions)):
         action, command = actions[i], commands[i]
-        if not isfinite(action.sum()):
-            return False
         command[:] = 0.0
         if drive:
+            if not isfinite(action[0] + action[1] + action[2]):
+                return False
             x, y = min(max(action[0], -1.0), 1.0), min(max(action[1], -1.0), 1.0)
             # A vector longer than 1 is shortened to 1.
             norm = max(hypot(x, y), 1.0)
@@ -101,6 +101,8 @@ def fill_commands(
             command[1] = scaling.max_speed * y / norm
             command[2] = scaling.max_turn * min(max(action[2], -1.0), 1.0)
         else:
+            if not isfinite(action[0] + action[1]):
+                return False
             command[2] = scaling.max_turn * min(max(action[0], -1.0), 1.0)
             if action[1] > 0.0:
                 command[3] = scaling.kick_speed * kick_factors[i]

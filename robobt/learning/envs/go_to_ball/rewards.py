@@ -11,7 +11,7 @@ from pydantic import Field
 
 from robobt.learning.envs.settings import Settings
 from robobt.learning.envs.task import FloatArray
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
 
 _BELL = 1.0 / sqrt(2.0 * pi)
@@ -28,7 +28,7 @@ class GoToBallReward(Settings):
     time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
 
 
-@compiled
+@compilable
 def reward(
     weights: GoToBallReward,
     robot: FloatArray,

@@ -13,7 +13,7 @@ from pydantic import Field
 from robobt.learning.envs.progress import Progress
 from robobt.learning.envs.settings import Settings
 from robobt.learning.envs.task import FloatArray
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
 
 
@@ -45,7 +45,7 @@ SHOOT_REWARDS: dict[str, ShootReward] = {
 """Rewards by name: the authors' code, the paper's equations alone, Eq. 12 and the goal, the goal and time."""
 
 
-@compiled
+@compilable
 def reward(
     weights: ShootReward,
     firing_counts: bool,

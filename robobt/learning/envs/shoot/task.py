@@ -26,8 +26,7 @@ _ROBOT_BACK_LIMIT = -0.2
 
 
 class ShootTask(ArenaTask):
-    """Turn and kick the ball into the goal; the specification is
-    :class:`~robobt.learning.envs.ShootTowardsGoalEnv`.
+    """Turn and kick the ball into the goal; :class:`~robobt.learning.envs.ShootTowardsGoalEnv` specifies it.
 
     Args:
         settings: of the environment.
