@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from robobt.sim import SimSettings, SimWorld, preset
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner
@@ -125,9 +123,7 @@ class Trial:
         for robot, tree in trees.items():
             me = views[robot.team].robot(robot.number)
             assert me is not None
-            self.stores[robot] = Store(
-                views[robot.team], me, rng=np.random.default_rng([seed, robot.number]), team=teams[robot.team]
-            )
+            self.stores[robot] = Store(views[robot.team], me, team=teams[robot.team])
             self.runners[robot] = TreeRunner(tree, self.stores[robot])
         self.frames: list[Frame] = [frame]
         self.kicks: list[tuple[float, RobotId]] = []

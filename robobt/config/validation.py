@@ -8,7 +8,7 @@ from typing import get_args
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from robobt.config.errors import FieldError, message_of, short_repr
+from robobt.config.errors import FieldError, message_of, one_line, short_repr
 
 
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
@@ -36,7 +36,7 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     elif not isinstance(problem["input"], Mapping | list):
         message = f"{message}, not {short_repr(problem['input'])}"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-    return ".".join(place), message[:1].lower() + message[1:] + more
+    return one_line(".".join(place), 200), message[:1].lower() + message[1:] + more
 
 
 def _most_telling(problems: list[ErrorDetails]) -> ErrorDetails:

@@ -26,8 +26,8 @@ def compiled(function: Function) -> Function:
 
 
 def compilable(function: Function) -> Function:
-    """Leave a function as it is for Python, which calls it faster so, and inline it in compiled code."""
-    return register_jitable(inline="always")(function)
+    """Leave a function as it is for Python, which calls it faster so, and let compiled code call it too."""
+    return register_jitable(function)
 
 
 def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
