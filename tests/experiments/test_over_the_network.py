@@ -52,7 +52,7 @@ def test_the_deployed_attackers_play_on_a_served_field() -> None:
 def test_over_the_network_there_is_one_worker() -> None:
     shown = CliRunner().invoke(app, ["paper", "deployed", "-n", "1", "-w", "2", "--world", "league://grsim"])
     assert shown.exit_code == 2
-    assert "one worker" in " ".join(shown.output.split())
+    assert "must be 1 to play over" in " ".join(shown.output.split())
 
 
 @pytest.mark.parametrize("table", ["table4", "deployed"])

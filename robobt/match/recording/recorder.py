@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -85,8 +86,14 @@ class Recorder:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with naming(self.path):
             self._file = self.path.open("wb", _BUFFER)
-            self._writer = new_stream(self._file, self.header)
-            self._file.flush()
+            try:
+                self._writer = new_stream(self._file, self.header)
+                self._file.flush()
+            except BaseException:
+                # What is buffered cannot be written either.
+                with suppress(OSError):
+                    self._file.close()
+                raise
 
     def __enter__(self) -> Self:
         return self
