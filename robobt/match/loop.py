@@ -122,7 +122,8 @@ class Match:
             self.game = truth.game
         truth.game = self.game
         self.measures.update(truth, self.game, self._commands)
-        self._trace.update(truth, self.game)
+        packed = truth.packed()
+        self._trace.update(packed, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
@@ -133,7 +134,7 @@ class Match:
             self._trace.event(self.outcome)
             self._commands = {}
         if self._recorder is not None:
-            self._record(self._recorder, truth, frame)
+            self._record(self._recorder, truth, packed, frame)
         if self.outcome is not None:
             return False
         self.world.act(self._commands)
@@ -226,7 +227,7 @@ class Match:
         state = self.world.truth().seen_by(robot.team).robot(robot.number)
         return DEFAULT_LIMITS if state is None else state.limits
 
-    def _record(self, recorder: Recorder, truth: Frame, observed: Frame) -> None:
+    def _record(self, recorder: Recorder, truth: Frame, packed: bytes, observed: Frame) -> None:
         for robot in self.measures.kicked:
             recorder.event("kick", truth.time, robot=robot)
         if self.outcome is not None and self.outcome in _END_EVENTS and self._referee is None:
@@ -234,7 +235,7 @@ class Match:
             recorder.event(kind, truth.time, team=team)
         # What a world shows that may differ from the truth is compared when it is written.
         shown = None if self.world.shows_truth else observed
-        recorder.tick(truth, self._commands, shown)
+        recorder.tick(truth, self._commands, shown, packed)
 
 
 def play_match(

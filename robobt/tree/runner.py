@@ -12,7 +12,7 @@ from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
 from robobt.config.errors import RobobtError
-from robobt.tree.engine import Tick, Visit, VisitSome, abandon, compile_tree
+from robobt.tree.engine import Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -59,7 +59,7 @@ class TreeRunner:
         self._failed: Behaviour | None = None
         self._stock = False
         self._visitor: VisitorBase | None = None
-        self._noted: VisitSome | None = None
+        self._marks: Marks | None = None
         bind(root, store)
         self._tick = compile_tree(root)
 
@@ -106,30 +106,41 @@ class TreeRunner:
         self._visitor = visitor
         self._renew()
 
-    def note_ticked(self, nodes: Iterable[Behaviour]) -> list[Behaviour]:
-        """Keep a list of the nodes that the last tick reached, at least of these, from now on."""
-        self._noted = VisitSome(nodes)
+    def mark(self, nodes: Iterable[Behaviour]) -> Marks:
+        """Note what changes in the tree from now on.
+
+        Args:
+            nodes: of all nodes of the tree at least these are noted when they are ticked; the
+                notes are those of the last tick.
+        """
+        self._marks = Marks(nodes)
         self._renew()
-        return self._noted.seen
+        return self._marks
 
     def _renew(self) -> None:
         """Compile the tree for whoever watches its nodes."""
-        visitor, noted = self._visitor, self._noted
-        visit: Visit | None = noted
+        visitor, marks = self._visitor, self._marks
+        visit: Visit | None = marks
         if visitor is not None:
             run: Visit = visitor.run
 
             def visit_both(node: Behaviour) -> None:
-                if noted is not None:
-                    noted(node)
+                if marks is not None:
+                    marks(node)
                 run(node)
 
             visit = visit_both
         inner = self._by_py_trees(visit) if self._stock else compile_tree(self.root, visit)
+        blind = self._stock or visit is not marks
+        if visitor is None and (marks is None or not (blind or marks.nodes)):
+            self._tick = inner
+            return
 
         def tick() -> Status:
-            if noted is not None:
-                noted.seen.clear()
+            if marks is not None:
+                marks.seen.clear()
+                if blind:
+                    marks.changed = True
             if visitor is None:
                 return inner()
             visitor.initialise()
@@ -138,7 +149,7 @@ class TreeRunner:
             finally:
                 visitor.finalise()
 
-        self._tick = inner if visit is None else tick
+        self._tick = tick
 
     def _by_py_trees(self, visit: Visit | None) -> Tick:
         def tick() -> Status:
@@ -161,6 +172,8 @@ class TreeRunner:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
+        if self._marks is not None:
+            self._marks.changed = True
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """Return the node that raised, and what it is, with the line of the skill's file."""

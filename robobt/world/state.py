@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot, pi
+from struct import pack
 from typing import NamedTuple
 
 from robobt.world.field import FieldGeometry
@@ -122,6 +123,20 @@ class Frame:
         """Return every robot on the field by team and number."""
         own = {RobotId(self.team, robot.id): robot for robot in self.own}
         return own | {RobotId(self.team.other, robot.id): robot for robot in self.opponents}
+
+    def packed(self) -> bytes:
+        """Return all of its numbers but the game's, as little-endian float64.
+
+        Time; x, y, vx, vy of the ball; how many own robots there are, and the id, x, y, heading,
+        vx, vy, omega and ball contact of each; the same of the opponents.
+        """
+        ball = self.ball
+        numbers = [self.time, ball.x, ball.y, ball.vx, ball.vy]
+        for robots in (self.own, self.opponents):
+            numbers.append(len(robots))
+            for it in robots:
+                numbers += (it.id, it.x, it.y, it.heading, it.vx, it.vy, it.omega, it.ball_contact)
+        return pack(f"<{len(numbers)}d", *numbers)
 
     def others(self, number: int) -> list[RobotState]:
         """Return every robot on the field but the own one with this number."""

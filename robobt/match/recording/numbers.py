@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import chain
 from math import nan
+from struct import pack
 
 import numpy as np
 import pyarrow as pa
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from robobt.match.recording.header import RobotFlag
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import Team
-from robobt.world.state import Frame, RobotId
+from robobt.world.geometry import FloatArray
+from robobt.world.state import RobotId
 
 BALL = 4
 """Numbers of the ball: x, y, vx, vy."""
@@ -30,13 +31,7 @@ _POSE_STEPS = (2**-16, 2**-16, 2**-14, 2**-13, 2**-13, 2**-10, 1.0)
 _COMMAND_STEPS = (2**-10, 2**-10, 2**-10, 2**-10, 1.0)
 _FARTHEST = 1e4
 
-_NOWHERE = (nan,) * POSE
-_NO_COMMAND = (0.0,) * COMMAND
-# Plain integers: operators on flags are calls of Python.
-_COMMANDED = RobotFlag.COMMANDED.value
-_DRIBBLING = (RobotFlag.COMMANDED | RobotFlag.DRIBBLER).value
-_KICK = RobotFlag.KICK.value
-_KICK_NOW = (RobotFlag.KICK | RobotFlag.KICK_NOW).value
+_NO_COMMAND = RobotCommand()
 
 
 class TickNumbers:
@@ -48,43 +43,68 @@ class TickNumbers:
 
     def __init__(self, robots: Sequence[RobotId]) -> None:
         self._slots = {robot: slot for slot, robot in enumerate(robots)}
-        self._sides = [(robot.team is Team.YELLOW, robot.number) for robot in robots]
+        # As a match lists its commands, to look none of them up.
+        self._usual = sorted(robots, key=_team_and_number)
 
-    def poses(self, frames: Sequence[Frame]) -> pa.Array:
-        """Return the column ``truth`` or ``observed``."""
-        rows: list[tuple[float, ...]] = []
-        for frame in frames:
-            blue = frame.seen_by(Team.BLUE)
-            ball = blue.ball
-            rows.append((ball.x, ball.y, ball.vx, ball.vy))
-            sides = {it.id: it for it in blue.own}, {it.id: it for it in blue.opponents}
-            for side, number in self._sides:
-                it = sides[side].get(number)
-                rows.append(
-                    (it.x, it.y, it.heading, it.vx, it.vy, it.omega, it.ball_contact) if it else _NOWHERE
-                )
-        return _column(rows, len(frames), (*_BALL_STEPS, *_POSE_STEPS * len(self._slots)))
+    def poses(self, frames: Sequence[bytes]) -> pa.Array:
+        """Return the column ``truth`` or ``observed`` of frames from blue's side, packed."""
+        table = np.full((len(frames), BALL + POSE * len(self._slots)), nan)
+        alike: dict[int, list[int]] = {}
+        for tick, frame in enumerate(frames):
+            alike.setdefault(len(frame), []).append(tick)
+        for ticks in alike.values():
+            packed = np.frombuffer(b"".join([frames[tick] for tick in ticks]), "<f8")
+            self._fill(table, ticks, packed.reshape(len(ticks), -1))
+        return _column(table, (*_BALL_STEPS, *_POSE_STEPS * len(self._slots)))
 
     def commands(self, sent: Sequence[Mapping[RobotId, RobotCommand]]) -> pa.Array:
         """Return the column ``commands``."""
-        rows: list[tuple[float, ...]] = []
-        robots: list[RobotId] = []
-        slots: list[int | None] = []
+        usual, now = self._usual, KickTrigger.NOW
+        numbers: list[float] = []
         for commands in sent:
-            if list(commands) != robots:
-                # A team's hash is a call of Python, too slow to look up every robot at every tick.
-                robots = list(commands)
-                slots = [self._slots.get(robot) for robot in robots]
-            cells = [_NO_COMMAND] * len(self._slots)
-            for slot, it in zip(slots, commands.values(), strict=True):
-                if slot is None:
-                    continue
-                flags = _DRIBBLING if it.dribbler else _COMMANDED
-                if it.kick_speed:
-                    flags += _KICK_NOW if it.kick_trigger is KickTrigger.NOW else _KICK
-                cells[slot] = it.vx, it.vy, it.omega, it.kick_speed, flags
-            rows += cells
-        return _column(rows, len(sent), _COMMAND_STEPS * len(self._slots))
+            each = list(commands.values())
+            if list(commands) != usual:
+                each = [commands.get(robot, _NO_COMMAND) for robot in usual]
+            for it in each:
+                at_once, commanded = it.kick_trigger is now, it is not _NO_COMMAND
+                numbers += (it.vx, it.vy, it.omega, it.kick_speed, it.dribbler, at_once, commanded)
+        # Several times as fast as numpy makes an array of a list.
+        packed = np.frombuffer(pack(f"={len(numbers)}d", *numbers)).reshape(len(sent), len(usual), 7)
+        cells = packed[:, [usual.index(robot) for robot in self._slots]]
+        dribbling, at_once, commanded = [cells[:, :, i] != 0.0 for i in (4, 5, 6)]
+        kicking = cells[:, :, 3] != 0.0
+        table = cells[:, :, :COMMAND].copy()
+        table[:, :, -1] = (
+            RobotFlag.COMMANDED.value * commanded
+            + RobotFlag.DRIBBLER.value * dribbling
+            + RobotFlag.KICK.value * kicking
+            + RobotFlag.KICK_NOW.value * (kicking & at_once)
+        )
+        return _column(table.reshape(len(sent), -1), _COMMAND_STEPS * len(usual))
+
+    def _fill(self, table: FloatArray, ticks: list[int], packed: FloatArray) -> None:
+        """Enter packed frames of so many robots (frames, numbers) into the rows of their ticks."""
+        own = int(packed[0, 5])
+        robots = (packed.shape[1] - 7) // 8
+        places = [6 + 8 * i + (i >= own) for i in range(robots)]
+        numbers = packed[:, [5, *places]]
+        if (numbers != numbers[0]).any():
+            # As many robots, but others.
+            for i, tick in enumerate(ticks):
+                self._fill(table, [tick], packed[i : i + 1])
+            return
+        columns, taken = [*range(BALL)], [*range(1, 5)]
+        for i, place in enumerate(places):
+            robot = RobotId(Team.BLUE if i < own else Team.YELLOW, int(packed[0, place]))
+            if robot in self._slots:
+                at = BALL + POSE * self._slots[robot]
+                columns += range(at, at + POSE)
+                taken += range(place + 1, place + 8)
+        table[np.ix_(ticks, columns)] = packed[:, taken]
+
+
+def _team_and_number(robot: RobotId) -> tuple[bool, int]:
+    return robot.team is Team.YELLOW, robot.number
 
 
 def numbers_of(column: pa.FixedSizeListArray) -> NDArray[np.float32]:
@@ -93,10 +113,9 @@ def numbers_of(column: pa.FixedSizeListArray) -> NDArray[np.float32]:
     return np.where(np.abs(table) < _FARTHEST, table, np.float32(np.nan))
 
 
-def _column(rows: list[tuple[float, ...]], ticks: int, steps: tuple[float, ...]) -> pa.Array:
-    """Return the column of numbers that stand one after the other, rounded to what is kept of them."""
-    table = np.fromiter(chain.from_iterable(rows), np.float64, ticks * len(steps)).reshape(ticks, len(steps))
+def _column(table: FloatArray, steps: tuple[float, ...]) -> pa.Array:
+    """Return the column of a table (ticks, numbers), rounded to what is kept of them."""
     kept = np.where(np.abs(table) < _FARTHEST, table, nan)
     rounded = (np.rint(kept / steps) * steps).astype(np.float32)
     kind = pa.list_(pa.float32(), len(steps))
-    return pa.Array.from_buffers(kind, ticks, [None], children=[pa.array(rounded.reshape(-1))])
+    return pa.Array.from_buffers(kind, len(table), [None], children=[pa.array(rounded.reshape(-1))])

@@ -68,14 +68,17 @@ class Recorder:
         runners = runners or {}
         robots = tuple([_with_tree(robot, runners.get(robot.id)) for robot in header.robots])
         self.header = header.model_copy(update={"robots": robots})
-        self._trees = [(robot.id, TreeWatch(runners[robot.id])) for robot in robots if robot.id in runners]
+        self._trees = [
+            (robot.id, str(robot.id), TreeWatch(runners[robot.id])) for robot in robots if robot.id in runners
+        ]
         self._stores = stores_of(runners, stores or {})
         self._numbers = TickNumbers([robot.id for robot in robots])
         self._game: GameState | None = None
         self._touch: RobotId | None = None
         # What is still to be written.
-        self._frames: list[Frame] = []
-        self._observed: list[Frame] = []
+        self._times: list[float] = []
+        self._truth: list[bytes] = []
+        self._observed: list[bytes] = []
         self._commands: list[Mapping[RobotId, RobotCommand]] = []
         self._states: list[tuple[int, int, TreeState]] = []
         self._written: list[tuple[int, list[Written]]] = []
@@ -108,6 +111,7 @@ class Recorder:
         frame: Frame,
         commands: Mapping[RobotId, RobotCommand] | None = None,
         observed: Frame | None = None,
+        packed: bytes | None = None,
     ) -> None:
         """Record one frame, the commands decided on it and what the trees look like now.
 
@@ -117,16 +121,19 @@ class Recorder:
             frame: what really was.
             commands: what the robots were sent.
             observed: what the trees were shown where that was something else.
+            packed: the frame from blue's side, where it has been packed already.
         """
-        tick = len(self._frames)
+        tick = len(self._times)
         if tick == self._most_ticks:
             self._flush()
             tick = 0
-        # Frames and commands are made anew every tick, so it is enough to keep them.
-        self._frames.append(frame)
-        self._observed.append(frame if observed is None else observed)
+        truth = frame.seen_by(Team.BLUE).packed() if packed is None else packed
+        self._times.append(frame.time)
+        self._truth.append(truth)
+        self._observed.append(truth if observed is None else observed.seen_by(Team.BLUE).packed())
+        # They are made anew every tick, so it is enough to keep them.
         self._commands.append(commands or {})
-        for place, (_, watch) in enumerate(self._trees):
+        for place, (_, _, watch) in enumerate(self._trees):
             state = watch.look()
             if state is not None:
                 self._states.append((tick, place, state))
@@ -160,50 +167,59 @@ class Recorder:
 
         It belongs to the last tick; a recording without one stays incomplete.
         """
-        if self._frames:
-            self._changes[len(self._frames) - 1]["outcome"] = plain(outcome)
+        if self._times:
+            self._changes[len(self._times) - 1]["outcome"] = plain(outcome)
         self._release()
 
     def _flush(self) -> None:
         """Write the ticks that wait for it."""
-        ticks = len(self._frames)
+        ticks = len(self._times)
         if not ticks:
             return
         self._add_changes()
         if self._events:
             self._changes[ticks - 1]["events"] = self._events
         texts = [_encode(self._changes[tick]) if tick in self._changes else None for tick in range(ticks)]
-        truth = self._numbers.poses(self._frames)
-        shown = truth if self._observed == self._frames else self._numbers.poses(self._observed)
+        truth = self._numbers.poses(self._truth)
+        shown = truth if self._observed == self._truth else self._numbers.poses(self._observed)
         columns = [
-            pa.array([frame.time for frame in self._frames]),
+            pa.array(self._times),
             truth,
-            pa.nulls(ticks, truth.type) if shown.equals(truth) else shown,
+            pa.nulls(ticks, truth.type) if shown is truth else shown,
             self._numbers.commands(self._commands),
             # What is no Unicode text, as half a surrogate pair, becomes a question mark.
             pa.array([text and text.encode("utf-8", "replace") for text in texts], pa.string()),
         ]
-        for waiting in (self._frames, self._observed, self._commands, self._states, self._written):
+        for waiting in (
+            self._times,
+            self._truth,
+            self._observed,
+            self._commands,
+            self._states,
+            self._written,
+        ):
             waiting.clear()
         self._changes.clear()
         self._events = []
+        for _, _, watch in self._trees:
+            watch.look_again()
         with naming(self.path):
             self._writer.write_batch(pa.RecordBatch.from_arrays(columns, COLUMNS))
             self._file.flush()
 
     def _add_changes(self) -> None:
         for tick, place, state in self._states:
-            robot, watch = self._trees[place]
+            robot, name, watch = self._trees[place]
             change = watch.change(state)
             if change is None:
                 continue
             changes = self._changes[tick]
             if change.statuses is not None:
-                changes.setdefault("statuses", {})[str(robot)] = change.statuses
+                changes.setdefault("statuses", {})[name] = change.statuses
             if change.feedback:
-                changes.setdefault("feedback", {})[str(robot)] = change.feedback
+                changes.setdefault("feedback", {})[name] = change.feedback
             if change.error is not None:
-                self.event("error", self._frames[tick].time, robot=robot, text=change.error)
+                self.event("error", self._times[tick], robot=robot, text=change.error)
         for tick, written in self._written:
             values = self._stores.plain(written)
             if values:

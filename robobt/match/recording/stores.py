@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from enum import Enum
 from itertools import compress, count
 from math import isfinite
@@ -21,6 +21,7 @@ from robobt.world.state import Frame, RobotId
 _LONGEST_TEXT = 200
 _MOST_ITEMS = 100
 _DEEPEST = 6
+_CHANGEABLE = frozenset((list, set, dict))
 
 
 Values: TypeAlias = tuple[object, ...]
@@ -67,10 +68,11 @@ class StoreWatch:
             ]
             places = [*range(len(values))]
         for place in places:
-            # What may be changed in place is kept as a copy.
-            self._values[place] = tuple(
-                [value.copy() if isinstance(value, list | set | dict) else value for value in values[place]]
-            )
+            now = values[place]
+            if not _CHANGEABLE.isdisjoint(map(type, now)):
+                # What may be changed in place is kept as a copy.
+                now = tuple([value.copy() if type(value) in _CHANGEABLE else value for value in now])
+            self._values[place] = now
         return [(place, self._values[place]) for place in places]
 
     def plain(self, written: list[Written]) -> dict[str, dict[str, JsonValue]]:
@@ -126,10 +128,10 @@ def _plain(value: object, depth: int) -> JsonValue:
     if depth >= _DEEPEST:
         return "..."
     depth += 1
-    if is_dataclass(value):
-        return {each.name: plain(getattr(value, each.name), depth) for each in fields(value)}
     if isinstance(value, list | tuple):
         return [plain(item, depth) for item in value[:_MOST_ITEMS]]
+    if is_dataclass(value):
+        return {name: plain(getattr(value, name), depth) for name in value.__dataclass_fields__}
     if isinstance(value, Mapping):
         return {text_of(key): plain(item, depth) for key, item in [*value.items()][:_MOST_ITEMS]}
     if isinstance(value, set | frozenset):

@@ -87,25 +87,10 @@ class Trace:
     def __init__(self) -> None:
         self._hash = hashlib.blake2b(digest_size=16)
 
-    def update(self, truth: Frame, game: GameState) -> None:
-        """Take in the next true frame and the state of the game."""
-        ball = truth.ball
-        numbers = [truth.time, ball.x, ball.y, ball.vx, ball.vy]
-        for robots in (truth.own, truth.opponents):
-            numbers.append(len(robots))
-            for robot in robots:
-                numbers += (
-                    robot.id,
-                    robot.x,
-                    robot.y,
-                    robot.heading,
-                    robot.vx,
-                    robot.vy,
-                    robot.omega,
-                    robot.ball_contact,
-                )
-        numbers += (game.command, game.stage, game.blue_score, game.yellow_score, game.may_touch)
-        self._hash.update(pack(f"<{len(numbers)}d", *numbers))
+    def update(self, truth: bytes, game: GameState) -> None:
+        """Take in the next true frame, packed, and the state of the game."""
+        numbers = (game.command, game.stage, game.blue_score, game.yellow_score, game.may_touch)
+        self._hash.update(truth + pack("<5d", *numbers))
 
     def event(self, text: str) -> None:
         """Take in an event."""

@@ -15,7 +15,7 @@ What differs: the attribute ``iterator`` of a node is not renewed, and nothing
 is logged at debug level.
 """
 
-from robobt.tree.engine.closures import BringsClosures, Stop, Tick, Visit, VisitSome, not_a_status, own_method
+from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit, not_a_status, own_method
 from robobt.tree.engine.dispatch import compile_node, compile_tree
 from robobt.tree.engine.fast_tree import FastTree, abandon
 from robobt.tree.engine.plan import Plan, composite_stop, replan
@@ -24,11 +24,11 @@ from robobt.tree.engine.reach import stops_children, ticked_children
 __all__ = [
     "BringsClosures",
     "FastTree",
+    "Marks",
     "Plan",
     "Stop",
     "Tick",
     "Visit",
-    "VisitSome",
     "abandon",
     "compile_node",
     "compile_tree",

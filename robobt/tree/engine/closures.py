@@ -34,34 +34,61 @@ class BringsClosures(Protocol):
         """
 
 
-class VisitSome:
-    """A :data:`Visit` of some nodes of a tree only; the others lose no time over it.
+class Marks:
+    """A :data:`Visit` that need only be told of some nodes, so that all others lose no time over it.
+
+    Which nodes a tick reaches and what they have afterwards follows from what the leaves
+    return, as long as every node on the way is of a known kind. So a tick at which each
+    leaf returned what it did when it was ticked last has left the tree as it was, but for
+    what nodes say.
 
     Args:
-        nodes: the nodes that are visited.
+        nodes: the nodes that are asked for.
 
     Attributes:
+        nodes: those.
         seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among
             them; for its owner to clear.
+        changed: whether statuses, feedback or the nodes that are ticked may be others than before;
+            for its owner to set to False.
+        feedback: unless ``changed``, the nodes that gave other feedback than before, which is all
+            that is new; for its owner to clear.
     """
 
     def __init__(self, nodes: Iterable[Behaviour]) -> None:
-        self._chosen = {id(node) for node in nodes}
+        self.nodes = list(nodes)
+        self._asked = {id(node) for node in self.nodes}
         self.seen: list[Behaviour] = []
         self._note = self.seen.append
+        self.changed = True
+        self.feedback: list[Behaviour] = []
 
     def __call__(self, node: Behaviour) -> None:
         """Note that ``node`` has been ticked."""
         self._note(node)
 
     def of(self, node: Behaviour) -> Visit | None:
-        """Return what to call with this node; None when it was not chosen."""
-        return self._note if id(node) in self._chosen else None
+        """Return what to call with this node; None when it is not asked for."""
+        return self._note if id(node) in self._asked else None
+
+    def whenever(self, tick: Tick) -> Tick:
+        """Return a tick that marks the tree as changed, for nodes that are not followed."""
+
+        def changing() -> Status:
+            self.changed = True
+            return tick()
+
+        return changing
+
+
+def marks_of(visit: Visit | None) -> Marks | None:
+    """Return the marks among the visits, None where others are asked for."""
+    return visit if isinstance(visit, Marks) else None
 
 
 def shown(node: Behaviour, visit: Visit | None) -> Visit | None:
     """Return what to call when this node has been ticked, None for nothing."""
-    return visit.of(node) if isinstance(visit, VisitSome) else visit
+    return visit.of(node) if isinstance(visit, Marks) else visit
 
 
 def own_method(node: Behaviour, method: str) -> Hook | None:

@@ -14,6 +14,7 @@ from robobt.tree.engine.closures import (
     Stop,
     Tick,
     Visit,
+    marks_of,
     not_a_status,
     own_method,
     shown,
@@ -24,13 +25,15 @@ from robobt.tree.engine.plan import Plan, composite_stop, replan
 
 def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return what ``Sequence.tick`` and ``Sequence.stop`` do to a node."""
-    show = shown(node, visit)
+    marks, show = marks_of(visit), shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     children: list[Behaviour] = []
     plan: Plan = []
     stop = composite_stop(node, visit, children, plan)
+    began = 0
 
     def tick() -> Status:
+        nonlocal began
         if node.children != children:
             replan(node, visit, children, plan)
         start = 0
@@ -47,6 +50,10 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
                 initialise()
         elif node.memory and node.current_child is not None:
             start = children.index(node.current_child)
+        if start != began:
+            began = start
+            if marks is not None:
+                marks.changed = True
         status = SUCCESS
         for step in plan[start:] if start else plan:
             node.current_child = child = step.child
@@ -58,6 +65,15 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
+                if marks is not None:
+                    said = child.feedback_message
+                    if status is not step.status:
+                        marks.changed = True
+                        step.status, step.said = status, said if said.__class__ is str else None
+                    elif said is not step.said and (said.__class__ is not str or said != step.said):
+                        # A text made anew is often the same; of anything else nobody knows what != does.
+                        marks.feedback.append(child)
+                        step.said = said if said.__class__ is str else None
             if status is not SUCCESS:
                 if not node.memory and child is not children[-1]:
                     for later in plan[children.index(child) + 1 :]:
@@ -81,13 +97,15 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
 
 def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return what ``Selector.tick`` and ``Selector.stop`` do to a node."""
-    show = shown(node, visit)
+    marks, show = marks_of(visit), shown(node, visit)
     initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
     plan: Plan = []
     stop = composite_stop(node, visit, children, plan)
+    began = 0
 
     def tick() -> Status:
+        nonlocal began
         if node.children != children:
             replan(node, visit, children, plan)
         if node.status is not RUNNING:
@@ -101,6 +119,10 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
             for step in plan[:start]:
                 if step.child.status is not INVALID:
                     step.stop(INVALID)
+        if start != began:
+            began = start
+            if marks is not None:
+                marks.changed = True
         previous = node.current_child
         for step in plan[start:] if start else plan:
             child = step.child
@@ -112,6 +134,15 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
+                if marks is not None:
+                    said = child.feedback_message
+                    if status is not step.status:
+                        marks.changed = True
+                        step.status, step.said = status, said if said.__class__ is str else None
+                    elif said is not step.said and (said.__class__ is not str or said != step.said):
+                        # A text made anew is often the same; of anything else nobody knows what != does.
+                        marks.feedback.append(child)
+                        step.said = said if said.__class__ is str else None
             if status is RUNNING or status is SUCCESS:
                 node.current_child = child
                 if previous is not child:
@@ -208,6 +239,10 @@ def _parallel_status(node: Parallel, children: list[Behaviour], policy: Parallel
     raise RuntimeError(f"this parallel has been configured with an unrecognised policy [{type(policy)}]")
 
 
-register(Sequence, sequence_closures)
-register(Selector, selector_closures)
+def _without_hooks(node: Behaviour) -> bool:
+    return own_method(node, "initialise") is own_method(node, "terminate") is None
+
+
+register(Sequence, sequence_closures, _without_hooks)
+register(Selector, selector_closures, _without_hooks)
 register(Parallel, _parallel)

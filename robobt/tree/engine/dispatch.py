@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeAlias, TypeVar, cast
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from robobt.tree.engine.closures import BringsClosures, Stop, Tick, Visit, has_method_of
+from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit, has_method_of
 
 Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 
@@ -23,11 +23,14 @@ class Known(NamedTuple):
         tick: the method of py_trees whose nodes these are.
         stop: the same class's ``stop``.
         make: makes a node's closures.
+        followed: whether the closures of a node tell :class:`Marks` whatever else than its
+            children decides about it.
     """
 
     tick: object
     stop: object
     make: Make
+    followed: Callable[[Behaviour], bool]
 
 
 def compile_tree(root: Behaviour, visit: Visit | None = None) -> Tick:
@@ -45,17 +48,26 @@ def compile_tree(root: Behaviour, visit: Visit | None = None) -> Tick:
 
 def compile_node(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return functions that tick and stop this node and everything below it."""
-    return known_as(node).make(node, visit)
+    known = known_as(node)
+    tick, stop = known.make(node, visit)
+    if isinstance(visit, Marks) and not known.followed(node):
+        return visit.whenever(tick), stop
+    return tick, stop
 
 
-def register(cls: type[_N], make: Callable[[_N, Visit | None], tuple[Tick, Stop]]) -> None:
+def register(
+    cls: type[_N],
+    make: Callable[[_N, Visit | None], tuple[Tick, Stop]],
+    followed: Callable[[Behaviour], bool] = lambda _: False,
+) -> None:
     """Tick nodes that inherit ``tick`` and ``stop`` of a class by closures.
 
     Args:
         cls: the class.
         make: makes the closures of such a node.
+        followed: see :class:`Known`.
     """
-    _KNOWN.append(Known(cls.tick, cls.stop, make))
+    _KNOWN.append(Known(cls.tick, cls.stop, make, followed))
 
 
 def known_as(node: Behaviour) -> Known:
@@ -102,5 +114,5 @@ def is_known(node: Behaviour) -> bool:
 
 
 _KNOWN: list[Known] = []
-AS_IT_IS = Known(None, None, _as_it_is)
-_AS_IT_BRINGS = Known(None, None, _as_it_brings)
+AS_IT_IS = Known(None, None, _as_it_is, lambda _: False)
+_AS_IT_BRINGS = Known(None, None, _as_it_brings, lambda _: False)

@@ -15,6 +15,7 @@ from robobt.tree.engine.closures import (
     Tick,
     Visit,
     has_method_of,
+    marks_of,
     not_a_status,
     own_method,
     shown,
@@ -26,9 +27,12 @@ from robobt.tree.leaf import Leaf
 def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return what ``Behaviour.tick`` and ``Behaviour.stop`` do to a leaf."""
     initialise, update, terminate = lifecycle(node)
-    visit = shown(node, visit)
+    marks, visit = marks_of(visit), shown(node, visit)
+    last: Status | None = None
+    said: str | None = None
 
     def tick() -> Status:
+        nonlocal last, said
         if initialise is not None and node.status is not RUNNING:
             initialise()
         status = update()
@@ -37,6 +41,14 @@ def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         if terminate is not None and status is not RUNNING:
             terminate(status)
         node.status = status
+        if marks is not None:
+            now = node.feedback_message
+            if status is not last:
+                marks.changed = True
+                last, said = status, now if now.__class__ is str else None
+            elif now is not said and (now.__class__ is not str or now != said):
+                marks.feedback.append(node)
+                said = now if now.__class__ is str else None
         if visit is not None:
             visit(node)
         return status
@@ -73,17 +85,22 @@ def _inherits(leaf: Behaviour, method: str) -> bool:
 
 def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return what ``Decorator.tick`` and ``Decorator.stop`` do to a node."""
-    show = shown(node, visit)
+    marks, show = marks_of(visit), shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
+    last: Status | None = None
+    said: str | None = None
 
     def renew() -> None:
         nonlocal decorated, tick_child, stop_child
         decorated = node.decorated
         tick_child, stop_child = compile_node(decorated, visit)
+        if marks is not None:
+            marks.changed = True
 
     def tick() -> Status:
+        nonlocal last, said
         if initialise is not None and node.status is not RUNNING:
             initialise()
         if node.decorated is not decorated:
@@ -95,6 +112,14 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
         if status is not RUNNING:
             stop(status)
         node.status = status
+        if marks is not None:
+            now = node.feedback_message
+            if status is not last:
+                marks.changed = True
+                last, said = status, now if now.__class__ is str else None
+            elif now is not said and (now.__class__ is not str or now != said):
+                marks.feedback.append(node)
+                said = now if now.__class__ is str else None
         if show is not None:
             show(node)
         return status
@@ -156,7 +181,7 @@ def _one_shot(node: OneShot, visit: Visit | None) -> tuple[Tick, Stop]:
     return tick, stop
 
 
-register(Behaviour, leaf_closures)  # type: ignore[type-abstract]
-register(Decorator, decorator_closures)  # type: ignore[type-abstract]
+register(Behaviour, leaf_closures, followed=lambda _: True)  # type: ignore[type-abstract]
+register(Decorator, decorator_closures, followed=lambda _: True)  # type: ignore[type-abstract]
 register(EternalGuard, _eternal_guard)
 register(OneShot, _one_shot)

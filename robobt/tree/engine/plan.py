@@ -13,6 +13,7 @@ from robobt.tree.engine.closures import (
     INVALID,
     RUNNING,
     SUCCESS,
+    Marks,
     Stop,
     Tick,
     Visit,
@@ -31,16 +32,20 @@ class Step:
         tick, stop: its closures.
         update: set for a leaf of which nothing else is to be called, so that a
             composite may spare itself the closures.
+        status, said: what that leaf returned and said last, as far as anybody asks for it.
     """
 
-    __slots__ = ("child", "stop", "tick", "update")
+    __slots__ = ("child", "said", "status", "stop", "tick", "update")
 
     def __init__(self, child: Behaviour, visit: Visit | None, parent: Behaviour) -> None:
         self.child = child
         self.tick, self.stop = compile_node(child, visit)
         if type(parent).tick in _LEAVES_AT and known_as(child) is AS_IT_IS:
-            self.tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
+            tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
+            self.tick = visit.whenever(tick) if isinstance(visit, Marks) else tick
         self.update: Tick | None = None
+        self.status: Status | None = None
+        self.said: str | None = None
         if shown(child, visit) is None and known_as(child).make is leaf_closures:
             initialise, update, terminate = lifecycle(child)
             self.update = update if initialise is terminate is None else None
@@ -97,5 +102,7 @@ def composite_stop(node: Composite, visit: Visit | None, children: list[Behaviou
 def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
     """Bring a composite's closures up to its children; in place, for the closures share them."""
     known = {step.child.id: step for step in plan}
+    if isinstance(visit, Marks):
+        visit.changed = True
     children[:] = node.children
     plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]

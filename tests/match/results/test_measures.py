@@ -121,7 +121,7 @@ def test_the_ball_is_in_play_where_the_game_says_so_and_it_lies_in_the_field() -
 def test_a_trace_tells_matches_apart_by_their_states_and_events() -> None:
     def trace(x: float = 0.0, event: str = "", score: int = 0) -> str:
         made = Trace()
-        made.update(Frame(0.0, DIVISION_B, BallState(x, 0.0)), GameState(blue_score=score))
+        made.update(Frame(0.0, DIVISION_B, BallState(x, 0.0)).packed(), GameState(blue_score=score))
         if event:
             made.event(event)
         return made.hexdigest()
