@@ -8,10 +8,11 @@ import torch
 from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.nstep import Transitions
 from robobt.learning.agents.replay import Replay
+from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import StepResult
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import Problem, split_seed
-from robobt.learning.training.settings import AgentSettings, TrainSettings
+from robobt.learning.training.settings import TrainSettings
 
 torch.set_num_threads(1)
 

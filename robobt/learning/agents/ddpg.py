@@ -25,7 +25,7 @@ from torch import Tensor
 from robobt.learning.agents.distributional import Atoms
 from robobt.learning.agents.networks import Actor, Critic
 from robobt.learning.agents.replay import Batch, Bootstrap
-from robobt.learning.training.settings import AgentSettings
+from robobt.learning.agents.settings import AgentSettings
 
 
 class DDPG:

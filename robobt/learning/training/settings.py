@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from robobt.config.errors import ConfigError
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
+from robobt.learning.agents.settings import AgentSettings, Settings
 from robobt.learning.envs import GoToBallSettings, ShootSettings, TaskSettings
 
 _PRESETS = Path(__file__).parent / "presets"
@@ -27,54 +28,7 @@ class SettingsError(ConfigError):
     """Settings that cannot be used."""
 
 
-class _Settings(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class AgentSettings(_Settings):
-    """The agent. Every default is Spinning Up's DDPG; each other value switches something on.
-
-    ``n_step`` > 1, ``one_step_weight`` > 0 (DDPGfD's second loss), ``twin``,
-    ``actor_every`` > 1 and ``smoothing`` > 0 (TD3), ``atoms`` > 0 (C51, D4PG) and
-    ``layer_norm`` combine freely.
-    """
-
-    hidden: tuple[int, ...] = Field(
-        (256, 256), min_length=1, max_length=6, description="hidden layers' sizes"
-    )
-    layer_norm: bool = Field(False, description="normalise each hidden layer before its ReLU")
-    gamma: float = Field(0.99, gt=0, lt=1, description="discount a control step")
-    tau: float = Field(
-        0.005, gt=0, le=1, description="share by which targets move towards the online networks"
-    )
-    target_every: int = Field(1, ge=1, le=100_000, description="updates between the targets' moves")
-    actor_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the actor (Adam)")
-    critic_rate: float = Field(1e-3, gt=0, le=1, description="learning rate of the critic (Adam)")
-    final_rate: float = Field(1.0, gt=0, le=1, description="share of both rates left at the last step")
-    weight_decay: float = Field(0.0, ge=0, le=1, description="L2 regularisation of both networks")
-    n_step: int = Field(1, ge=1, le=50, description="rewards summed before bootstrapping")
-    one_step_weight: float = Field(
-        0.0, ge=0, le=100, description="weight of a one-step loss beside the n-step one (DDPGfD)"
-    )
-    twin: bool = Field(False, description="two critics, of which the smaller makes the target (TD3)")
-    actor_every: int = Field(1, ge=1, le=100, description="critic updates for one of the actor (TD3)")
-    smoothing: float = Field(0.0, ge=0, le=1, description="noise on the target's action (TD3)")
-    smoothing_limit: float = Field(0.5, gt=0, le=2, description="largest such noise")
-    atoms: int = Field(0, ge=0, le=1001, description="atoms of a distributional critic; 0 for a value")
-    returns: tuple[float, float] = Field((-170.0, 110.0), description="smallest and largest atom")
-    dqda_limit: float | None = Field(None, gt=0, description="largest dQ/da that the actor follows (D4PG)")
-    scale_observations: bool = Field(True, description="divide observations by the task's typical sizes")
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if self.atoms == 1 or not self.returns[0] < self.returns[1]:
-            raise ValueError("atoms must be 0 or at least 2, and returns rise")
-        if max(self.hidden) > 4096 or min(self.hidden) < 1:
-            raise ValueError("hidden layers have 1 to 4096 units")
-        return self
-
-
-class PrioritySettings(_Settings):
+class PrioritySettings(Settings):
     """Prioritised replay; off unless ``enabled``."""
 
     enabled: bool = False
@@ -84,7 +38,7 @@ class PrioritySettings(_Settings):
     dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the squared norm of dQ/da")
 
 
-class DemonstrationSettings(_Settings):
+class DemonstrationSettings(Settings):
     """Demonstrations in the replay before the agent's own steps; none unless ``episodes`` > 0.
 
     ``keep`` and a ``bonus`` make it DDPGfD; without them, in place of random
@@ -98,7 +52,7 @@ class DemonstrationSettings(_Settings):
     updates: int = Field(0, ge=0, le=1_000_000, description="updates on them alone, before the first step")
 
 
-class ReplaySettings(_Settings):
+class ReplaySettings(Settings):
     """The replay buffer and how it is sampled."""
 
     capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
@@ -113,7 +67,7 @@ class ReplaySettings(_Settings):
         return self
 
 
-class CollectionSettings(_Settings):
+class CollectionSettings(Settings):
     """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
 
     environments: int = Field(1, ge=1, le=4096, description="that run side by side")
@@ -130,7 +84,7 @@ class CollectionSettings(_Settings):
     )
 
 
-class EvaluationSettings(_Settings):
+class EvaluationSettings(Settings):
     """How progress is evaluated: by success and time, never by the return.
 
     A slow policy near the ball collects more reward than a fast one.
@@ -155,7 +109,7 @@ class EvaluationSettings(_Settings):
     stop_after: int = Field(1, ge=1, le=100, description="so often running")
 
 
-class TrainSettings(_Settings):
+class TrainSettings(Settings):
     """A training run: with a seed and a version it gives the same weights, bit for bit, on a machine."""
 
     task: str = Field(description="what is learned: go_to_ball or shoot")

@@ -8,7 +8,7 @@ from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.networks import Actor
 from robobt.learning.agents.nstep import Transitions
 from robobt.learning.agents.replay import PrioritisedReplay, Replay
-from robobt.learning.training.settings import AgentSettings
+from robobt.learning.agents.settings import AgentSettings
 from tests.learning.tiny import small_agent
 
 SWITCHES = [

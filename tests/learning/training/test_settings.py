@@ -3,10 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.config.yaml import parse_marked, write_yaml
+from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.training.compare import variants
 from robobt.learning.training.settings import (
     ENVIRONMENTS,
-    AgentSettings,
     SettingsError,
     TrainSettings,
     environment_of,
