@@ -62,7 +62,7 @@ def bench_league(
     Raises:
         RuntimeError: one of the processes died.
     """
-    endpoints = _free_endpoints()
+    endpoints = free_endpoints()
     context = multiprocessing.get_context("spawn")
     server_pipe, server_end = context.Pipe()
     player_pipe, player_end = context.Pipe()
@@ -108,7 +108,7 @@ def bench_league(
     }
 
 
-def _free_endpoints() -> Endpoints:
+def free_endpoints() -> Endpoints:
     """Return ports that are free at the moment, so that nothing else on this machine interferes."""
     names = [name for name in Endpoints.model_fields if name != "referee"]
     with ExitStack() as opened:

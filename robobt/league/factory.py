@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from robobt.config.errors import ConfigError, message_of
 from robobt.config.validation import first_problem
 from robobt.league.connection import Connection
+from robobt.league.known_field import KnownField
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.world import LeagueWorld
 from robobt.match.scenario.scenario import Scenario
@@ -74,6 +75,7 @@ class LeagueFactory:
     def __init__(self, address: str, settings: Callable[[Scenario], SimSettings]) -> None:
         self._connection, self._physics = parse_address(address)
         self._settings = settings
+        self._known = KnownField(self._connection.speed)
         self._world: LeagueWorld | None = None
 
     def __call__(self, scenario: Scenario) -> LeagueWorld:
@@ -85,7 +87,9 @@ class LeagueFactory:
         self.close()
         settings = self._settings(scenario) if self._physics is None else PRESETS[self._physics]
         robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
-        self._world = LeagueWorld(scenario.field, robots, settings, scenario.period, self._connection)
+        self._world = LeagueWorld(
+            scenario.field, robots, settings, scenario.period, self._connection, known=self._known
+        )
         return self._world
 
     def close(self) -> None:

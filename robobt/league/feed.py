@@ -8,8 +8,9 @@ from contextlib import ExitStack
 from math import pi
 
 from robobt.league.connection import Connection
-from robobt.league.estimate.clocks import CameraClocks, VisionClock
+from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
+from robobt.league.known_field import KnownField
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
@@ -28,6 +29,9 @@ ALL_CAMERAS = 0.002
 _HORIZON = 0.25
 """Longest prediction beyond the last capture [s]."""
 
+_UNEQUAL = 0.05
+"""A first guess of the rate that was off by this share has spoiled the cameras' offsets."""
+
 _MAX_READING = 0.004
 """How long useless packets are read at a time: a flood must not delay the commands [s]."""
 
@@ -41,13 +45,15 @@ class Feed:
         settings: physics to expect there.
         limits: of individual robots, where they differ.
         clock: monotonic seconds.
+        known: what earlier worlds of this field have found out.
 
     Attributes:
         filter: the estimate, in world coordinates.
         frames: how many camera frames were used.
         fresh: whether one was used since this was last set to False.
-        arrived: when the newest of them arrived [s].
-        heard: when a frame was last used [s].
+        arrived: when the newest of them arrived, as by :meth:`now` [s].
+        heard: when a frame was last used, as by :meth:`now` [s].
+        known: what is known of the field beyond this world.
         referee: the game controller's state, None without one.
     """
 
@@ -58,8 +64,10 @@ class Feed:
         settings: SimSettings,
         limits: Mapping[RobotId, RobotLimits],
         clock: Callable[[], float],
+        known: KnownField | None = None,
     ) -> None:
         self.connection = connection
+        self.known = known or KnownField(connection.speed)
         self.filter = VisionFilter(field, settings, limits)
         self.frames = 0
         self.fresh = False
@@ -67,8 +75,11 @@ class Feed:
         self.referee = RefereeFollower() if connection.follow_referee else None
         self._clock = clock
         self._cameras: dict[int, float] = {}
-        self._vision_clock, self._camera_clocks = VisionClock(), CameraClocks()
+        self._camera_clocks = CameraClocks()
+        self._delay = 0.0
         self._restarts = 0
+        self._now_at = clock()
+        self._now = self._now_at * connection.speed
         self._tracker: str | None = None
         endpoints, interface = connection.endpoints, connection.interface
         self._source = endpoints.vision if connection.source == "vision" else endpoints.tracker
@@ -90,17 +101,32 @@ class Feed:
             counts |= {"referee_port": self._sources[1].counts, "referee": self.referee.counts}
         return counts
 
+    @property
+    def rate(self) -> float:
+        """How fast the field's clock runs [s of the field per s]."""
+        return self.known.clock.rate
+
     def now(self) -> float:
-        """Return this machine's clock at the field's speed [s]."""
-        return self._clock() * self.connection.speed
+        """Return seconds that pass as fast as the field's, without its jumps; the origin is arbitrary."""
+        at = self._clock()
+        self._now += (at - self._now_at) * self.rate
+        self._now_at = at
+        return self._now
 
     def vision_now(self) -> float:
-        """Return the present time on the vision's clock [s]."""
-        captured, offset = self.filter.captured, self._vision_clock.offset()
-        if captured is None or offset is None:
-            return self.now()
-        there = self.now() - offset + self.connection.latency
-        return min(max(there, captured), captured + _HORIZON)
+        """Return the present time on the vision's clock [s].
+
+        It is never further beyond the last capture than the latency that was measured: the
+        delay that the timestamps show, that of the slower packets against the promptest, and
+        the time since the arrival.
+        """
+        now = self.now()
+        captured, there = self.filter.captured, self.known.clock.at(self._clock())
+        if captured is None or there is None:
+            return now
+        latency = self._delay + self.connection.latency + self.known.clock.jitter
+        longest = min(_HORIZON, latency + now - self.arrived)
+        return min(max(there + self.connection.latency, captured), captured + longest)
 
     def sign(self) -> float:
         """Return -1 where blue defends +x, and coordinates have to be turned by 180 degrees; else 1."""
@@ -124,7 +150,7 @@ class Feed:
         recent = [time for time in self._cameras.values() if time > captured - 0.5]
         if all(time > captured - period / 2 for time in recent):
             return True
-        return self.now() - self.arrived >= ALL_CAMERAS * self.connection.speed
+        return self.now() - self.arrived >= ALL_CAMERAS * self.rate
 
     def no_frames(self, seconds: float) -> str:
         """Return the error message for a field that was silent for so long."""
@@ -136,8 +162,8 @@ class Feed:
         """Wait up to ``wait`` seconds of this machine's clock for packets, and process them."""
         if not select.select(self._sources, [], [], max(0.0, wait))[0]:
             return
-        arrived = self.now()
-        end = self._clock() + _MAX_READING
+        arrived = self._clock()
+        end = arrived + _MAX_READING
         for packet in self._vision.receive():
             seen = self._read(packet.data)
             if seen is None:
@@ -154,24 +180,35 @@ class Feed:
 
     def add(self, frame: CameraFrame, arrived: float) -> None:
         """Use a camera's frame that arrived at a time of this machine's clock [s]."""
-        captured = self.filter.captured
-        apart = self._camera_clocks.shift(frame.camera, arrived, frame.sent)
+        captured, known = self.filter.captured, self.known
+        came = self.now() - (self._clock() - arrived) * self.rate
+        apart = self._camera_clocks.shift(frame.camera, came, frame.sent)
         frame.captured += apart
         frame.sent += apart
         if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame)):
             return
         self.frames += 1
-        self.heard = arrived
+        self.heard = came
         if self.filter.restarts != self._restarts:
             self._restarts = self.filter.restarts
-            self._vision_clock.clear()
+            known.restarted()
             self._camera_clocks.clear()
             self._cameras.clear()
-        self._vision_clock.update(arrived, frame.sent)
+        self._learn(arrived, frame.sent)
         if captured is None or frame.captured > captured or not self.fresh:
-            self.arrived = arrived
+            self.arrived = came
+            self._delay = frame.sent - frame.captured
         self.fresh = True
         self._cameras[frame.camera] = frame.captured
+
+    def _learn(self, arrived: float, sent: float) -> None:
+        """Learn from a packet how the field's clock runs."""
+        clock = self.known.clock
+        settled = clock.settled
+        clock.update(arrived, sent)
+        if clock.settled and not settled and abs(clock.rate - self.connection.speed) > _UNEQUAL * clock.rate:
+            self._camera_clocks.clear()
+        self.known.watch(arrived)
 
     def _read(self, data: bytes) -> VisionPacket | None:
         if self.connection.source == "vision":

@@ -42,7 +42,6 @@ class Placer:
         self, feed: Feed, link: Link, commanded: Callable[[], list[RobotId]], clock: Callable[[], float]
     ) -> None:
         self._feed, self._link, self._commanded, self._clock = feed, link, commanded, clock
-        self._speed = feed.connection.speed
 
     def place(self, placement: Placement) -> None:
         """Put everything in its place, where the field allows it, and wait until it is seen there.
@@ -55,7 +54,7 @@ class Placer:
         self._await_vision()
         if self._link.active:
             self._put(placement)
-        end = self._clock() + _SETTLING / self._speed
+        end = self._clock() + _SETTLING / self._feed.rate
         while self._clock() < end:
             self._feed.receive(end - self._clock())
 
@@ -93,7 +92,7 @@ class Placer:
             misplaced = self._misplaced(placement)
             if not misplaced and not strangers:
                 return
-            waited = now > began + _HIDDEN / self._speed
+            waited = now > began + _HIDDEN / self._feed.rate
             if misplaced == [_BALL] and not strangers and waited and self._ball_hidden(placement):
                 feed.filter.put_ball(*placement.ball[:2])
                 return
@@ -103,7 +102,7 @@ class Placer:
                     f"not seen where put within {TIMEOUT:g} s: {what}; "
                     "check that the simulator has these robots and accepts teleports"
                 )
-            if now > sent_at + _RESEND / self._speed:
+            if now > sent_at + _RESEND / self._feed.rate:
                 sent_at = now
                 self._link.place([*robots, *self._off_field(strangers)], ball)
             self._link.send({robot: RobotCommand() for robot in self._commanded()}, feed.now())

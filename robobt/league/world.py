@@ -11,6 +11,7 @@ from typing import Self
 
 from robobt.league.connection import Connection
 from robobt.league.feed import ALL_CAMERAS, Feed
+from robobt.league.known_field import KnownField
 from robobt.league.pacing import Pace
 from robobt.league.placing import Placer
 from robobt.league.wire.commands import clamp_command
@@ -29,6 +30,12 @@ _RATE = 60.0
 _STALE = 0.2
 """Robots are commanded to stop when no frame has come for this long [s]."""
 
+_SHORTEST = 1e-5
+"""Shortest wait for packets [s]."""
+
+_SLOWEST = 0.25
+"""Rate of a match's time while it waits for a field's clock that stood still."""
+
 
 class LeagueWorld(World):
     """Implements :class:`robobt.world.World` over SSL-Vision and a simulator's ports.
@@ -39,6 +46,9 @@ class LeagueWorld(World):
     frames for 0.2 s they stop the robots, as they do when this world is closed or its
     process ends.
 
+    All times but those of the attributes pass as on the field's own clock, whose rate is
+    measured: a simulator at half speed is played at half speed.
+
     Args:
         field: dimensions until the vision reports others.
         robots: limits of the robots that play; None as a limit takes the settings' own, and
@@ -47,11 +57,12 @@ class LeagueWorld(World):
         period: control period [s].
         connection: how the field is reached.
         clock: monotonic seconds; the only clock of this world.
+        known: what earlier worlds of the same field have found out about it.
         options: fields of :class:`Connection` by name, instead of ``connection``.
 
     Attributes:
-        send_times: when commands were sent, newest last [s].
-        latencies: from a frame's arrival to the commands that respond to it, newest last [s].
+        send_times: when commands were sent by ``clock``, newest last [s].
+        latencies: from a frame's arrival to the commands that respond to it by ``clock``, newest last [s].
 
     Raises:
         OSError: a port is taken, or no interface has the address.
@@ -66,6 +77,7 @@ class LeagueWorld(World):
         period: float = 1 / _RATE,
         connection: Connection | None = None,
         clock: Callable[[], float] = time.monotonic,
+        known: KnownField | None = None,
         **options: object,
     ) -> None:
         self.connection = connection or Connection.model_validate(options)
@@ -76,7 +88,8 @@ class LeagueWorld(World):
         self._robots = None if robots is None else sorted(robots)
         self._limits = {robot: limits for robot, limits in (robots or {}).items() if limits is not None}
         self._commands: dict[RobotId, RobotCommand] = {}
-        self._feed = Feed(self.connection, field, self.settings, self._limits, clock)
+        self._clock = clock
+        self._feed = Feed(self.connection, field, self.settings, self._limits, clock, known)
         try:
             self._link = self.connection.link()
         except OSError:
@@ -85,7 +98,8 @@ class LeagueWorld(World):
         self._placer = Placer(self._feed, self._link, self._commanded, clock)
         now = self._feed.now()
         self._pace = Pace(period, now)
-        self._sent_at = self._began = self._looked = self._looked_at = now
+        self._sent_at = self._looked = self._looked_at = now
+        self._restart_time()
         self._closed = False
         atexit.register(self.close)
 
@@ -103,9 +117,8 @@ class LeagueWorld(World):
         self._commands = {}
         self._feed.filter.clear()
         self._placer.place(placement)
-        self._began = self._looked = self._feed.now()
-        self._looked_at = self._feed.vision_now()
-        self._pace.restart(self._began)
+        self._restart_time()
+        self._pace.restart(self._looked)
         self._feed.fresh = False
 
     def observe(self) -> Frame:
@@ -136,16 +149,14 @@ class LeagueWorld(World):
         self._transmit()
         feed = self._feed
         if feed.fresh:
-            self.latencies.append((feed.now() - feed.arrived) / self.connection.speed)
+            self.latencies.append((feed.now() - feed.arrived) / feed.rate)
         # An immediate kick has been made; repeats of the command only drive.
         for robot, command in self._commands.items():
             if command.kick_trigger is KickTrigger.NOW:
                 self._commands[robot] = replace(command, kick_speed=0.0)
         self._wait()
         feed.filter.possession.feedback.update(self._link.feedback())
-        # All frames until the next act are of this instant.
-        self._looked = max(feed.now(), self._looked + 1e-6)
-        self._looked_at = feed.vision_now()
+        self._look()
 
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest; on a real field, a person has to."""
@@ -182,9 +193,29 @@ class LeagueWorld(World):
         playing = self._feed.filter.robots() if self._robots is None else self._robots
         return [robot for robot in playing if robot.team in self.connection.teams]
 
+    def _restart_time(self) -> None:
+        """Begin the match's time at 0, now."""
+        self._time = 0.0
+        self._looked, self._looked_at = self._feed.now(), self._feed.vision_now()
+        self._began = self._looked_at
+        self._restarts = self._feed.filter.restarts
+
+    def _look(self) -> None:
+        """Let all frames until the next act be of this instant."""
+        feed = self._feed
+        now, there = feed.now(), feed.vision_now()
+        elapsed = max(now - self._looked, _SHORTEST)
+        if feed.filter.restarts != self._restarts:
+            # Another clock, but the match's time goes on.
+            self._restarts = feed.filter.restarts
+            self._began = there - self._time - elapsed
+        # Where the field stood still the match's time is ahead; it must not stand or go back.
+        self._time = max(self._time + _SLOWEST * elapsed, there - self._began)
+        self._looked, self._looked_at = now, there
+
     def _frame(self, at: float) -> Frame:
         frame = self._feed.frame_at(at)
-        frame.time = self._looked - self._began
+        frame.time = self._time
         frame.period = self.period
         return frame
 
@@ -196,7 +227,7 @@ class LeagueWorld(World):
             commands = {robot: RobotCommand() for robot in commands}
         self._link.send(commands, now)
         self._feed.filter.sent(self._feed.vision_now() + self.settings.realism.command_delay, commands)
-        self.send_times.append(now)
+        self.send_times.append(self._clock())
         self._sent_at = now
 
     def _wait(self) -> None:
@@ -217,7 +248,8 @@ class LeagueWorld(World):
                 return
             until = min(closes, self._sent_at + repeat)
             if feed.fresh:
-                until = min(until, max(pace.opens(), feed.arrived + ALL_CAMERAS * self.connection.speed))
+                until = min(until, max(pace.opens(), feed.arrived + ALL_CAMERAS * feed.rate))
             if now >= self._sent_at + repeat:
                 self._transmit()
-            feed.receive((until - now) / self.connection.speed)
+            # A time lost in rounding must not be waited for again and again.
+            feed.receive(max(until - now, _SHORTEST) / feed.rate)

@@ -107,3 +107,11 @@ def test_the_league_is_measured_in_two_processes() -> None:
     printed = json.loads(robobt("bench", "league", "--seconds", 6, "--json"))
     assert printed["lost"] == printed["errors"] == printed["dropped"] == 0
     assert printed["frame_rate"] == pytest.approx(60.0, rel=0.02)
+
+
+@pytest.mark.slow
+def test_clocks_are_followed_by_one_command() -> None:
+    rows = json.loads(robobt("bench", "clock", "--seconds", 6, "--json"))["rows"]
+    assert {row["speed"] for row in rows} == {0.25, 0.5, 1.0, 2.0, 4.0}
+    assert all(row["mean_error"] < 0.003 for row in rows)
+    assert "queued" in robobt("bench", "clock", "--seconds", 6)

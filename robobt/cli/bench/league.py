@@ -1,4 +1,4 @@
-"""``robobt bench filter`` and ``robobt bench league``: measure playing over the league's protocols."""
+"""``robobt bench filter``, ``clock`` and ``league``: measure playing over the league's protocols."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from robobt.cli.common import (
 def add_to(bench: typer.Typer) -> None:
     """Add the commands to the application."""
     bench.command("filter")(bench_filter)
+    bench.command("clock")(bench_clock)
     bench.command("league")(bench_league)
 
 
@@ -86,6 +87,47 @@ def _row(rms: dict[str, float]) -> list[str]:
         f"{rms['ball_position'] * 1e3:.2f}",
         f"{rms['ball_velocity']:.3f}",
     ]
+
+
+@one_line_errors
+def bench_clock(
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=5, max=3600, help="How long each is followed.")
+    ] = 30.0,
+    jitter: Annotated[
+        float, typer.Option("--jitter", min=0, max=0.1, help="Longest irregular delay of a packet, s.")
+    ] = 0.005,
+    drift: Annotated[
+        float, typer.Option("--drift", min=0, max=0.1, help="How far the rate drifts, as a share.")
+    ] = 0.02,
+    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED)] = 0,
+    as_json: Json = False,
+) -> None:
+    """Measure how well the time on a simulated field is known whose clock runs at a rate of its own.
+
+    The lead is the time for which a frame is predicted less what the field's clock shows
+    then. Every five seconds the field stands still for half a second, or its packets are lost
+    or come late, or it is restarted; the second after is not judged.
+
+    Keys of --json: seconds, jitter, drift, seed; rows, each with speed, fault, frames,
+    bias, mean_error, p99_error, largest_error (s).
+    """
+    from robobt.league.bench_clock import FAULTS, SPEEDS, Peer, lead_figures
+
+    peers = [Peer(speed, drift, jitter, fault) for speed in SPEEDS for fault in FAULTS]
+    with errors.status("following clocks"):
+        rows = [(peer, lead_figures(peer, seconds, seed)) for peer in peers]
+    if as_json:
+        given = {"seconds": seconds, "jitter": jitter, "drift": drift, "seed": seed}
+        listed = [{"speed": peer.speed, "fault": peer.fault, **figures} for peer, figures in rows]
+        print_json({**given, "rows": listed})
+        return
+    shown = table("speed", "fault", "frames", "bias, ms", "mean error, ms", "p99, ms", "largest, ms")
+    for peer, figures in rows:
+        times = [figures[name] for name in ("bias", "mean_error", "p99_error", "largest_error")]
+        in_ms = [f"{time * 1e3:.2f}" for time in times]
+        shown.add_row(f"{peer.speed:g}", peer.fault, f"{figures['frames']:g}", *in_ms)
+    console.print(shown)
 
 
 @one_line_errors

@@ -1,16 +1,55 @@
-"""Offsets between this machine's clock and those of the cameras' computers.
+"""How clocks elsewhere run against this machine's: the field's, and those of the cameras' computers.
 
-The packet with the least delay shows the offset between its sender's clock and
-this machine's.
+The packets with the least delay show the offset between their sender's clock and this machine's; how that
+offset changes shows the sender's rate.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from math import inf, sqrt
 
-_MEMORY = 2.0
-"""How long the fastest packet counts [s]."""
+from robobt.league.estimate.kalman import Covariance, Mismatch
+
+_BLOCK = 0.1
+"""Packets sent within so long compete for the least delay [s of the field]."""
+
+_LONGEST_BLOCK = 0.1
+"""Packets that arrive within so long do, of a slow field [s]."""
+
+_FEWEST = 4
+"""Blocks from which on a block can be odd, and the rate counts as measured."""
+
+_MEMORY = 20
+"""Blocks whose worst delays are remembered."""
+
+_SLOWEST, _FASTEST = 0.05, 20.0
+"""Rates beyond these are not believed [s of the field per s]."""
+
+_RATE_ERROR = 1.0
+"""Standard deviation of the first guess of the rate, as a share of it."""
+
+_DRIFT, _TURN = 0.03, 0.3
+"""How fast a rate drifts as a rule, and where it evidently changes, as a share of it [1/s]."""
+
+_LEAST_SPREAD, _SPREAD = 0.0003, 0.35
+"""Standard deviation of the least delay of a block: at least [s], and as a share of the mean delay."""
+
+_FIRST_SPREAD = 0.001
+"""The same while nothing is known [s]."""
+
+_SMOOTHING = 0.2
+"""Weight of the newest block in the mean delay."""
+
+_STEP, _STEP_SPREADS = 0.012, 6.0
+"""A block is odd that is off by more than this [s], and by more than so many standard deviations."""
+
+_ODD, _ODD_TIME = 2, 0.5
+"""Odd blocks that agree, and time over which odd blocks go on [s of the field], that are believed."""
+
+_STRETCH = 2.0
+"""How long a camera's fastest packet counts [s]."""
 
 _IN_STEP = 0.05
 """Clocks closer than this count as one: the delays of packets differ by as much [s]."""
@@ -22,30 +61,161 @@ _CONFIRMATIONS = 3
 """Consecutive packets after which a clock that jumped is believed."""
 
 
-class VisionClock:
-    """The offset between this machine's clock and the vision's."""
+@dataclass(slots=True)
+class _Block:
+    """Consecutive packets of the field: their number, the promptest of them, and how late they were [s].
 
-    def __init__(self) -> None:
-        # Times of arrival and offsets, both increasing.
-        self._offsets: deque[tuple[float, float]] = deque()
+    Lateness is counted in the field's seconds, from an arbitrary origin.
+    """
+
+    first_arrived: float
+    first_sent: float
+    packets: int = 0
+    arrived: float = 0.0
+    sent: float = 0.0
+    least: float = inf
+    total: float = 0.0
+
+    def takes(self, arrived: float, sent: float) -> bool:
+        """Return whether a packet with these times belongs here; a pause ends a block."""
+        return 0.0 <= sent - self.first_sent < _BLOCK and arrived - self.first_arrived < _LONGEST_BLOCK
+
+    @property
+    def mean_delay(self) -> float:
+        """How much later than the promptest the average of the other packets was [s]."""
+        return (self.total / self.packets - self.least) * self.packets / max(1, self.packets - 1)
+
+
+class FieldClock:
+    """The field's clock as a function of this machine's: its offset and its rate.
+
+    Packets are taken in blocks; the promptest of each is corrected for the delay that even it is
+    likely to have and goes through a Kalman filter of offset and rate. A block that is off
+    altogether is held back until others confirm it: then the field's clock has jumped, as that of a
+    simulator does which stood still, or its rate has changed, and the estimate starts anew.
+
+    All times of this machine are on one monotonic clock.
+
+    Args:
+        rate: to assume at first [s of the field per s].
+
+    Attributes:
+        rate: how fast the field's clock runs [s of the field per s].
+        settled: whether the rate is measured.
+    """
+
+    def __init__(self, rate: float = 1.0) -> None:
+        self.rate = rate
+        self.settled = False
+        self._delay = 0.0
+        self.clear()
 
     def clear(self) -> None:
-        """Forget the offset: the vision's clock was restarted."""
-        self._offsets.clear()
+        """Forget the offset: the field's clock was restarted. The rate stays the best guess."""
+        self._known = False
+        self._blocks = 0
+        self._at = self._sent = 0.0
+        self._covariance = Covariance(1.0, 0.0, (_RATE_ERROR * self.rate) ** 2)
+        self._mismatch = Mismatch()
+        self._late: deque[float] = deque(maxlen=_MEMORY)
+        self._block: _Block | None = None
+        self._worst = 0.0
+        self._odd: list[_Block] = []
+
+    def at(self, time: float) -> float | None:
+        """Return the field's time at one of this machine's, None before the first packet [s]."""
+        return self._sent + (time - self._at) * self.rate if self._known else None
+
+    @property
+    def jitter(self) -> float:
+        """How much later than the promptest packets of late have come, at most [s of the field]."""
+        return max(self._late, default=0.0)
 
     def update(self, arrived: float, sent: float) -> None:
-        """Learn from a packet that was sent and arrived at these times, each on its own clock [s]."""
-        offset = arrived - sent
-        # Only what may still become the least is kept, so a flood does not pile up here.
-        while self._offsets and self._offsets[-1][1] >= offset:
-            self._offsets.pop()
-        self._offsets.append((arrived, offset))
-        while self._offsets and self._offsets[0][0] < arrived - _MEMORY:
-            self._offsets.popleft()
+        """Learn from a packet.
 
-    def offset(self) -> float | None:
-        """Return what this machine's clock is ahead, None before the first packet [s]."""
-        return self._offsets[0][1] if self._offsets else None
+        Args:
+            arrived: when it arrived, on this machine's clock [s].
+            sent: when it was sent, on the field's clock [s].
+        """
+        if not self._known:
+            self._known, self._at, self._sent = True, arrived, sent
+        block = self._block
+        if block is None or not block.takes(arrived, sent):
+            if block is not None:
+                self._close(block)
+            block = self._block = _Block(arrived, sent)
+            self._worst = 0.0
+        now = self.at(arrived)
+        assert now is not None
+        late = now - sent
+        block.packets += 1
+        block.total += late
+        self._worst = max(self._worst, late)
+        if late < block.least:
+            block.least, block.arrived, block.sent = late, arrived, sent
+
+    def _close(self, block: _Block) -> None:
+        """Use a block that is complete."""
+        if self._blocks < _FEWEST or abs(self._miss(block)) < self._tolerance():
+            self._odd.clear()
+            self._use(block)
+            if self._blocks > _FEWEST:
+                self._late.append(self._worst)
+            return
+        odd = self._odd
+        odd.append(block)
+        # The first one's time counts; a flood must not pile up here.
+        del odd[1:-_FEWEST]
+        last = odd[-_ODD:]
+        agree = all(abs(self._miss(one) - self._miss(block)) < self._tolerance() for one in last)
+        # Packets that were held back and arrive all at once tell nothing.
+        apart = block.arrived - last[0].arrived > min(_BLOCK / self.rate, _LONGEST_BLOCK) / 2
+        if len(last) == _ODD and agree and apart:
+            self._restart(last, _RATE_ERROR / 10)
+        elif block.arrived - odd[0].arrived > _ODD_TIME / self.rate:
+            self._restart(odd[-_FEWEST:], _RATE_ERROR)
+
+    def _restart(self, blocks: list[_Block], error: float) -> None:
+        """Estimate anew from some blocks, the rate being known to a relative error."""
+        self.clear()
+        self._covariance.vv = (error * self.rate) ** 2
+        self._known, self._at, self._sent = True, blocks[0].arrived, blocks[0].sent
+        for block in blocks:
+            self._use(block)
+
+    def _use(self, block: _Block) -> None:
+        first = self._blocks == 0
+        self._blocks += 1
+        if self.settled:
+            # Before, the delays within a block are confounded with the rate.
+            self._delay += _SMOOTHING * (block.mean_delay - self._delay)
+        # The least of n delays, if these are distributed exponentially, is the n-th part of their mean.
+        likely = self._delay / max(1, block.packets)
+        spread = max(_LEAST_SPREAD, _SPREAD * self._delay) if self.settled else _FIRST_SPREAD
+        p, elapsed = self._covariance, max(0.0, block.arrived - self._at)
+        p.predict((_DRIFT + self._mismatch.level * _TURN) * self.rate, elapsed)
+        miss = self._miss(block) + likely
+        self._sent += elapsed * self.rate
+        self._at += elapsed
+        if first:
+            self._sent, p.pp, p.pv = block.sent + likely, spread**2, 0.0
+            return
+        s = p.pp + spread**2
+        k, g = p.gains(s)
+        p.correct(k, g)
+        self._mismatch.update(miss / sqrt(s))
+        self._sent += k * miss
+        self.rate = min(_FASTEST, max(_SLOWEST, self.rate + g * miss))
+        self.settled = self.settled or self._blocks >= _FEWEST
+
+    def _miss(self, block: _Block) -> float:
+        """Return how much later than expected the promptest packet of a block was sent [s of the field]."""
+        return block.sent - (self._sent + (block.arrived - self._at) * self.rate)
+
+    def _tolerance(self) -> float:
+        """Return how far a block may be off [s of the field]."""
+        return max(_STEP, _STEP_SPREADS * _SPREAD * self._delay)
 
 
 @dataclass(slots=True)
@@ -87,7 +257,7 @@ class CameraClocks:
         elif offset < known.now - _JUMP and known.odd + 1 < _CONFIRMATIONS:
             known.odd += 1
             return 0.0
-        elif arrived - known.since > _MEMORY:
+        elif arrived - known.since > _STRETCH:
             known.since, known.before, known.least = arrived, known.least, offset
         known.odd = 0
         known.least = min(known.least, offset)
