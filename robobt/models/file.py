@@ -221,11 +221,17 @@ def unpack_archive(data: bytes) -> dict[str, bytes]:
         raise ModelError(f"is no intact archive ({type(error).__name__}: {str(error)[:80]})") from error
     roots = {name.partition("/")[0] for name, _ in found}
     members = {name.partition("/")[2]: content for name, content in found}
-    if len(roots) != 1 or len(members) != len(found) or "" in members or ".." in "/".join(members):
+    if len(roots) != 1 or not any(name.startswith("code/") for name in members):
         raise ModelError("is an archive, but not a TorchScript one")
-    if not {"data.pkl", "version"} <= set(members) or not any(name.startswith("code/") for name in members):
+    # Torch takes names that differ in case for the same, and of two the first or the last.
+    if len({name.casefold() for name in members}) != len(found):
+        raise ModelError("has two members of the same name in it")
+    foreign = [name for name in members if not (_NEEDED.fullmatch(name) or _UNNEEDED.fullmatch(name))]
+    if foreign:
+        raise ModelError(f"has a member in it that torch does not write: {foreign[0][:80]!r}")
+    if "data.pkl" not in members or len({"version", ".data/version"} & set(members)) != 1:
         raise ModelError("is an archive, but not a TorchScript one")
-    return {name: content for name, content in members.items() if not _UNNEEDED.fullmatch(name)}
+    return {name: content for name, content in members.items() if _NEEDED.fullmatch(name)}
 
 
 def pack_onnx(content: bytes, card: str) -> bytes:
@@ -275,6 +281,17 @@ def _seal_of(data: bytes) -> bytes:
     return sha256(data).hexdigest().encode()
 
 
-_UNNEEDED = re.compile(r"(.*\.debug_pkl|\.data/serialization_id|traced_inputs.*)")
+_NEEDED = re.compile(
+    r"code/__torch__(/\w+)*\.py|(data|constants)\.pkl|(data|constants)/\d+|(\.data/)?version|byteorder"
+    rf"|{re.escape(_CARD_MEMBER)}",
+    re.ASCII,
+)
+"""The members of an archive that torch reads, and the card."""
+_UNNEEDED = re.compile(
+    r"code/__torch__(/\w+)*\.py\.debug_pkl|\.data/serialization_id|\.format_version|\.storage_alignment"
+    r"|traced_inputs(\.pkl|/\d+)|extra/[\w.]+",
+    re.ASCII,
+)
+"""Members that only serve debugging, or whoever saved the file; they are left out."""
 _ENDINGS = tuple(SUFFIXES.values())
 _LISTED = re.compile(r"([0-9a-f]{64}) [ *]([^/\\\s][^/\\]*)")

@@ -13,12 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.models.card import ModelCard
-from robobt.models.checks import check_code, check_onnx, check_operations
+from robobt.models.checks.onnx_file import check_onnx
+from robobt.models.checks.operations import check_frozen, check_loaded
+from robobt.models.checks.torchscript import checked_members
 from robobt.models.file import (
     Format,
     ModelError,
     ModelFile,
     find_model,
+    pack_archive,
     read_model_file,
     unpack_archive,
 )
@@ -155,23 +158,35 @@ class _TorchScript:
         except ImportError as error:
             raise ModelError(f"needs torch to run: {_first_line(error)}") from error
 
-        members = unpack_archive(file.content)
-        check_code(members)
+        from robobt.models.checks.bounds import Bounds
+
+        archive = pack_archive(checked_members(unpack_archive(file.content)))
+        size = file.card.observation.size
         with quiet():
             try:
-                loaded = torch.jit.load(BytesIO(file.content), map_location="cpu")  # type: ignore[no-untyped-call]
+                loaded = torch.jit.load(BytesIO(archive), map_location="cpu")  # type: ignore[no-untyped-call]
                 loaded.eval()
+                check_loaded(loaded.inlined_graph)
                 # Freezing runs whatever does not depend on the input.
-                check_operations(loaded.inlined_graph, {"prim::If", "aten::dropout"})
-                module = torch.jit.freeze(loaded)
-                check_operations(module.inlined_graph)
+                with Bounds():
+                    module = torch.jit.freeze(loaded)
+                check_frozen(module.inlined_graph)
             except ModelError:
                 raise
             except Exception as error:
                 raise ModelError(f"torch cannot load it: {_first_line(error)}") from error
+            try:
+                with torch.inference_mode(), Bounds():
+                    module(torch.zeros(_PROBES, size))
+            except ModelError:
+                raise
+            except Exception as error:
+                raise ModelError(
+                    f"fails on an observation of {size} entries: {_first_line(error)}"
+                ) from error
         self.module = module
         self._torch = torch
-        self._size = file.card.observation.size
+        self._size = size
         # Without Module.__call__, which looks for hooks that a frozen module cannot have.
         self._forward: Callable[[Tensor], Tensor] = module.forward
 
@@ -214,7 +229,7 @@ class _Onnx:
     """A session of onnxruntime on one thread."""
 
     def __init__(self, file: ModelFile) -> None:
-        check_onnx(file.content)
+        check_onnx(file.content, _PROBES, file.card.observation.size)
         try:
             import onnxruntime  # type: ignore[import-untyped]
         except ImportError as error:

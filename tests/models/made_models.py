@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import onnx
 import pytest
 import torch
+from onnx import TensorProto, helper
 from torch import Tensor, nn
 
 from robobt.models import export, policy
 from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION
 from robobt.models.card import ModelCard, ObservationCard, OutputEntry, action_outputs
 from robobt.models.export import export_model
-from robobt.models.file import Format
+from robobt.models.file import Format, pack_archive, pack_onnx, payload_of, unpack_archive
 from robobt.models.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
 
@@ -121,3 +124,44 @@ def write_model(
     return export_model(
         network() if module is None else module, go_to_ball_card() if card is None else card, folder, formats
     )[0]
+
+
+def sealed(folder: Path, members: dict[str, bytes]) -> Path:
+    """A crafted archive whose card and seal are in order."""
+    card = go_to_ball_card("crafted", payload=payload_of(members))
+    path = folder / "crafted.pt"
+    path.write_bytes(pack_archive(members, card.to_json()))
+    return path
+
+
+def members_of(folder: Path) -> dict[str, bytes]:
+    """The members of a small policy, without its card."""
+    members = unpack_archive(write_model(folder).read_bytes())
+    del members["extra/card.json"]
+    return members
+
+
+def onnx_file(folder: Path, *nodes: onnx.NodeProto, external: bool = False) -> Path:
+    """An ONNX file of these nodes, from "observation" to "output"; there are "weights" of 6 by 3."""
+    weights = helper.make_tensor("weights", TensorProto.FLOAT, [6, 3], [0.1] * 18)
+    if external:
+        weights.ClearField("float_data")
+        weights.data_location = TensorProto.EXTERNAL
+        weights.external_data.add(key="location", value="/etc/hostname")
+    return sealed_onnx(folder, onnx_model(nodes, [weights]))
+
+
+def onnx_model(nodes: Sequence[onnx.NodeProto], weights: Sequence[onnx.TensorProto]) -> onnx.ModelProto:
+    given = helper.make_tensor_value_info("observation", TensorProto.FLOAT, ["batch", 6])
+    told = helper.make_tensor_value_info("output", TensorProto.FLOAT, ["batch", 3])
+    graph = helper.make_graph(list(nodes), "crafted", [given], [told], list(weights))
+    return helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8)
+
+
+def sealed_onnx(folder: Path, model: onnx.ModelProto) -> Path:
+    """A crafted ONNX file whose card and seal are in order."""
+    content = model.SerializeToString()
+    card = go_to_ball_card("crafted", payload=sha256(content).hexdigest())
+    path = folder / "crafted.onnx"
+    path.write_bytes(pack_onnx(content, card.to_json()))
+    return path

@@ -10,18 +10,26 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import onnx
 import pytest
 import torch
-from onnx import TensorProto, helper
+from onnx import helper
 from torch import Tensor, nn
 
 from robobt.models import file as model_file
 from robobt.models import policy
-from robobt.models.file import ModelError, UnknownModelError, pack_archive, pack_onnx, payload_of
+from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
-from tests.models.made_models import go_to_ball_card, network, predictor_card, shoot_card, write_model
+from tests.models.made_models import (
+    go_to_ball_card,
+    members_of,
+    network,
+    onnx_file,
+    predictor_card,
+    sealed,
+    shoot_card,
+    write_model,
+)
 
 FORMATS = ("torchscript", "onnx")
 
@@ -237,20 +245,6 @@ def test_a_scripted_network_saved_by_torch_itself_is_loaded(tmp_path: Path, trai
     assert np.abs(load_policy(path)(inputs) - wanted).max() < 1e-6
 
 
-def sealed(folder: Path, members: dict[str, bytes]) -> Path:
-    """A crafted archive whose card and seal are in order."""
-    card = go_to_ball_card("crafted", payload=payload_of(members))
-    path = folder / "crafted.pt"
-    path.write_bytes(pack_archive(members, card.to_json()))
-    return path
-
-
-def members_of(folder: Path) -> dict[str, bytes]:
-    members = model_file.unpack_archive(write_model(folder).read_bytes())
-    del members["extra/card.json"]
-    return members
-
-
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -266,7 +260,8 @@ def members_of(folder: Path) -> dict[str, bytes]:
             "__len__",
         ),
         (b"  def forward", b"  def forward(((", "damaged"),
-        (b"torch.tanh", b"torch.nothing", "torch cannot load it"),
+        (b"torch.tanh", b"torch.nothing", "more than arithmetic: aten::nothing"),
+        (b"torch.tanh(", b"torch.tanh(1, 2, ", "torch cannot load it"),
     ],
 )
 def test_code_that_is_no_network_is_not_run(tmp_path: Path, old: bytes, new: bytes, said: str) -> None:
@@ -283,9 +278,9 @@ def test_code_that_is_no_network_is_not_run(tmp_path: Path, old: bytes, new: byt
     [
         (b"cos\nsystem\n(S'exit 3'\ntR.", "names os system"),
         (b"\x80\x02}q\x00(.", "damaged"),
-        (b"\x80\x02\x8c\x02os\x8c\x06system\x93.", "names os system"),
+        (b"\x80\x02\x8c\x02os\x8c\x06system\x93.", "SHORT_BINUNICODE, which torch does not write"),
         (b"", "damaged"),
-        (b"\x80\x02N.", "torch cannot load it"),
+        (b"\x80\x02N.", "is no module"),
     ],
 )
 def test_pickles_that_are_none_of_torchs_are_not_loaded(tmp_path: Path, pickle: bytes, said: str) -> None:
@@ -307,25 +302,6 @@ def test_weights_that_are_missing_or_short_are_an_error(tmp_path: Path) -> None:
             load_policy(sealed(tmp_path, broken))
 
 
-def onnx_file(folder: Path, *nodes: onnx.NodeProto, external: bool = False) -> Path:
-    given = helper.make_tensor_value_info("observation", TensorProto.FLOAT, ["batch", 6])
-    told = helper.make_tensor_value_info("output", TensorProto.FLOAT, ["batch", 3])
-    weights = helper.make_tensor("weights", TensorProto.FLOAT, [6, 3], [0.1] * 18)
-    if external:
-        weights.ClearField("float_data")
-        weights.data_location = TensorProto.EXTERNAL
-        weights.external_data.add(key="location", value="/etc/hostname")
-    graph = helper.make_graph(list(nodes), "crafted", [given], [told], [weights])
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8)
-    content = model.SerializeToString()
-    from hashlib import sha256
-
-    card = go_to_ball_card("crafted", payload=sha256(content).hexdigest())
-    path = folder / "crafted.onnx"
-    path.write_bytes(pack_onnx(content, card.to_json()))
-    return path
-
-
 def test_onnx_files_of_others_load_and_may_only_hold_arithmetic(tmp_path: Path) -> None:
     product = helper.make_node("MatMul", ["observation", "weights"], ["sum"])
     squash = helper.make_node("Tanh", ["sum"], ["output"])
@@ -339,7 +315,7 @@ def test_onnx_files_of_others_load_and_may_only_hold_arithmetic(tmp_path: Path) 
     with pytest.raises(ModelError, match="another file"):
         load_policy(onnx_file(tmp_path, product, squash, external=True))
     unknown = helper.make_node("Tanh", ["nowhere"], ["output"])
-    with pytest.raises(ModelError, match="onnxruntime cannot load it"):
+    with pytest.raises(ModelError, match=r"shapes in it|cannot load it"):
         load_policy(onnx_file(tmp_path, unknown))
 
 

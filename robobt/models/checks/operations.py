@@ -1,0 +1,122 @@
+"""The operations of networks, by the formats' own names, and the look at a graph that torch has built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+from robobt.models.file import ModelError
+
+_ARITHMETIC = """
+abs acos add addcmul addmm amax amin asin atan atan2 batch_norm bmm cat celu chunk clamp clamp_max clamp_min
+clone concat contiguous cos cosh cumsum detach div dropout elu eq erf exp expand expand_as expm1 flatten
+floor fmod ge gelu glu gru gru_cell gt hardsigmoid hardswish hardtanh hypot index_select layer_norm le
+leaky_relu lerp linear log log1p log_sigmoid log_softmax logical_and logical_not logical_or logsumexp lstm
+lstm_cell lt matmul max maximum mean min minimum mish mm mul narrow ne neg norm ones ones_like permute pow
+prelu prod reciprocal relu relu6 remainder reshape rms_norm rnn_relu rnn_tanh round rsqrt rsub select selu
+sigmoid sign silu sin sinh slice softmax softplus softsign split sqrt square squeeze stack sub sum t tan
+tanh to transpose type_as unbind unsafe_chunk unsafe_split unsqueeze view where zeros zeros_like
+"""
+_IN_PLACE = """
+add_ celu_ clamp_ div_ dropout_ elu_ hardsigmoid_ hardswish_ hardtanh_ leaky_relu_ mish_ mul_ relu_ relu6_
+selu_ sigmoid_ silu_ sub_ tanh_
+"""
+_SHAPES = "__contains__ __is__ __isnot__ __not__ dim len list size"
+
+TORCH = frozenset([*_ARITHMETIC.split(), *_IN_PLACE.split(), *_SHAPES.split()])
+"""What a TorchScript file may call of torch: nothing that reads, writes, draws or goes on without end."""
+
+_LANGUAGE = """
+CallMethod Constant GetAttr ListConstruct ListUnpack NumToTensor TupleConstruct TupleIndex TupleUnpack device
+dtype
+"""
+_PLAIN = frozenset([f"aten::{name}" for name in TORCH] + [f"prim::{name}" for name in _LANGUAGE.split()])
+_COMPLAINTS = frozenset({"aten::format", "prim::RaiseException", "prim::Uninitialized"})
+_FOR_TRAINING = "aten::Bool aten::Float aten::Int aten::__getitem__ prim::If prim::Loop prim::unchecked_cast"
+_AT_LOAD = _PLAIN | _COMPLAINTS | set(_FOR_TRAINING.split())
+_HARMLESS = """
+aten::__contains__ aten::__not__ aten::dim aten::eq aten::ge aten::gt aten::le aten::list aten::lt aten::ne
+aten::size aten::squeeze aten::unsqueeze prim::Constant prim::If prim::ListConstruct prim::TupleConstruct
+"""
+_IN_BRANCH = _COMPLAINTS | set(_HARMLESS.split())
+_MAKE_LISTS = """
+aten::chunk aten::format aten::list aten::size aten::split aten::unbind aten::unsafe_chunk aten::unsafe_split
+prim::Constant prim::GetAttr prim::If prim::ListConstruct prim::Loop prim::TupleUnpack prim::Uninitialized
+prim::unchecked_cast
+"""
+_LISTS = frozenset(_MAKE_LISTS.split())
+"""Operations that may answer a list or a text; of others two doubled forty times would fill the memory."""
+
+
+class Type(Protocol):
+    """The type of a value in a TorchScript graph."""
+
+    def kind(self) -> str:
+        """Return the type's name."""
+
+
+class Value(Protocol):
+    """A value in a TorchScript graph."""
+
+    def type(self) -> Type:
+        """Return its type."""
+
+
+class Node(Protocol):
+    """A node of a TorchScript graph."""
+
+    def kind(self) -> str:
+        """Return the operation's name."""
+
+    def outputs(self) -> Iterable[Value]:
+        """Return what it answers."""
+
+    def blocks(self) -> Iterable[Graph]:
+        """Return the blocks inside it."""
+
+
+class Graph(Protocol):
+    """A TorchScript graph, or a block of one."""
+
+    def nodes(self) -> Iterable[Node]:
+        """Return its nodes."""
+
+
+def check_loaded(graph: Graph) -> None:
+    """Check a graph as torch has loaded it, with the branches for training in it.
+
+    Raises:
+        ModelError: it holds an operation that no network needs.
+    """
+    _check([node.kind() for node in _nodes(graph)], _AT_LOAD)
+    for node in _nodes(graph):
+        answers = {value.type().kind() for value in node.outputs()}
+        if answers & {"ListType", "StringType", "DictType"} and node.kind() not in _LISTS:
+            raise ModelError(f"does more than arithmetic: lists or texts are made by {node.kind()}")
+
+
+def check_frozen(graph: Graph) -> None:
+    """Check a frozen graph: what runs must not depend on more than the number of observations.
+
+    Of branches, only those may be left that complain of a shape or add an axis to it, so that
+    whatever has run once within bounds does so again.
+
+    Raises:
+        ModelError: it does more than that.
+    """
+    _check([node.kind() for node in graph.nodes()], _PLAIN | {"prim::If"} | _COMPLAINTS)
+    inside = [node.kind() for outer in graph.nodes() for block in outer.blocks() for node in _nodes(block)]
+    _check(inside, _IN_BRANCH)
+
+
+def _check(kinds: Iterable[str], allowed: frozenset[str]) -> None:
+    foreign = sorted(set(kinds) - allowed)
+    if foreign:
+        raise ModelError(f"does more than arithmetic: {', '.join(foreign)}")
+
+
+def _nodes(block: Graph) -> Iterator[Node]:
+    for node in block.nodes():
+        yield node
+        for inner in node.blocks():
+            yield from _nodes(inner)
