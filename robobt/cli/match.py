@@ -115,6 +115,14 @@ def match(
             "league's programs on this machine (one worker).",
         ),
     ] = False,
+    no_referee: Annotated[
+        bool,
+        typer.Option(
+            "--no-referee",
+            help="Play without the scenario's own referee, as where a game controller decides "
+            "(--world league://...follow_referee=true).",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print the results.
@@ -135,6 +143,8 @@ def match(
 
     import_files(imports)
     loaded = _changed(load_scenario(scenario), on_error, substitute or [])
+    if no_referee:
+        loaded = loaded.without_referee()
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
     factory = world_from(world)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ipaddress import IPv4Address
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -38,10 +39,26 @@ class Connection(BaseModel):
         None, description="whether blue defends +x there; none: as the game controller says, else no"
     )
     follow_referee: bool = Field(False, description="whether to follow a game controller")
+    ends: bool = Field(
+        False, description="whether the scenario's ends hold although a game controller is followed"
+    )
+    place: bool | None = Field(
+        None,
+        description="whether robots and ball are put in their places; none: where both teams are commanded "
+        "and the robots' host is this machine",
+    )
     latency: float = Field(
         0.0, ge=0, le=0.5, description="latency of the vision beyond what its timestamps show [s]"
     )
     speed: float = Field(1.0, ge=0.05, le=20, description="simulated time over real time")
+
+    @property
+    def places(self) -> bool:
+        """Whether robots and ball are put in their places: never on a field that people stand on."""
+        if self.place is not None:
+            return self.place and self.simulator != "observer"
+        local = IPv4Address(self.host).is_loopback or self.host == self.interface
+        return self.simulator != "observer" and local and set(self.teams) == set(Team)
 
     def link(self) -> Link:
         """Return a new link that commands the robots."""

@@ -176,7 +176,7 @@ class Feed:
                 self.add(seen.frame, arrived)
         if self.referee is not None:
             for packet in self._sources[1].receive():
-                self.referee.read(packet.data)
+                self.referee.read(packet.data, packet.sender, arrived)
 
     def add(self, frame: CameraFrame, arrived: float) -> None:
         """Use a camera's frame that arrived at a time of this machine's clock [s]."""

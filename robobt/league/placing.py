@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from math import hypot, inf, pi
 
@@ -13,6 +14,8 @@ from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
+
+_log = logging.getLogger(__name__)
 
 TIMEOUT = 4.0
 """Longest wait for the vision, or until everything is seen where it was put [s]."""
@@ -46,14 +49,17 @@ class Placer:
     def place(self, placement: Placement) -> None:
         """Put everything in its place, where the field allows it, and wait until it is seen there.
 
-        Robots without a pose are taken off the field.
+        Robots without a pose are taken off the field. Where nothing may be placed, it only
+        waits until every robot that is commanded is seen.
 
         Raises:
             LeagueError: nothing is received, or something is not seen where it was put.
         """
         self._await_vision()
-        if self._link.active:
+        if self._feed.connection.places:
             self._put(placement)
+        else:
+            self._await_robots()
         end = self._clock() + _SETTLING / self._feed.rate
         while self._clock() < end:
             self._feed.receive(end - self._clock())
@@ -68,6 +74,18 @@ class Placer:
         while not self._feed.filter.robots() and self._feed.filter.ball_unseen() == inf:
             if self._clock() > end:
                 raise LeagueError(self._feed.no_frames(TIMEOUT))
+            self._feed.receive(0.05)
+
+    def _await_robots(self) -> None:
+        """Wait, as long as it takes, until people have brought the robots; they stand still meanwhile."""
+        told = False
+        while missing := [
+            str(robot) for robot in self._commanded() if robot not in self._feed.filter.robots()
+        ]:
+            if not told:
+                _log.warning("waiting until these robots are seen on the field: %s", ", ".join(missing))
+                told = True
+            self._link.send({robot: RobotCommand() for robot in self._commanded()}, self._feed.now())
             self._feed.receive(0.05)
 
     def _put(self, placement: Placement) -> None:

@@ -106,8 +106,8 @@ class LeagueWorld(World):
     def reset(self, placement: Placement, seed: int) -> None:  # noqa: ARG002
         """Put everything in its place; see :meth:`robobt.world.World.reset`. ``seed`` has no effect.
 
-        Robots that do not play are taken off the field. Where nothing can be placed,
-        the match begins with what is there.
+        Robots that do not play are taken off the field. Where nothing may be placed
+        (see :class:`Connection`) the match begins as soon as the commanded robots are seen.
 
         Raises:
             LeagueError: no vision is received, or something is not seen where it was put.
@@ -159,9 +159,20 @@ class LeagueWorld(World):
         self._look()
 
     def place_ball(self, x: float, y: float) -> None:
-        """Put the ball down at rest; on a real field, a person has to."""
+        """Put the ball down at rest; where nothing may be placed, a person has to."""
         check_inside("the ball", (x, y), self._feed.filter.field)
-        self._link.place([], self._placer.place_ball(x, y))
+        if self.connection.places:
+            self._link.place([], self._placer.place_ball(x, y))
+
+    @property
+    def refereed(self) -> bool:
+        """See :meth:`robobt.world.World.refereed`."""
+        return self.connection.follow_referee
+
+    @property
+    def scenario_ends(self) -> bool:
+        """See :meth:`robobt.world.World.scenario_ends`."""
+        return self.connection.ends or not self.connection.follow_referee
 
     def counts(self) -> dict[str, PacketCounts]:
         """Return what happened to the packets, by port."""

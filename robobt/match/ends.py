@@ -38,16 +38,21 @@ class EndJudge:
 
     Where there is no referee it is also who counts goals.
 
+    Args:
+        scenario: whose end conditions they are.
+        refereed: whether a game controller decides; the score is then its own.
+        hold: whether the end conditions hold at all; without them a match ends when the referee says.
+
     Attributes:
         scores: goals of each team.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: Scenario, refereed: bool = False, hold: bool = True) -> None:
         ends = scenario.ends
-        free = scenario.referee is None
+        free = scenario.referee is None and not refereed
         self.scores = {Team.BLUE: 0, Team.YELLOW: 0}
         self._referee = not free
-        self._ends = ends
+        self._ends, self._hold = ends, hold
         self._goal_ends = free if ends.goal is None else ends.goal
         self._out_ends = free if ends.ball_out is None else ends.ball_out
         self._keepers = {RobotId(team, number) for team, number in scenario.goalkeepers().items()}
@@ -71,6 +76,8 @@ class EndJudge:
         """
         self._ticks += 1
         goal_by = self._goal_by(truth, game)
+        if not self._hold:
+            return Outcome.FULL_TIME if game.stage is Stage.POST_GAME else None
         if goal_by is not None and self._goal_ends:
             return Outcome.GOAL_BLUE if goal_by is Team.BLUE else Outcome.GOAL_YELLOW
         limit = self._ends.score_limit

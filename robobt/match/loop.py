@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 
 from robobt.match.ends import EndJudge, Outcome
+from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee.events import RefereeEvent
@@ -60,6 +61,12 @@ class Match:
     ) -> None:
         self.scenario, self.seed, self.trial = scenario, seed, trial
         self.world = world_factory(scenario)
+        if scenario.referee is not None and self.world.refereed:
+            raise scenario.error(
+                "the scenario has a referee of its own, but a game controller decides there; "
+                "set 'referee: false', or play with 'robobt match --no-referee'",
+                "referee",
+            )
         placement_seed, world_seed = np.random.SeedSequence(seed).spawn(2)
         placement = scenario.place(np.random.default_rng(placement_seed))
         self.world.reset(placement, int(world_seed.generate_state(1)[0]))
@@ -67,11 +74,12 @@ class Match:
         self.measures = Measures({player.robot: None for player in self.players})
         self.game: GameState = OPEN_PLAY
         self.outcome: Outcome | None = None
-        self._by_team = {
-            team: {player.robot.number: player for player in self.players if player.robot.team is team}
+        keepers = scenario.goalkeepers()
+        self._lineups = {
+            team: Lineup([player for player in self.players if player.robot.team is team], keepers.get(team))
             for team in Team
         }
-        self._judge = EndJudge(scenario)
+        self._judge = EndJudge(scenario, self.world.refereed, self.world.scenario_ends)
         self._referee = _referee_of(scenario)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
@@ -169,17 +177,26 @@ class Match:
         A robot that is not seen is not ticked and stands still.
         """
         commands: dict[RobotId, RobotCommand] = {}
+        halted = frame.game.halted
         # Both views before any tree is ticked: a tree that spoils its frame spoils no opponent's.
-        views = [(players, frame.seen_by(team)) for team, players in self._by_team.items() if players]
-        for players, view in views:
+        views = [(lineup, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
+        for lineup, view in views:
+            leaving = lineup.follow(view)
             for me in view.own:
-                player = players.get(me.id)
-                if player is not None:
-                    command = player.decide(view, me)
-                    if command is None:
-                        self._note_failure(player)
-                        command = RobotCommand()
-                    commands[player.robot] = command
+                player = lineup.players.get(me.id)
+                if player is None:
+                    continue
+                if me.id in leaving:
+                    commands[player.robot] = leave(view, me)
+                    continue
+                command = player.decide(view, me)
+                if command is None:
+                    self._note_failure(player)
+                    command = RobotCommand()
+                commands[player.robot] = command
+        if halted:
+            # Whatever the trees make of it: not every play asks the referee.
+            return {robot: RobotCommand() for robot in commands}
         return commands
 
     def _note_failure(self, player: Player) -> None:

@@ -35,6 +35,7 @@ from robobt.skills.defence.wall import Wall
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance
+from robobt.skills.restarts.place_ball import PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
 from robobt.skills.team.is_attacker import IsAttacker
@@ -82,6 +83,7 @@ def field_player(
         "field player",
         when("halted", IsHalted(), Stop()),
         take_penalty(farthest),
+        place_ball(farthest),
         take_restart(shooting, farthest),
         when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
         when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
@@ -118,6 +120,7 @@ def defender(
         "defender",
         when("halted", IsHalted(), Stop()),
         take_penalty(farthest),
+        place_ball(farthest),
         take_restart(shooting, farthest),
         when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
         when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
@@ -156,6 +159,16 @@ def take_penalty(farthest: float | None) -> Behaviour:
         first_of("where to", SelectShot(), AimUpfield()),
         PrepareRestart(),
         KickToTarget(),
+    )
+
+
+def place_ball(farthest: float | None) -> Behaviour:
+    """Bring the ball to the referee's spot when nearest to it; the others keep away."""
+    return when(
+        "our placement",
+        IsRestart(kind=Restart.BALL_PLACEMENT, ours=True),
+        IsAttacker(farthest=farthest),
+        PlaceBall(),
     )
 
 

@@ -57,6 +57,7 @@ from robobt.skills.go_to_pose import GoToPose as GoToPose
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition as GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition as GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance as KeepDistance
+from robobt.skills.restarts.place_ball import PlaceBall as PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart as PrepareRestart
 from robobt.skills.restarts.referee_switch import RefereeSwitch as RefereeSwitch
 from robobt.skills.stop import Stop as Stop

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum, StrEnum
 
 
@@ -66,6 +66,25 @@ class Restart(StrEnum):
 
 
 @dataclass(slots=True, frozen=True)
+class TeamStatus:
+    """What the game controller says of one team.
+
+    Attributes:
+        keeper: number of the goalkeeper; None where nobody decided it.
+        max_robots: robots it may have on the field, cards taken off; None for any number.
+        yellow_cards: how many are in force now.
+        red_cards: how many it got.
+        can_place_ball: whether it may be asked to place the ball.
+    """
+
+    keeper: int | None = None
+    max_robots: int | None = None
+    yellow_cards: int = 0
+    red_cards: int = 0
+    can_place_ball: bool = True
+
+
+@dataclass(slots=True, frozen=True)
 class GameState:
     """The state of the game as of one frame, as the referee decided it.
 
@@ -78,6 +97,11 @@ class GameState:
         may_touch: whether ``restart_team`` may take the restart now.
         placement: where the ball has to be placed or lies for the restart,
             in the coordinates of the frame that holds this state [m].
+        blue, yellow: the teams, as a game controller reports them.
+        events: game events since play was stopped, by the league's names, oldest first.
+        action_time: time left for the present action, None without a limit [s]. Two states that
+            differ only in their times are equal.
+        stage_time: time left in this stage, negative in overtime; None without a game controller [s].
     """
 
     command: RefereeCommand = RefereeCommand.FORCE_START
@@ -88,6 +112,15 @@ class GameState:
     restart_team: Team | None = None
     may_touch: bool = True
     placement: tuple[float, float] | None = None
+    blue: TeamStatus = TeamStatus()
+    yellow: TeamStatus = TeamStatus()
+    events: tuple[str, ...] = ()
+    action_time: float | None = field(default=None, compare=False)
+    stage_time: float | None = field(default=None, compare=False)
+
+    def status(self, team: Team) -> TeamStatus:
+        """Return what the game controller says of a team."""
+        return self.blue if team is Team.BLUE else self.yellow
 
     @property
     def halted(self) -> bool:

@@ -58,3 +58,13 @@ class World(Protocol):
     def shows_truth(self) -> bool:
         """Whether :meth:`observe` always returns what :meth:`truth` does."""
         return False
+
+    @property
+    def refereed(self) -> bool:
+        """Whether a game controller decides the game that the frames hold."""
+        return False
+
+    @property
+    def scenario_ends(self) -> bool:
+        """Whether a scenario's ends hold; else a match lasts until the game controller ends it."""
+        return True

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from math import nan, pi
 
 import pytest
 
-from robobt.league.connection import LeagueError
+from robobt.league.connection import Connection, LeagueError
 from robobt.league.factory import LeagueFactory
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.wire.commands import Teleport
@@ -258,3 +259,57 @@ def test_noise_and_delay_of_the_server_are_bridged() -> None:
             # Some periods of the server and one of ours lie between the two looks.
             assert abs(me.x - x) + abs(me.y - y) < 0.2
             assert me.speed == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("options", "places"),
+    [
+        ({}, True),
+        ({"teams": (Team.BLUE,)}, False),
+        ({"host": "192.168.1.20"}, False),
+        ({"teams": (Team.BLUE,), "place": True}, True),
+        ({"place": False}, False),
+        ({"simulator": "observer"}, False),
+    ],
+    ids=["both teams here", "one team", "another machine", "asked for", "refused", "observer"],
+)
+def test_only_a_field_that_is_all_ours_is_set_up(options: dict[str, object], places: bool) -> None:
+    assert Connection.model_validate(options).places is places
+
+
+def test_where_nothing_may_be_placed_nothing_is_moved() -> None:
+    endpoints = free_endpoints()
+    with served(field(), endpoints, SPEED) as server, connect(endpoints, place=False) as world:
+        before = poses(server.field)
+        ball = server.field.truth().ball.position
+        world.reset(START, 0)
+        world.place_ball(1.0, 1.0)
+        world.act({})
+        for robot, pose in poses(server.field).items():
+            assert pose == pytest.approx(before[robot], abs=1e-6)
+        assert server.field.truth().ball.position == ball
+
+
+def test_where_nothing_may_be_placed_it_waits_for_the_robots(caplog: pytest.LogCaptureFixture) -> None:
+    endpoints = free_endpoints()
+    with served(field(1), endpoints, SPEED) as server, connect(endpoints, place=False) as world:
+        late = threading.Timer(0.4, lambda: server.field.teleport(Teleport(HER, 2.0, -1.0, 0.0)))
+        late.start()
+        world.reset(START, 0)
+        late.join()
+        assert HER in world.observe().robots()
+    assert [record.getMessage() for record in caplog.records if "waiting until" in record.getMessage()] == [
+        "waiting until these robots are seen on the field: yellow 1"
+    ]
+
+
+def test_a_game_controller_decides_score_and_end() -> None:
+    endpoints = free_endpoints()
+    with connect(endpoints, follow_referee=True) as world:
+        assert world.refereed
+        assert not world.scenario_ends
+    with connect(free_endpoints(), follow_referee=True, ends=True) as world:
+        assert world.scenario_ends
+    with connect(free_endpoints()) as world:
+        assert not world.refereed
+        assert world.scenario_ends

@@ -75,6 +75,16 @@ class PublishedWorld(World):
         """See :meth:`robobt.world.World.place_ball`."""
         self.world.place_ball(x, y)
 
+    @property
+    def refereed(self) -> bool:
+        """See :meth:`robobt.world.World.refereed`."""
+        return self.world.refereed
+
+    @property
+    def scenario_ends(self) -> bool:
+        """See :meth:`robobt.world.World.scenario_ends`."""
+        return self.world.scenario_ends
+
     def close(self) -> None:
         """Stop publishing."""
         for sender in self._senders:

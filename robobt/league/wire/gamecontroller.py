@@ -5,18 +5,26 @@ Source of the states: RoboCup SSL rules, chapter "Referee commands".
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Literal
 
+from robobt.league.wire.messages import GameEvent
 from robobt.league.wire.messages import Referee as RefereeMessage
-from robobt.league.wire.packets import PacketCounts, on_field, read
+from robobt.league.wire.packets import MAX_OBJECTS, PacketCounts, on_field, read
 from robobt.league.wire.tracker import SOURCE
-from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import IN_PLAY_DISTANCE
 from robobt.world.state import Frame
 
+_log = logging.getLogger(__name__)
+
 _MM = 1000.0
+
+_SILENCE = 2.0
+"""Another sender is followed once the present one has been silent for this long [s]."""
 
 _KICK_TIMEOUT = 10.0
 """A restart that has not been taken by then is over [s]."""
@@ -61,10 +69,36 @@ class RefereeFollower:
         self.counts = PacketCounts()
         self._counter: tuple[int, int] | None = None
         self._ready: tuple[Point, float] | None = None
+        self._sender: tuple[str, int] | None = None
+        self._heard = 0.0
+        self._ignored: set[tuple[str, int]] = set()
 
-    def read(self, data: bytes) -> bool:
-        """Update the state from a packet; return False (counted) when it is malformed or implausible."""
-        return read(RefereeMessage, data, self.counts, self._update) is not None
+    def read(self, data: bytes, sender: tuple[str, int] = ("", 0), time: float = 0.0) -> bool:
+        """Update the state from a packet; return False (counted) when it is malformed or implausible.
+
+        Of several senders the first is followed until it falls silent; each of the others is
+        reported once.
+
+        Args:
+            data: the packet.
+            sender: address and port it came from.
+            time: when it arrived; grows from call to call [s].
+        """
+        if sender != self._sender and self._sender is not None and time - self._heard <= _SILENCE:
+            if sender not in self._ignored:
+                self._ignored.add(sender)
+                _log.warning(
+                    "two game controllers: following %s:%d, ignoring %s:%d; stop one of them",
+                    *self._sender,
+                    *sender,
+                )
+            self.counts.foreign += 1
+            return False
+        if read(RefereeMessage, data, self.counts, self._update) is None:
+            return False
+        self._sender, self._heard = sender, time
+        self._ignored.discard(sender)
+        return True
 
     def _update(self, message: RefereeMessage) -> bool | None:
         placement: Point | None = None
@@ -91,6 +125,11 @@ class RefereeFollower:
             stage=Stage(int(message.stage)),
             blue_score=message.blue.score,
             yellow_score=message.yellow.score,
+            blue=_status(message.blue),
+            yellow=_status(message.yellow),
+            events=tuple([GameEvent.Type.Name(event.type) for event in message.game_events[:MAX_OBJECTS]]),
+            action_time=_seconds(message, "current_action_time_remaining"),
+            stage_time=_seconds(message, "stage_time_left"),
         )
         return True
 
@@ -138,6 +177,22 @@ class RefereeFollower:
             may_touch=may_touch,
             placement=placement,
         )
+
+
+def _status(info: RefereeMessage.TeamInfo) -> TeamStatus:
+    return TeamStatus(
+        keeper=info.goalkeeper,
+        max_robots=info.max_allowed_bots if info.HasField("max_allowed_bots") else None,
+        yellow_cards=len(info.yellow_card_times),
+        red_cards=info.red_cards,
+        can_place_ball=info.can_place_ball if info.HasField("can_place_ball") else True,
+    )
+
+
+def _seconds(
+    message: RefereeMessage, field: Literal["current_action_time_remaining", "stage_time_left"]
+) -> float | None:
+    return getattr(message, field) * 1e-6 if message.HasField(field) else None
 
 
 def _command(number: int) -> RefereeCommand:

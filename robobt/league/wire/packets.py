@@ -37,7 +37,7 @@ class PacketCounts:
         incomplete: lacking a required field.
         implausible: holding impossible values (not finite, far outside any field), or nothing of use.
         oversized: longer than :data:`MAX_PACKET`.
-        foreign: from an interface or a machine other than the configured one.
+        foreign: from an interface, machine or game controller other than the one that is followed.
     """
 
     accepted: int = 0

@@ -182,6 +182,10 @@ class Scenario(Part):
         """Return the scenario with another time limit [s]."""
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
+    def without_referee(self) -> Scenario:
+        """Return the scenario without a referee of its own, as where a game controller decides."""
+        return self.model_copy(update={"referee": None})
+
     def goalkeepers(self) -> dict[Team, int]:
         """Return the numbers of the teams' goalkeepers, for teams that have one."""
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}

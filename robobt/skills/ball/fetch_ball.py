@@ -11,8 +11,10 @@ from robobt.skills.ball.pick_up_ball import grab
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
+from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, direction, distance, wrap_angle
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 _IN_LINE = radians(25.0)
 _BEHIND = ROBOT_RADIUS + BALL_RADIUS + 0.05
@@ -20,6 +22,38 @@ _NEAR = 0.3
 _GRAB_SPEED = 0.4
 _PULL = dribbling_limits(max_speed=0.5, max_turn=1.0, max_acceleration=0.8)
 """With the ball, backwards: what any dribbler holds."""
+
+
+def pull(
+    frame: Frame, me: RobotState, held: bool, place: Point, free: RobotLimits, pulling: RobotLimits
+) -> tuple[RobotCommand, str]:
+    """Take the ball from the side of ``place`` and drive backwards to there, for one tick.
+
+    A ball at a wall or behind a line comes free this way, for the robot never has to get
+    behind it. The robot may enter its own defence area.
+
+    Args:
+        frame: what is on the field.
+        me: the robot.
+        held: whether it has the ball.
+        place: where the robot's centre is to go with the ball [m].
+        free: how to drive without the ball.
+        pulling: how to drive with it.
+
+    Returns:
+        The command, and what the robot is about to do.
+    """
+    ball = frame.ball.position
+    if held:
+        command = drive(me, place, direction(place, me.position), pulling, frame.period)
+        command.dribbler = True
+        return command, "pulling it"
+    outwards = direction(place, ball)
+    off_line = abs(wrap_angle(direction(me.position, ball) - outwards))
+    if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
+        return grab(me, frame.ball, _GRAB_SPEED, frame.period), "taking it"
+    behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
+    return travel(frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True), "going behind it"
 
 
 @skill
@@ -40,23 +74,10 @@ class FetchBall(DrivingSkill):
 
     def on_running(self) -> Status:
         """Go behind the ball, then up to it, then back with it."""
-        me, ball, period = self.me, self.ball.position, self.frame.period
         place = (self.before_goal - self.frame.field.half_length, 0.0)
-        if distance(ball, place) < 0.3:
+        if distance(self.ball.position, place) < 0.3:
             return self.succeed("the ball is back")
-        facing = direction(me.position, ball)
-        if me.ball_contact:
-            self.store.command = drive(me, place, direction(place, me.position), _PULL, period)
-            self.store.command.dribbler = True
-            return self.run("pulling it back")
-        outwards = direction(place, ball)
-        off_line = abs(wrap_angle(facing - outwards))
-        if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
-            self.store.command = grab(me, self.ball, _GRAB_SPEED, period)
-            return self.run("taking it")
-        behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
-        limits = self.drive_limits
-        self.store.command = travel(
-            self.frame, me, behind, outwards, limits, avoid_ball=True, goalkeeper=True
+        self.store.command, doing = pull(
+            self.frame, self.me, self.me.ball_contact, place, self.drive_limits, _PULL
         )
-        return self.run("going behind it")
+        return self.run(doing)

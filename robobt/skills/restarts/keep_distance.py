@@ -7,9 +7,10 @@ from math import cos, pi, sin
 from robobt.motion.path_planner import allowed_target, travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
-from robobt.world.geometry import Point, direction, distance
+from robobt.world.game import Restart
+from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.rules import STOP_DISTANCE
-from robobt.world.state import ROBOT_RADIUS
+from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _MARGIN = 0.05
 _TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 2.5, -2.5, pi)
@@ -17,9 +18,9 @@ _TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 2.5, -2.5, pi)
 
 @skill
 class KeepDistance(Skill):
-    """Drive away from the ball, and from where it will be put down, until far enough from both.
+    """Drive away from the ball, from where it will be put down and from the way there.
 
-    SUCCESS once the hull is at least ``distance`` away; no faster than the rules
+    SUCCESS once the hull is at least ``distance`` away from them; no faster than the rules
     allow on the way.
 
     Args:
@@ -35,6 +36,9 @@ class KeepDistance(Skill):
         frame, me = self.frame, self.me
         keep = self.distance + ROBOT_RADIUS + _MARGIN
         places = [frame.ball.position]
+        if frame.game.restart is Restart.BALL_PLACEMENT and frame.game.placement is not None:
+            # Whoever places the ball needs the way to the spot free, too.
+            places.append(closest_point_on_segment(me.position, frame.ball.position, frame.game.placement))
         if frame.game.placement is not None and not frame.game.in_play:
             # First of all from where the ball will lie; where it rolls now it will not stay.
             places.insert(0, frame.game.placement)
@@ -42,18 +46,26 @@ class KeepDistance(Skill):
         if not near:
             return self.succeed("far enough")
         # Aimed farther than needed, so that the robot does not creep up to the limit.
-        target = self._way_out(near[0], keep + 2.0 * _MARGIN)
+        target = way_out(frame, me, near[0], keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
         self.store.command = travel(
             frame, me, target, direction(me.position, near[0]), me.limits, goalkeeper=self.goalkeeper
         )
         return self.run("clearing the ball")
 
-    def _way_out(self, place: Point, reach: float) -> Point:
-        """Return a point straight away from ``place``, or as little aside as robots may stand there."""
-        frame, me = self.frame, self.me
-        away = direction(place, me.position)
-        for turn in _TURNS:
-            target = (place[0] + reach * cos(away + turn), place[1] + reach * sin(away + turn))
-            if allowed_target(frame, me, target, goalkeeper=self.goalkeeper) == target:
-                return target
-        return (0.0, 0.0)
+
+def way_out(frame: Frame, me: RobotState, place: Point, reach: float, *, goalkeeper: bool = False) -> Point:
+    """Return a point straight away from ``place``, or as little aside as robots may stand there.
+
+    Args:
+        frame: what is on the field.
+        me: the robot.
+        place: what to get away from [m].
+        reach: how far [m].
+        goalkeeper: may stay in the own defence area.
+    """
+    away = direction(place, me.position)
+    for turn in _TURNS:
+        target = (place[0] + reach * cos(away + turn), place[1] + reach * sin(away + turn))
+        if allowed_target(frame, me, target, goalkeeper=goalkeeper) == target:
+            return target
+    return (0.0, 0.0)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import hypot, inf
 
 from robobt.skills.store import TeamStore
+from robobt.world.game import Restart
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
 from robobt.world.state import Frame, RobotId, RobotState
 
@@ -79,14 +80,18 @@ def _follow_restart(frame: Frame, team: TeamStore) -> None:
 
 def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
     ball, field = frame.ball, frame.field
-    if in_own_defense_area(field, ball.x, ball.y, _REACH) or in_their_defense_area(
-        field, ball.x, ball.y, _REACH
+    placing = frame.game.restart is Restart.BALL_PLACEMENT
+    if not placing and (
+        in_own_defense_area(field, ball.x, ball.y, _REACH)
+        or in_their_defense_area(field, ball.x, ball.y, _REACH)
     ):
         return None
     best: int | None = None
     least = present = inf
     for robot in frame.own:
-        if robot.id == team.kicker or ball.x > team.attackers.get(robot.id, -inf):
+        if robot.id == team.kicker or robot.id not in team.attackers:
+            continue
+        if ball.x > team.attackers[robot.id] and not placing:
             continue
         time = _time_to_ball(frame, robot)
         if robot.id == team.attacker:
@@ -100,7 +105,7 @@ def _time_to_ball(frame: Frame, robot: RobotState) -> float:
     """Estimate when the robot can be at the ball, wherever that will be, with the goal before it [s]."""
     ball, game = frame.ball, frame.game
     x, y = ball.x, ball.y
-    if not game.in_play and game.placement is not None:
+    if not game.in_play and game.placement is not None and game.restart is not Restart.BALL_PLACEMENT:
         x, y = game.placement
     elif has_ball(robot, ball):
         return -_HELD

@@ -9,7 +9,7 @@ import pytest
 from robobt.league.wire.gamecontroller import RefereeFollower, RefereePublisher
 from robobt.league.wire.messages import Referee
 from robobt.world.field import DIVISION_B
-from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.state import BallState, Frame
 
 
@@ -163,10 +163,12 @@ STOPPED = GameState(
 def test_what_is_published_is_followed_to_the_same_state() -> None:
     publisher, follower = RefereePublisher(), RefereeFollower()
     assert follower.read(publisher.write(STOPPED, 1.0))
-    assert follower.game == STOPPED
+    # What goes out names a goalkeeper in any case.
+    named = {"blue": TeamStatus(keeper=0), "yellow": TeamStatus(keeper=0)}
+    assert follower.game == replace(STOPPED, **named)
     kick = replace(STOPPED, command=RefereeCommand.DIRECT_FREE_BLUE, may_touch=True)
     assert follower.read(publisher.write(kick, 2.0))
-    assert follower.game == kick
+    assert follower.game == replace(kick, **named)
 
 
 def test_the_counter_grows_with_each_command_and_only_then() -> None:
@@ -178,3 +180,48 @@ def test_the_counter_grows_with_each_command_and_only_then() -> None:
     assert [m.command_timestamp for m in (first, again, halt)] == [1_000_000, 1_000_000, 2_000_000]
     assert (first.blue.goalkeeper, first.yellow.score) == (5, 1)
     assert Referee.Command.Name(first.next_command) == "DIRECT_FREE_BLUE"
+
+
+def test_cards_keeper_times_and_events_are_known(controller: Controller) -> None:
+    message = controller.message
+    message.yellow.goalkeeper, message.yellow.max_allowed_bots = 4, 5
+    message.yellow.red_cards, message.yellow.yellow_cards = 0, 3
+    message.yellow.yellow_card_times.append(80_000_000)
+    message.yellow.can_place_ball = False
+    message.stage_time_left, message.current_action_time_remaining = -1_500_000, 7_250_000
+    message.game_events.add().type = 6
+    game = controller.say("STOP")
+    assert game.status(Team.YELLOW) == TeamStatus(4, 5, 1, 0, can_place_ball=False)
+    assert game.status(Team.BLUE) == TeamStatus(0, None, 0, 0, can_place_ball=True)
+    assert (game.stage_time, game.action_time) == (-1.5, 7.25)
+    assert game.events == ("BALL_LEFT_FIELD_TOUCH_LINE",)
+
+
+def test_the_clock_alone_makes_no_new_state(controller: Controller) -> None:
+    game = controller.say("STOP")
+    controller.message.stage_time_left = 1_000_000
+    assert controller.repeat() == game
+
+
+def test_of_two_controllers_the_first_is_followed_and_the_other_reported_once(
+    controller: Controller, caplog: pytest.LogCaptureFixture
+) -> None:
+    first, second = ("127.0.0.1", 1000), ("127.0.0.1", 2000)
+    follower, message = controller.follower, controller.message
+    for time in range(5):
+        message.command = Referee.Command.HALT
+        assert follower.read(message.SerializeToString(), first, time / 10)
+        message.command = Referee.Command.FORCE_START
+        message.command_counter = 7
+        assert not follower.read(message.SerializeToString(), second, time / 10)
+        message.command_counter = 0
+    assert follower.game.halted
+    assert follower.counts.foreign == 5
+    assert len([record for record in caplog.records if "two game controllers" in record.message]) == 1
+
+
+def test_a_controller_that_was_started_again_is_followed(controller: Controller) -> None:
+    follower, data = controller.follower, controller.message.SerializeToString()
+    assert follower.read(data, ("127.0.0.1", 1000), 0.0)
+    assert not follower.read(data, ("127.0.0.1", 2000), 1.0)
+    assert follower.read(data, ("127.0.0.1", 2000), 2.5)

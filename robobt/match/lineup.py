@@ -1,0 +1,97 @@
+"""Who plays as what: the goalkeeper's number and how many robots, as the game controller says."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from math import copysign
+
+from robobt.match.players import Player
+from robobt.motion.path_planner import travel
+from robobt.world.command import RobotCommand
+from robobt.world.state import Frame, RobotState
+
+_log = logging.getLogger(__name__)
+
+_ASIDE = 0.4
+"""How far from the defence area a robot that has left stands, and from the next one [m]."""
+
+
+class Lineup:
+    """One team's robots, each with the tree that moves it.
+
+    Args:
+        players: the team's robots with the trees that the scenario gives them.
+        keeper: number of the scenario's goalkeeper; None without one.
+
+    Attributes:
+        players: who moves the robot of each number now.
+    """
+
+    def __init__(self, players: Sequence[Player], keeper: int | None) -> None:
+        self.players = {player.robot.number: player for player in players}
+        self._keeper = keeper
+        self._unknown: int | None = None
+        self._leaving: frozenset[int] = frozenset()
+
+    def follow(self, view: Frame) -> frozenset[int]:
+        """Do what the game controller says of this team; return the numbers of robots that have to leave.
+
+        The robot that it names as the goalkeeper exchanges trees with the one that was. Of too
+        many robots those with the highest numbers leave, the goalkeeper last.
+
+        Args:
+            view: the frame, seen from this team's side.
+        """
+        status = view.game.status(view.team)
+        if status.keeper is not None and status.keeper != self._keeper and self._keeper is not None:
+            self._make_keeper(status.keeper)
+        excess = 0 if status.max_robots is None else len(view.own) - status.max_robots
+        leaving: frozenset[int] = frozenset()
+        if excess > 0:
+            numbers = [robot.id for robot in view.own if robot.id in self.players]
+            leaving = frozenset(sorted(numbers, key=lambda it: (it == self._keeper, -it))[:excess])
+        if leaving != self._leaving:
+            self._leaving = leaving
+            self._forget_roles()
+        return leaving
+
+    def _make_keeper(self, number: int) -> None:
+        old, new = self._keeper, number
+        assert old is not None
+        if new not in self.players:
+            if new != self._unknown:
+                self._unknown = new
+                _log.warning("the game controller's goalkeeper is %d, which does not play here", new)
+            return
+        _log.info("goalkeeper is %d in place of %d", new, old)
+        first, second = self.players[old], self.players[new]
+        for player in (first, second):
+            player.runner.stop()
+        first.robot, second.robot = second.robot, first.robot
+        self.players[old], self.players[new] = second, first
+        self._keeper = new
+        self._forget_roles()
+
+    def _forget_roles(self) -> None:
+        """Let the trees agree anew on who goes for the ball; robots enter themselves as they are asked."""
+        team = next(iter(self.players.values())).store.team
+        team.attackers.clear()
+        team.markers.clear()
+        team.marks.clear()
+        team.attacker = team.agreed_on = None
+
+
+def leave(view: Frame, me: RobotState) -> RobotCommand:
+    """Drive off the field: behind the own goal line, where a game controller does not count robots.
+
+    Args:
+        view: the frame, seen from the own team's side.
+        me: the robot.
+    """
+    field = view.field
+    behind = -(field.half_length + field.margin)
+    y = copysign(field.defense_width / 2 + _ASIDE, me.y)
+    taken = [robot for robot in view.own if robot.id > me.id and robot.x < -field.half_length]
+    y = copysign(abs(y) + _ASIDE * len([robot for robot in taken if robot.y * y > 0.0]), y)
+    return travel(view, me, (behind, y), 0.0, me.limits)

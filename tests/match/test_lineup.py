@@ -1,0 +1,116 @@
+"""The game controller decides who keeps goal and how many robots play."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from robobt.match import Match, load_scenario
+from robobt.sim import SimWorld
+from robobt.world import Frame, GameState, RefereeCommand, RobotId, Team
+from robobt.world.game import TeamStatus
+from robobt.world.protocol import World
+from robobt.worlds import sim_world
+
+
+class Controlled:
+    """Six against six in the simulator, refereed by whoever sets ``game``."""
+
+    def __init__(self) -> None:
+        self.game = GameState(RefereeCommand.FORCE_START)
+        self.match = Match(load_scenario("six_v_six").without_referee(), 1, self._world)
+
+    def _world(self, scenario: object) -> World:
+        world = sim_world(scenario)  # type: ignore[arg-type]
+        assert isinstance(world, SimWorld)
+        truth = world.truth
+
+        def judged() -> Frame:
+            frame = truth()
+            frame.game = self.game
+            return frame
+
+        world.truth = judged  # type: ignore[method-assign]
+        type(self)._refereed(world)
+        return world
+
+    @staticmethod
+    def _refereed(world: SimWorld) -> None:
+        kind = type(world)
+        world.__class__ = type("Refereed", (kind,), {"refereed": True, "scenario_ends": False})
+
+    def play(self, seconds: float) -> Frame:
+        for _ in range(round(seconds * 60)):
+            assert self.match.tick()
+        return self.match.world.truth()
+
+    def tree_of(self, robot: RobotId) -> str:
+        return next(player.runner.root.name for player in self.match.players if player.robot == robot)
+
+
+def test_the_goalkeeper_is_whom_the_controller_names() -> None:
+    controlled = Controlled()
+    controlled.play(0.1)
+    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "keeper"
+    controlled.game = replace(controlled.game, blue=TeamStatus(keeper=4))
+    frame = controlled.play(6.0)
+    assert controlled.tree_of(RobotId(Team.BLUE, 4)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "field player"
+    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "keeper"
+    # Its own wall may be in the way into the defence area.
+    assert frame.robots()[RobotId(Team.BLUE, 4)].x < -3.0
+    controlled.game = replace(controlled.game, blue=TeamStatus(keeper=0))
+    controlled.play(0.1)
+    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "keeper"
+
+
+def test_a_goalkeeper_that_does_not_play_changes_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    controlled = Controlled()
+    controlled.game = replace(controlled.game, yellow=TeamStatus(keeper=9))
+    controlled.play(0.1)
+    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "keeper"
+    assert len([record for record in caplog.records if "does not play here" in record.message]) == 1
+
+
+def test_a_team_with_a_card_takes_a_robot_off_and_brings_it_back() -> None:
+    controlled = Controlled()
+    controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=5))
+    frame = controlled.play(8.0).seen_by(Team.YELLOW)
+    # Where a controller does not count robots: 0.09 m behind the goal line and farther.
+    assert [robot.id for robot in frame.own if robot.x < -4.5 - 0.09] == [5]
+    controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=6))
+    frame = controlled.play(4.0).seen_by(Team.YELLOW)
+    assert not [robot.id for robot in frame.own if robot.x < -4.5]
+
+
+def test_two_robots_leave_and_the_goalkeeper_stays() -> None:
+    controlled = Controlled()
+    controlled.game = replace(controlled.game, blue=TeamStatus(keeper=5, max_robots=4))
+    frame = controlled.play(8.0)
+    assert {robot.id for robot in frame.own if robot.x < -4.5 - 0.09} == {3, 4}
+
+
+def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
+    controlled = Controlled()
+    controlled.match = Match(load_scenario("striker_vs_goalie"), 1, controlled._world)
+    moving = controlled.play(1.0)
+    assert max(robot.speed for robot in (*moving.own, *moving.opponents)) > 0.5
+    controlled.game = GameState(RefereeCommand.HALT, may_touch=False)
+    halted = controlled.play(1.0)
+    assert max(robot.speed for robot in (*halted.own, *halted.opponents)) < 0.01
+
+
+def test_the_ends_of_the_scenario_do_not_end_a_match_that_a_controller_decides() -> None:
+    controlled = Controlled()
+    controlled.match = Match(load_scenario("striker_vs_goalie").lasting(0.5), 1, controlled._world)
+    controlled.game = GameState(RefereeCommand.FORCE_START, blue_score=2, yellow_score=1)
+    controlled.play(2.0)
+    result = controlled.match.result()
+    assert (result.blue_score, result.yellow_score) == (2, 1)
+
+
+def test_a_scenario_with_its_own_referee_is_refused_where_a_controller_decides() -> None:
+    controlled = Controlled()
+    with pytest.raises(Exception, match=r"six_v_six.*referee: .*--no-referee"):
+        Match(load_scenario("six_v_six"), 1, controlled._world)

@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+from math import hypot, pi
+
+import pytest
+
+from robobt.skills.restarts.place_ball import PlaceBall
+from robobt.tree import Status
+from robobt.world import GameState, RefereeCommand, Restart, Team
+from robobt.world.geometry import Point
+from robobt.world.state import Frame
+from tests.simulation import Trial, blue
+from tests.skills.fixed_world import robot
+from tests.skills.refereed import STOP, Drive, free_kick
+
+
+def placement(spot: Point, team: Team = Team.BLUE) -> GameState:
+    command = RefereeCommand[f"BALL_PLACEMENT_{team.name}"]
+    return GameState(command, restart=Restart.BALL_PLACEMENT, restart_team=team, placement=spot)
+
+
+def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
+    trial = Trial({blue(1): PlaceBall()}, {blue(1): (-1.0, 0.5, 0.0)}, ball, settings)
+    observe = trial.world.observe
+
+    def observe_placement() -> Frame:
+        frame = observe()
+        frame.game = placement(spot)
+        return frame
+
+    trial.world.observe = observe_placement  # type: ignore[method-assign]
+    trial.run(seconds)
+    return trial
+
+
+@pytest.mark.parametrize("settings", ["default", "grsim"])
+@pytest.mark.parametrize(
+    ("ball", "spot"),
+    [
+        ((1.0, 1.0), (-1.0, -1.0)),
+        ((4.55, 1.5), (4.3, 2.8)),
+        ((0.0, 3.1), (0.0, 2.8)),
+        ((0.5, 0.0), (0.6, 0.0)),
+    ],
+    ids=["across the field", "corner", "over the touch line", "a hand's breadth"],
+)
+def test_the_ball_comes_to_rest_on_the_spot_and_the_robot_leaves_it(
+    ball: Point, spot: Point, settings: str
+) -> None:
+    last = place(ball, spot, 20.0, settings).frames[-1]
+    assert hypot(last.ball.x - spot[0], last.ball.y - spot[1]) < 0.15
+    assert last.ball.speed < 0.2
+    (me,) = last.own
+    # A kick by the opponents may be next: half a metre from the hull.
+    assert hypot(me.x - last.ball.x, me.y - last.ball.y) > 0.5 + 0.09
+
+
+def test_the_ball_is_never_kicked() -> None:
+    trial = place((1.0, 1.0), (-1.0, -1.0), 15.0, "default")
+    assert trial.kicks == []
+    assert max(frame.ball.speed for frame in trial.frames) < 1.5
+
+
+def test_without_a_spot_it_waits() -> None:
+    game = GameState(
+        RefereeCommand.BALL_PLACEMENT_BLUE, restart=Restart.BALL_PLACEMENT, restart_team=Team.BLUE
+    )
+    drive = Drive(PlaceBall(), robot(1.0, 0.0, heading=pi, number=1), game, (0.0, 0.0), seconds=0.2)
+    assert drive.status is Status.RUNNING
+    assert drive.end.position == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("game", [STOP, free_kick(Team.BLUE, (0.0, 0.0))], ids=["stop", "free kick"])
+def test_it_fails_when_no_placement_is_asked_for(game: GameState) -> None:
+    assert Drive(PlaceBall(), robot(1.0, number=1), game, (0.0, 0.0), seconds=0.1).status is Status.FAILURE
