@@ -8,6 +8,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -15,7 +16,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
 from typing import Generic, TypeVar
+
+from robobt.signals import TERMINATE, ending, uninterrupted
 
 TaskT = TypeVar("TaskT")
 ReportT = TypeVar("ReportT")
@@ -23,6 +27,9 @@ ResultT = TypeVar("ResultT")
 
 MAX_WORKERS = 256
 """Most worker processes of a run."""
+
+_REACTION = 0.4
+"""How long a worker that is told to end may take to finish its files [s]."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -65,7 +72,8 @@ def run_tasks(
     """Yield the result of every task, in the order in which they finish.
 
     Worker processes are spawned, ignore Ctrl-C, use one thread each and end with this
-    process, however it ends. Close the generator to end them earlier.
+    process, however it ends; a task in progress is ended by an exception, so that it can
+    finish its files. Close the generator to end them earlier.
 
     Args:
         work: what is done with each task.
@@ -92,7 +100,8 @@ def run_tasks(
     try:
         with _ignoring_interrupts():
             while len(crew) < workers and (first := list(islice(waiting, ahead))):
-                crew.append(_Worker(packed, setup, first))
+                with uninterrupted:
+                    crew.append(_Worker(packed, setup, first))
         busy = {worker.connection: worker for worker in crew}
         while busy:
             for ready in wait(list(busy)):
@@ -117,10 +126,19 @@ def run_tasks(
                 else:
                     raise work.error(f"a worker process does not know what this one does: {content}")
     finally:
-        for worker in crew:
-            worker.process.terminate()
-        for worker in crew:
-            worker.process.join()
+        _end([worker.process for worker in crew])
+
+
+def _end(processes: list[BaseProcess]) -> None:
+    """End processes, by force where they do not react."""
+    for process in processes:
+        process.terminate()
+    end = time.monotonic() + _REACTION
+    for process in processes:
+        process.join(max(0.0, end - time.monotonic()))
+    for process in processes:
+        process.kill()
+        process.join()
 
 
 class _Worker(Generic[TaskT]):
@@ -153,7 +171,7 @@ def _serve(setup: Callable[[], object] | None, packed: bytes, connection: Connec
     # What trees raise is counted in the results; a line on stderr each tick helps nobody.
     logging.getLogger("robobt").setLevel(logging.ERROR)
     # The connection fails once the parent has closed its end: nobody waits for an answer any more.
-    with suppress(EOFError, OSError):
+    with ending(TERMINATE), suppress(EOFError, OSError):
         try:
             if setup is not None:
                 setup()
@@ -182,6 +200,8 @@ def _end_with_parent() -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(_REACTION)
         os._exit(1)
 
 

@@ -16,6 +16,18 @@ import pytest
 StartPython = Callable[..., "subprocess.Popen[str]"]
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--moments", type=int, default=20, help="How often the slow tests of endings end a match."
+    )
+
+
+@pytest.fixture
+def moments(request: pytest.FixtureRequest) -> int:
+    """How many random moments a slow test tries."""
+    return int(request.config.getoption("--moments"))
+
+
 @pytest.fixture(autouse=True)
 def _the_log_as_it_was() -> Iterator[None]:
     """A command that ran in this process has set how much is logged; the next test starts afresh."""

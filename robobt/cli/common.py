@@ -10,7 +10,8 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
@@ -21,6 +22,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from robobt.config.errors import ConfigError, RobobtError
+from robobt.signals import Terminated, at_the_latest_after, ending
 
 if TYPE_CHECKING:
     from robobt.match.loop import WorldFactory
@@ -65,7 +67,7 @@ Where = Annotated[
         help="Where to play: sim, or a field of the league like league://grsim (one worker).",
     ),
 ]
-"""The option of every command that can play elsewhere; see ``factory_of``."""
+"""The option of every command that can play elsewhere; see ``world_of``."""
 
 Bundled = Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")]
 """The argument of commands that play a scenario."""
@@ -81,14 +83,27 @@ _T = TypeVar("_T")
 
 
 def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
-    """Turn whatever goes wrong in a command into one line on stderr and exit code 1."""
+    """Turn whatever goes wrong in a command, or a signal that ends it, into one line on stderr.
+
+    The exit code is 1, or that of the signal: 130 for SIGINT, 143 for SIGTERM.
+    """
 
     @wraps(command)
     def guarded(*args: _P.args, **kwargs: _P.kwargs) -> None:
+        with ending():
+            run(*args, **kwargs)
+
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> None:
         try:
             command(*args, **kwargs)
         except (typer.Exit, typer.Abort, typer.BadParameter, BrokenPipeError):
             raise
+        except KeyboardInterrupt as error:
+            errors.print("robobt: ended by SIGINT")
+            raise typer.Exit(130) from error
+        except Terminated as error:
+            errors.print(f"robobt: ended by {error.signal.name}")
+            raise typer.Exit(128 + error.signal) from error
         except Exception as error:
             if log.isEnabledFor(logging.DEBUG):
                 raise
@@ -119,16 +134,37 @@ def import_files(paths: Iterable[Path] | None) -> None:
             import_file(path)
 
 
-def factory_of(world: str) -> WorldFactory:
-    """Return the world factory of an address; on a signal to end, real robots are stopped first."""
-    from robobt.worlds import SIM, world_from
+_PATIENCE = 0.6
+"""How long a skill may go on after a signal that ends the command [s]."""
 
-    factory = world_from(world)
-    if world != SIM:
-        from robobt.league.signals import exit_on_signals
 
-        exit_on_signals()
-    return factory
+@contextmanager
+def world_of(address: str, publish: bool = False) -> Iterator[WorldFactory]:
+    """Return the world factory of an address.
+
+    At the end of the block, also by a signal that some skill ignores, robots of the league are
+    stopped and ports released.
+
+    Args:
+        address: as in ``--world``.
+        publish: whether matches are published on this machine.
+    """
+    from robobt.worlds import world_from
+
+    factories = [world_from(address)]
+    if publish:
+        from robobt.league.serve.publishing import PublishingFactory
+
+        factories.append(PublishingFactory(factories[0]))
+    with ExitStack() as stack:
+        for factory in factories:
+            stack.callback(getattr(factory, "close", _nothing))
+        stack.enter_context(at_the_latest_after(_PATIENCE))
+        yield factories[-1]
+
+
+def _nothing() -> None:
+    """Close a factory that holds nothing."""
 
 
 def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:

@@ -16,11 +16,11 @@ from robobt.cli.common import (
     Workers,
     console,
     cores,
-    factory_of,
     one_line_errors,
     print_json,
     say,
     table,
+    world_of,
 )
 
 if TYPE_CHECKING:
@@ -73,9 +73,8 @@ def deployed(
     used = SEED if seed is None else seed
     if world != SIM and workers not in (None, 1):
         raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
-    factory = factory_of(world)
     processes = workers or (cores() if world == SIM else 1)
-    with Progress("deployed", 2 * len(PLAYED) * shots) as progress:
+    with Progress("deployed", 2 * len(PLAYED) * shots) as progress, world_of(world) as factory:
         result = run(
             shots,
             used,
@@ -84,8 +83,8 @@ def deployed(
             progress=progress.advance,
             world=factory,
         )
-    if picture is not None:
-        judged_goal_line("half", used, picture, goalkeeper.value, factory)
+        if picture is not None:
+            judged_goal_line("half", used, picture, goalkeeper.value, factory)
     if as_json:
         print_json(result)
         return

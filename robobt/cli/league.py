@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
+from robobt.signals import Terminated
 
 if TYPE_CHECKING:
     from robobt.league.serve.server import SimServer
@@ -130,7 +131,8 @@ def serve(
         )
         if not as_json:
             _announce(server)
-        with suppress(KeyboardInterrupt):
+        # A signal is how one stops serving.
+        with suppress(KeyboardInterrupt, Terminated):
             server.run(seconds)
     packets = {port: asdict(counts) for port, counts in server.counts.items()}
     figures = {"frames": server.frames, "simulated_s": served.time, "packets": packets}

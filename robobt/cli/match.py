@@ -29,6 +29,7 @@ from robobt.cli.common import (
     print_json,
     say,
     table,
+    world_of,
 )
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ def match(
     is equal for equal runs; replay: the file written, or null.
     """
     from robobt.match import load_scenario, run_trials
-    from robobt.worlds import SIM, scenario_settings, world_from
+    from robobt.worlds import SIM, scenario_settings
 
     import_files(imports)
     loaded = _changed(load_scenario(scenario), on_error, substitute or [])
@@ -147,18 +148,10 @@ def match(
         loaded = loaded.without_referee()
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
-    factory = world_from(world)
-    if publish:
-        from robobt.league.serve.publishing import PublishingFactory
-
-        factory = PublishingFactory(factory)
     if world != SIM or publish:
         if workers not in (None, 1):
             raise typer.BadParameter("must be 1 to play or publish over the network", param_hint="--workers")
         workers = 1
-        from robobt.league.signals import exit_on_signals
-
-        exit_on_signals()
     count = loaded.trials if trials is None else trials
     recorded = 0 if record is None else record
     if recorded >= count:
@@ -175,7 +168,7 @@ def match(
     with tempfile.TemporaryDirectory() as folder:
         page = replay is not None and replay.suffix.lower() == PAGE
         recording = Path(folder) / f"trial{RECORDING}" if page else replay
-        with Progress(loaded.name, count) as progress:
+        with Progress(loaded.name, count) as progress, world_of(world, publish) as factory:
             run = run_trials(
                 loaded,
                 factory,

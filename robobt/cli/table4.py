@@ -13,11 +13,11 @@ from robobt.cli.common import (
     Seed,
     Where,
     console,
-    factory_of,
     one_line_errors,
     print_json,
     say,
     table,
+    world_of,
 )
 
 if TYPE_CHECKING:
@@ -76,8 +76,10 @@ def table4(
     _check([] if realism is None else [realism], REALISM, "--realism")
     _check(only or [], COMBINATIONS, "--only")
     combinations = tuple(only or COMBINATIONS)
-    factory = factory_of(world)
-    with Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress:
+    with (
+        Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress,
+        world_of(world) as factory,
+    ):
         result = run(
             runs,
             seed,

@@ -16,6 +16,7 @@ from robobt.league.pacing import Pace
 from robobt.league.placing import Placer
 from robobt.league.wire.commands import clamp_command
 from robobt.league.wire.packets import PacketCounts
+from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_B, FieldGeometry
@@ -180,16 +181,17 @@ class LeagueWorld(World):
 
     def close(self) -> None:
         """Stop the robots and release all ports."""
-        if self._closed:
-            return
-        self._closed = True
-        atexit.unregister(self.close)
-        stop = {robot: RobotCommand() for robot in self._commanded()}
-        # Repeated, because packets get lost.
-        for _ in range(3):
-            self._link.send(stop, self._feed.now())
-        self._link.close()
-        self._feed.close()
+        with uninterrupted:
+            if self._closed:
+                return
+            self._closed = True
+            atexit.unregister(self.close)
+            stop = {robot: RobotCommand() for robot in self._commanded()}
+            # Repeated, because packets get lost.
+            for _ in range(3):
+                self._link.send(stop, self._feed.now())
+            self._link.close()
+            self._feed.close()
 
     def __enter__(self) -> Self:
         return self

@@ -19,6 +19,7 @@ from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
+from robobt.signals import check, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
@@ -84,7 +85,8 @@ class Match:
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
         self._time = 0.0
-        self._recorder = None if record is None else self._make_recorder(Path(record))
+        with uninterrupted:
+            self._recorder = None if record is None else self._make_recorder(Path(record))
 
     def play(self) -> MatchResult:
         """Play to the end."""
@@ -103,7 +105,7 @@ class Match:
     def close(self) -> None:
         """Finish the recording; a match played tick by tick is closed by ``with`` or by this."""
         if self._recorder is not None:
-            with self._recorder as recorder:
+            with uninterrupted, self._recorder as recorder:
                 if self.outcome is not None:
                     scores = self._judge.scores
                     recorder.close(
@@ -121,6 +123,7 @@ class Match:
         Raises:
             TreeError: a tree raised, and the scenario's ``on_error`` is "raise"; robot and node are named.
         """
+        check()
         truth = self.world.truth()
         self._time = truth.time
         if self._referee is not None:
@@ -142,7 +145,8 @@ class Match:
             self._trace.event(self.outcome)
             self._commands = {}
         if self._recorder is not None:
-            self._record(self._recorder, truth, packed, frame)
+            with uninterrupted:
+                self._record(self._recorder, truth, packed, frame)
         if self.outcome is not None:
             return False
         self.world.act(self._commands)

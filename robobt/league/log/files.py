@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, NamedTuple, Self, cast
 
 from robobt.config.errors import RobobtError
+from robobt.signals import uninterrupted
 
 _log = logging.getLogger(__name__)
 
@@ -75,17 +76,19 @@ class LogWriter:
 
     def write(self, time: int, kind: LogKind, data: bytes) -> None:
         """Add a packet that was received at a time [ns]."""
-        self._file.write(_RECORD.pack(time, kind, len(data)) + data)
-        self._unflushed += 1
-        if self._unflushed >= _FLUSH_EVERY:
-            self._file.flush()
-            self._unflushed = 0
+        with uninterrupted:
+            self._file.write(_RECORD.pack(time, kind, len(data)) + data)
+            self._unflushed += 1
+            if self._unflushed >= _FLUSH_EVERY:
+                self._file.flush()
+                self._unflushed = 0
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._file.close()
+        with uninterrupted:
+            self._file.close()
 
 
 def read_log(path: str | Path) -> Iterator[LogRecord]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from robobt.league.log.files import LogKind, LogWriter
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.sockets import Receiver
+from robobt.signals import Terminated, check
 
 
 def log_field(
@@ -41,9 +42,10 @@ def log_field(
         }
         log = opened.enter_context(LogWriter(path))
         end = None if seconds is None else time.monotonic() + seconds
-        # An interrupt is how one stops listening.
-        with suppress(KeyboardInterrupt):
+        # A signal is how one stops listening.
+        with suppress(KeyboardInterrupt, Terminated):
             while end is None or time.monotonic() < end:
+                check()
                 for receiver in select.select(list(receivers), [], [], 0.1)[0]:
                     for packet in receiver.receive():
                         log.write(time.time_ns(), receivers[receiver], packet.data)

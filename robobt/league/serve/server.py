@@ -24,6 +24,7 @@ from robobt.league.wire.sockets import LOOPBACK, Sender
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_field, write_vision
 from robobt.match.referee.settings import RefereeSettings
+from robobt.signals import check, uninterrupted
 
 _BEHIND = 0.25
 """A server that is later than this skips what it missed instead of catching up [s]."""
@@ -113,6 +114,7 @@ class SimServer:
         base, base_time = began, self.field.time
         speed = self.speed
         while True:
+            check()
             now = clocks.monotonic()
             if seconds is not None and now - began >= seconds:
                 return
@@ -178,9 +180,10 @@ class SimServer:
         self.close()
 
     def _send(self, due: float, sender: Sender, data: bytes) -> None:
-        sender.send(data)
-        if self._log is not None:
-            self._log.write(round((self._epoch + due) * 1e9), self._kinds[sender], data)
+        with uninterrupted:
+            sender.send(data)
+            if self._log is not None:
+                self._log.write(round((self._epoch + due) * 1e9), self._kinds[sender], data)
 
     def _post(self, due: float, sender: Sender, data: bytes) -> None:
         heapq.heappush(self._outbox, (due, next(self._order), sender, data))

@@ -8,6 +8,7 @@ by doing the work of many ticks at once, where they are written.
 
 from __future__ import annotations
 
+import atexit
 import json
 from collections import defaultdict
 from collections.abc import Mapping
@@ -97,6 +98,8 @@ class Recorder:
                 with suppress(OSError):
                     self._file.close()
                 raise
+        # For a process that ends without closing it.
+        atexit.register(self._release)
 
     def __enter__(self) -> Self:
         return self
@@ -228,6 +231,7 @@ class Recorder:
     def _release(self) -> None:
         if self._file.closed:
             return
+        atexit.unregister(self._release)
         with naming(self.path), self._file:
             self._flush()
             self._writer.close()

@@ -1,0 +1,197 @@
+"""Signals that end a program: never lost, and never in the middle of what has to be whole.
+
+Within :func:`ending`, SIGTERM and SIGHUP raise :class:`Terminated` and SIGINT raises
+KeyboardInterrupt in the main thread, wherever it is, so that files are finished and robots
+stopped on the way out. Two exceptions: inside ``with uninterrupted:`` the signal waits for
+the end of the block, and where the exception was swallowed, as by a callback from C or by a
+skill that catches everything, :func:`check` raises it again.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+_BASE = 128
+"""Exit statuses of processes that a signal ended are its number plus this."""
+
+_TOGETHER = 1.0
+"""Signals within this time of the first one ask for the same end: service managers send several [s]."""
+
+_WAIT_FOR_WRITERS = 0.2
+"""How long a forced end waits for a block that must not be interrupted [s]."""
+
+TERMINATE: tuple[int, ...] = tuple(
+    getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""The signals that raise :class:`Terminated`."""
+
+
+class Terminated(SystemExit):
+    """The process was told to end; uncaught, it gives the exit status that the signal itself would.
+
+    Attributes:
+        signal: which signal told it.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(_BASE + number)
+        self.signal = signal.Signals(number)
+
+
+class _Uninterrupted:
+    """A block at whose end a signal takes effect that arrived inside; blocks may be nested.
+
+    Attributes:
+        depth: how many blocks the main thread is in.
+    """
+
+    def __init__(self) -> None:
+        self.depth = 0
+
+    def __enter__(self) -> None:
+        if threading.get_ident() == _MAIN:
+            self.depth += 1
+
+    def __exit__(self, *_: object) -> None:
+        if threading.get_ident() == _MAIN:
+            self.depth -= 1
+            if not self.depth and _told.waiting:
+                check()
+
+
+class _Told:
+    """What the process has been told.
+
+    Attributes:
+        number: the signal, None before one has come.
+        at: when it came [s].
+        waiting: whether it has still to be raised, because it came inside an uninterrupted block.
+        patience: how long the main thread may take to react before the end is forced, None for ever [s].
+        force: ends the process when that time is over.
+    """
+
+    def __init__(self) -> None:
+        self.number: int | None = None
+        self.at = 0.0
+        self.waiting = False
+        self.patience: float | None = None
+        self.force: threading.Timer | None = None
+
+
+_MAIN = threading.main_thread().ident
+_told = _Told()
+
+uninterrupted = _Uninterrupted()
+"""Put ``with uninterrupted:`` around what is written or sent as a whole; no effect in other threads."""
+
+
+def check() -> None:
+    """Raise again what a signal has raised, in case somebody has swallowed it; else do nothing.
+
+    Raises:
+        Terminated: SIGTERM or SIGHUP has come.
+        KeyboardInterrupt: SIGINT has come.
+    """
+    if _told.number is not None and threading.get_ident() == _MAIN:
+        _told.waiting = False
+        raise KeyboardInterrupt if _told.number == signal.SIGINT else Terminated(_told.number)
+
+
+@contextmanager
+def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[None]:
+    """Let signals end the block, then install the previous handlers again; in other threads do nothing.
+
+    SIGINT works even where the shell had it ignored, as for a command in the background of a
+    script. SIGHUP stays ignored where it is, as ``nohup`` wants it; otherwise what is printed
+    to the closed terminal from then on is dropped.
+
+    Args:
+        numbers: the signals.
+    """
+    if threading.get_ident() != _MAIN:
+        yield
+        return
+    terminals = [fd for fd in (1, 2) if _is_terminal(fd)]
+
+    def on_signal(number: int, _: FrameType | None) -> None:
+        if number == getattr(signal, "SIGHUP", None):
+            _close(terminals)
+        now = time.monotonic()
+        if _told.number is not None and now < _told.at + _TOGETHER:
+            return
+        _told.number, _told.at = number, now
+        if _told.patience is not None and _told.force is None:
+            _told.force = threading.Timer(_told.patience, _end_by_force)
+            _told.force.daemon = True
+            _told.force.start()
+        _told.waiting = uninterrupted.depth > 0
+        if not _told.waiting:
+            check()
+
+    before = {number: signal.getsignal(number) or signal.SIG_DFL for number in numbers}
+    try:
+        for number, handler in before.items():
+            if number == signal.SIGINT or handler is not signal.SIG_IGN:
+                signal.signal(number, on_signal)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        _told.number, _told.waiting = None, False
+
+
+@contextmanager
+def at_the_latest_after(seconds: float) -> Iterator[None]:
+    """Force the end of the process where a signal has not ended the block after some time.
+
+    That takes what runs on and on whatever is raised in it, such as a skill with a bare
+    ``except`` in an endless loop. What is registered with ``atexit`` is still done.
+
+    Args:
+        seconds: from the signal on [s].
+    """
+    _told.patience = seconds
+    try:
+        yield
+    finally:
+        _told.patience = None
+        if _told.force is not None:
+            _told.force.cancel()
+            _told.force = None
+
+
+def _end_by_force() -> None:
+    """End the process from another thread than the main one."""
+    number = _told.number
+    if number is None:
+        return
+    end = time.monotonic() + _WAIT_FOR_WRITERS
+    while uninterrupted.depth and time.monotonic() < end:
+        time.sleep(0.001)
+    name = signal.Signals(number).name
+    with suppress(OSError):
+        os.write(2, f"robobt: ended by force on {name}: a skill or a callback does not let go\n".encode())
+    atexit._run_exitfuncs()
+    os._exit(_BASE + number)
+
+
+def _is_terminal(fd: int) -> bool:
+    with suppress(OSError):
+        return os.isatty(fd)
+    return False
+
+
+def _close(terminals: list[int]) -> None:
+    """Print to nowhere instead: a terminal that is gone answers with errors."""
+    for fd in terminals:
+        with suppress(OSError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, fd)
+            os.close(nowhere)
