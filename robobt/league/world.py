@@ -99,7 +99,8 @@ class LeagueWorld(World):
         self._placer = Placer(self._feed, self._link, self._commanded, clock)
         now = self._feed.now()
         self._pace = Pace(period, now)
-        self._sent_at = self._looked = self._looked_at = now
+        self._sent_at = self._looked = self._looked_at = self._began = now
+        self._kicks: list[tuple[RobotId, float]] = []
         self._restart_time()
         self._closed = False
         atexit.register(self.close)
@@ -158,6 +159,13 @@ class LeagueWorld(World):
         self._wait()
         feed.filter.possession.feedback.update(self._link.feedback())
         self._look()
+        seen = feed.filter.kicks
+        self._kicks = [(kick.robot, min(self._time, max(0.0, kick.time - self._began))) for kick in seen]
+        seen.clear()
+
+    def seen_kicks(self) -> list[tuple[RobotId, float]]:
+        """Return who was seen to kick during the last act, and when; see the protocol."""
+        return self._kicks
 
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest; where nothing may be placed, a person has to."""
@@ -209,6 +217,8 @@ class LeagueWorld(World):
     def _restart_time(self) -> None:
         """Begin the match's time at 0, now."""
         self._time = 0.0
+        self._kicks = []
+        self._feed.filter.kicks.clear()
         self._looked, self._looked_at = self._feed.now(), self._feed.vision_now()
         self._began = self._looked_at
         self._restarts = self._feed.filter.restarts

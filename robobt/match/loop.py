@@ -132,7 +132,7 @@ class Match:
             # A world may have a referee of its own: the league's game controller.
             self.game = truth.game
         truth.game = self.game
-        self.measures.update(truth, self.game, self._commands)
+        self.measures.update(truth, self.game, self._commands, self.world.seen_kicks())
         packed = truth.packed()
         self._trace.update(packed, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)

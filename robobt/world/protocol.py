@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -53,6 +53,13 @@ class World(Protocol):
 
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest (the referee's hand), in world coordinates [m]."""
+
+    def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
+        """Return who was seen to kick between the last two frames, and when in the frames' time [s].
+
+        None where that follows from the true states and the commands.
+        """
+        return None
 
     @property
     def shows_truth(self) -> bool:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Callable
+
 import pytest
 
 from robobt.league.serve.server import SimServer
@@ -14,6 +17,7 @@ from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import settings_from
 from robobt.statistics import wilson_interval
+from robobt.world.state import RobotId
 from robobt.worlds import sim_world
 from tests.league.lockstep import LockstepWorld
 from tests.league.served import free_endpoints
@@ -21,7 +25,10 @@ from tests.league.served import free_endpoints
 TRIALS = 100
 
 
-def over_the_network(scenario: Scenario, trials: int) -> list[MatchResult]:
+def over_the_network(
+    scenario: Scenario, trials: int, on_kick: Callable[[RobotId], None] | None = None
+) -> list[MatchResult]:
+    """Play trials against a server; ``on_kick`` is called when a robot kicks there."""
     settings = settings_from(scenario.simulator)
     robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     endpoints: Endpoints = free_endpoints()
@@ -37,7 +44,33 @@ def over_the_network(scenario: Scenario, trials: int) -> list[MatchResult]:
             endpoints=endpoints,
         ) as world,
     ):
+        if on_kick is not None:
+            server.step = _telling(server, on_kick)  # type: ignore[method-assign]
         return [play_match(scenario, trial_seed(scenario.seed, n), lambda _: world) for n in range(trials)]
+
+
+def _telling(server: SimServer, on_kick: Callable[[RobotId], None]) -> Callable[[], None]:
+    step = server.step
+
+    def stepped() -> None:
+        step()
+        for robot in server.field.kicked:
+            on_kick(robot)
+
+    return stepped
+
+
+@pytest.mark.parametrize("name", ["striker_vs_goalie", "table4_trial2"])
+def test_kicks_are_counted_as_they_were_made(name: str) -> None:
+    made: Counter[str] = Counter()
+    results = over_the_network(load_scenario(name), 3, lambda robot: made.update([str(robot)]))
+    counted: Counter[str] = Counter()
+    for result in results:
+        counted.update({robot: figures.kicks for robot, figures in result.robots.items()})
+        if result.outcome.startswith("goal"):
+            assert sum(figures.kicks for figures in result.robots.values()) > 0
+    assert made.total() > 2
+    assert +counted == made
 
 
 @pytest.mark.slow

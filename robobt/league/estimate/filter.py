@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import hypot, inf
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
+from robobt.league.estimate.kicks import Kick, KickWatch
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
 from robobt.league.estimate.robot_track import RobotMotion, RobotTrack, SentCommands, predict_robot
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
@@ -74,6 +75,7 @@ class VisionFilter:
         captured: capture time of the newest frame, None before the first [s].
         restarts: how often the source was restarted.
         possession: who has the ball.
+        kicks: what was seen of kicks since this list was last emptied.
     """
 
     def __init__(
@@ -99,6 +101,8 @@ class VisionFilter:
         """Forget everything but the field."""
         self.captured: float | None = None
         self.possession = Possession(self.settings.body)
+        self.kicks: list[Kick] = []
+        self._kick_watch = KickWatch(self.settings.body.face)
         self._cameras: dict[int, float] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
@@ -244,6 +248,9 @@ class VisionFilter:
             return
         self._ball_seen, self._ball_camera = max(time, self._ball_seen), camera
         self.possession.update(track.motion, motions)
+        kick = self._kick_watch.update(time, nearest.x, nearest.y, motions, self._sent)
+        if kick is not None:
+            self.kicks.append(kick)
 
     def _confirmed(self, robot: RobotId | None, x: float, y: float, time: float, gate: float) -> bool:
         """Return whether an outlier of a robot, or of the ball (None), was repeated often enough."""

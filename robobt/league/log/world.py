@@ -49,6 +49,7 @@ class LogWorld(World):
         self.period = period
         self.counts = PacketCounts()
         self._clock = 0
+        self._kicks: list[tuple[RobotId, float]] = []
         self._rewind()
 
     def reset(self, placement: Placement, seed: int) -> None:  # noqa: ARG002
@@ -81,6 +82,13 @@ class LogWorld(World):
             self._use(self._waiting)
         if self._waiting is not None:
             self._clock = max(self._clock, self._waiting.time - round(_GAP * 1e9))
+        # A log's clocks may differ from the frames' time, so that only the tick is known.
+        self._kicks = [(kick.robot, self._ticks * self.period) for kick in self._filter.kicks]
+        self._filter.kicks.clear()
+
+    def seen_kicks(self) -> list[tuple[RobotId, float]]:
+        """Return who was seen to kick during the last act, and when; see the protocol."""
+        return self._kicks
 
     def place_ball(self, x: float, y: float) -> None:
         """Do nothing: the ball is where it was."""
@@ -97,6 +105,7 @@ class LogWorld(World):
         self._refereed = False
         self._tracked: tuple[str, Frame] | None = None
         self._ticks = 0
+        self._kicks = []
         self._waiting = next(self._records, None)
         self._clock = 0 if self._waiting is None else self._waiting.time
 

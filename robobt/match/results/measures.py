@@ -1,9 +1,9 @@
-"""What is measured in a match, from true frames alone."""
+"""What is measured in a match, from true frames and, where a world sees them, kicks."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import cos, sin
 from struct import pack
 
@@ -35,13 +35,21 @@ class Measures:
         self.kicked: list[RobotId] = []
         self._outgoing: dict[RobotId, float] = {}
 
-    def update(self, truth: Frame, game: GameState, commands: Mapping[RobotId, RobotCommand]) -> None:
+    def update(
+        self,
+        truth: Frame,
+        game: GameState,
+        commands: Mapping[RobotId, RobotCommand],
+        seen: Sequence[tuple[RobotId, float]] | None = None,
+    ) -> None:
         """Take in the next true frame.
 
         Args:
             truth: what really is on the field, seen from blue's side.
             game: the state of the game.
             commands: the robots' commands at the frame before.
+            seen: kicks since the frame before and when they happened [s]; None for a world where
+                they follow from the states and the commands.
         """
         self.ticks += 1
         self.kicked.clear()
@@ -51,14 +59,20 @@ class Measures:
             for robot in robots:
                 identity = RobotId(team, robot.id)
                 if robot.ball_contact:
-                    figures = self.robots[identity]
-                    if figures.go_to_ball is None:
+                    figures = self.robots.get(identity)
+                    if figures is not None and figures.go_to_ball is None:
                         figures.go_to_ball = truth.time
+                if seen is not None:
+                    continue
                 command = commands.get(identity)
                 if command is not None and command.kick_speed > 0.0:
                     self._look_for_kick(identity, robot, truth, command.kick_speed)
                 elif identity in self._outgoing:
                     del self._outgoing[identity]
+
+        for identity, time in seen or ():
+            if identity in self.robots:
+                self._count_kick(identity, time)
 
     def _look_for_kick(self, identity: RobotId, robot: RobotState, truth: Frame, speed: float) -> None:
         """Count a kick: commanded, near the ball, and the ball now leaves along the heading as not before."""
@@ -71,11 +85,14 @@ class Measures:
         reach = 0.15 + (away + robot.speed) * truth.period
         if abs(robot.x - truth.ball.x) > reach or abs(robot.y - truth.ball.y) > reach:
             return
+        self._count_kick(identity, truth.time)
+
+    def _count_kick(self, identity: RobotId, time: float) -> None:
         figures = self.robots[identity]
         if figures.go_to_ball is None:
-            figures.go_to_ball = truth.time
+            figures.go_to_ball = time
         if figures.kicks == 0:
-            figures.shoot = truth.time - figures.go_to_ball
+            figures.shoot = max(0.0, time - figures.go_to_ball)
         figures.kicks += 1
         self.kicks += 1
         self.kicked.append(identity)

@@ -128,3 +128,25 @@ def test_a_trace_tells_matches_apart_by_their_states_and_events() -> None:
 
     assert trace() == trace()
     assert len({trace(), trace(x=1e-16), trace(event="goal"), trace(score=1)}) == 4
+
+
+def test_kicks_that_the_world_saw_are_those_that_count() -> None:
+    watched = Watched().see().see(contact=True)
+    frame = Frame(0.5, DIVISION_B, BallState(1.0, 0.0, 5.0), (RobotState(0, 0.0, 0.0),), period=PERIOD)
+    watched.measures.update(frame, OPEN_PLAY, {}, [(ME, 0.45)])
+    figures = watched.measures.robots[ME]
+    assert (figures.kicks, figures.go_to_ball) == (1, PERIOD)
+    assert figures.shoot == pytest.approx(0.45 - PERIOD)
+    assert watched.measures.kicked == [ME]
+    watched.measures.update(frame, OPEN_PLAY, KICK, [])
+    assert watched.kicks == (1, 1)
+    assert watched.measures.kicked == []
+
+
+def test_robots_that_do_not_play_are_left_out() -> None:
+    measures = Measures({ME: None})
+    stranger = RobotState(9, 0.0, 0.0, ball_contact=True)
+    frame = Frame(0.0, DIVISION_B, BallState(0.1, 0.0), (stranger,), period=PERIOD)
+    measures.update(frame, OPEN_PLAY, {}, [(RobotId(Team.BLUE, 9), 0.0)])
+    assert list(measures.robots) == [ME]
+    assert measures.kicks == 0

@@ -1,0 +1,161 @@
+"""Who kicked, judged by where the ball was seen.
+
+No command is needed to see a kick, but the recent ones help: a weak kick counts if it was commanded,
+and a ball that bounces off a robot of ours, or that it pushes, is not kicked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import hypot
+
+from robobt.league.estimate.robot_track import RobotMotion, SentCommands
+from robobt.world.geometry import to_robot_frame
+from robobt.world.state import BALL_RADIUS, RobotId
+
+_KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
+"""A kicked ball leaves its robot with this share of the commanded speed, or this fast [m/s]."""
+
+_COMMAND_WINDOW, _EARLY = 0.3, 0.05
+"""What is seen may follow a command by so long, or precede it as far as the clocks are known [s]."""
+
+_GAIN = 0.5
+"""A kick that nobody commanded makes the ball faster by this at least [m/s]."""
+
+_AWAY = 0.05
+"""A kicked ball gets this far from the front [m]."""
+
+_NEAR, _ASIDE, _SPREADING = 0.06, 0.07, 0.35
+"""Where a ball lies that is kicked: so far from the front and beside its middle [m]; and how that widens."""
+
+_UNSEEN = 0.05
+"""A kicked ball may have been on its way for so long when it is first seen to leave [s]."""
+
+_PAUSE = 0.15
+"""Two kicks of one robot are this far apart [s]."""
+
+_SHORTEST, _LONGEST = 0.004, 0.5
+"""Detections closer in time are of one instant, those further apart tell no speed [s]."""
+
+
+@dataclass(slots=True)
+class Kick:
+    """A kick that was seen.
+
+    Attributes:
+        robot: who kicked.
+        time: when the ball was first seen to leave, on the vision's clock [s].
+    """
+
+    robot: RobotId
+    time: float
+
+
+@dataclass(slots=True)
+class _Seen:
+    """Where the ball was in a robot's frame, and how fast it left [m, m/s]."""
+
+    ahead: float
+    aside: float
+    leaves: float
+
+
+@dataclass(slots=True)
+class _Leaving:
+    """A ball that leaves a robot: since when, and how fast it has to be to count as kicked [s, m/s]."""
+
+    since: float
+    enough: float
+
+
+class KickWatch:
+    """Finds the kicks in where the ball and the robots were seen.
+
+    Args:
+        face: centre of a robot to its flat front [m].
+    """
+
+    def __init__(self, face: float) -> None:
+        self._place = face + BALL_RADIUS
+        self._time = -1e9
+        self._ball = (0.0, 0.0)
+        self._speeds = (0.0, 0.0)
+        self._seen: dict[RobotId, _Seen] = {}
+        self._leaving: dict[RobotId, _Leaving] = {}
+        self._kicked: dict[RobotId, float] = {}
+
+    def update(
+        self,
+        time: float,
+        x: float,
+        y: float,
+        motions: Mapping[RobotId, RobotMotion],
+        sent: Mapping[RobotId, SentCommands],
+    ) -> Kick | None:
+        """Take in where the ball was seen; return the kick that is thereby known, if any.
+
+        Args:
+            time: timestamp of the capture [s].
+            x: where the ball was seen [m].
+            y: the same.
+            motions: the robots at that time.
+            sent: the commands they were sent, and when these took effect.
+        """
+        elapsed = time - self._time
+        if elapsed < _SHORTEST:
+            return None
+        speed = hypot(x - self._ball[0], y - self._ball[1]) / elapsed
+        # A kick between two detections shows half its speed at the first of them.
+        faster = speed - min(self._speeds)
+        kick: Kick | None = None
+        nearest = _NEAR + self._place
+        for robot, m in motions.items():
+            ahead, aside = to_robot_frame(x - m.x, y - m.y, m.heading)
+            before = self._seen.get(robot)
+            if before is None or elapsed > _LONGEST:
+                self._seen[robot] = _Seen(ahead, aside, 0.0)
+                continue
+            leaves = (ahead - before.ahead) / elapsed
+            enough = _enough(sent.get(robot, []), time)
+            begins = (
+                enough is not None and before.leaves < enough <= leaves and self._at_front(before, leaves)
+            )
+            if enough is not None and begins and (robot in sent or faster >= _GAIN):
+                self._leaving[robot] = _Leaving(time, enough)
+            on_its_way = self._leaving.get(robot)
+            if on_its_way is not None:
+                if leaves < on_its_way.enough / 2:
+                    del self._leaving[robot]
+                elif ahead > self._place + _AWAY:
+                    del self._leaving[robot]
+                    near = hypot(before.ahead, before.aside)
+                    fresh = on_its_way.since - self._kicked.get(robot, -1e9) > _PAUSE
+                    if fresh and (kick is None or near < nearest):
+                        kick, nearest = Kick(robot, on_its_way.since), near
+            self._seen[robot] = _Seen(ahead, aside, leaves)
+        self._time, self._ball, self._speeds = time, (x, y), (self._speeds[1], speed)
+        if kick is not None:
+            self._kicked[kick.robot] = kick.time
+            self._leaving.clear()
+        return kick
+
+    def _at_front(self, ball: _Seen, leaves: float) -> bool:
+        """Return whether a ball that leaves so fast was at the front when last seen, or just before."""
+        gone = ball.ahead - self._place
+        within = gone <= _NEAR + leaves * _UNSEEN
+        return ball.ahead > 0.0 and within and abs(ball.aside) <= _ASIDE + _SPREADING * max(0.0, gone)
+
+
+def _enough(sent: SentCommands, time: float) -> float | None:
+    """Return how fast a ball just kicked leaves at least; None if the robot was not told to [m/s]."""
+    if not sent:
+        return _SURELY_KICKED
+    ends = [since for since, _ in sent[1:]] + [time]
+    speeds = [
+        command.kick_speed
+        for (since, command), end in zip(sent, ends, strict=True)
+        if since <= time + _EARLY and end >= time - _COMMAND_WINDOW
+    ]
+    strongest = max(speeds, default=0.0)
+    return min(_KICKED_SHARE * strongest, _SURELY_KICKED) if strongest > 0.0 else None
