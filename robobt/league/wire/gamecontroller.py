@@ -167,7 +167,10 @@ class RefereeFollower:
             restart, team = _RESTARTS.get(upcoming, (None, None))
         elif restart is Restart.KICKOFF:
             placement = (0.0, 0.0)
-        if before.command is RefereeCommand.STOP and restart is not None and placement is None:
+        if restart is Restart.PENALTY and command is not RefereeCommand.STOP:
+            # Put down by hand, on the mark: the designated position is still that of another restart.
+            placement = before.placement if command is RefereeCommand.NORMAL_START else None
+        elif before.command is RefereeCommand.STOP and restart is not None and placement is None:
             placement = before.placement
         self.game = replace(
             before,

@@ -9,6 +9,7 @@ from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import direction
+from robobt.world.rules import in_own_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
@@ -53,7 +54,8 @@ class CoverAngle(DrivingSkill):
             (min(x, line + field.defense_depth - ROBOT_RADIUS), y),
             direction(me.position, ball.position),
             self.drive_limits,
-            avoid_robots=False,
+            # Inside nobody else may stand; a new goalkeeper from outside goes round its own wall.
+            avoid_robots=not in_own_defense_area(field, me.x, me.y, ROBOT_RADIUS),
             goalkeeper=True,
         )
         return self.run("covering the angle")

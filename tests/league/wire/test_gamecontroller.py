@@ -225,3 +225,14 @@ def test_a_controller_that_was_started_again_is_followed(controller: Controller)
     assert follower.read(data, ("127.0.0.1", 1000), 0.0)
     assert not follower.read(data, ("127.0.0.1", 2000), 1.0)
     assert follower.read(data, ("127.0.0.1", 2000), 2.5)
+
+
+def test_a_penalty_is_taken_where_the_ball_lies_not_at_the_last_designated_position(
+    controller: Controller,
+) -> None:
+    controller.say("STOP", "DIRECT_FREE_BLUE", (0.0, 0.0))
+    controller.say("PREPARE_PENALTY_BLUE", at=(0.0, 0.0))
+    assert controller.ball(-1.5, 0.0, 1.0).placement is None
+    controller.say("NORMAL_START", at=(0.0, 0.0))
+    game = controller.ball(-1.5, 0.0, 1.1)
+    assert (game.restart, game.may_touch, game.placement) == (Restart.PENALTY, True, (-1.5, 0.0))

@@ -50,3 +50,14 @@ def test_a_ball_behind_the_line_is_not_covered() -> None:
 def test_close_to_the_ball_it_does_not_drive_into_it() -> None:
     me = settled((-4.2, 0.0))
     assert hypot(me.x + 4.2, me.y) > 0.1
+
+
+def test_a_new_goalkeeper_goes_round_its_own_wall() -> None:
+    wall = tuple(robot(-3.38, y, number=number) for number, y in ((1, -0.1), (2, 0.1)))
+    me = robot(-2.5, 0.0)
+    alone = Alone(CoverAngle())
+    for _ in range(240):
+        alone.tick(frame(me, (0.0, 0.0), mates=wall))
+        assert min(hypot(me.x - mate.x, me.y - mate.y) for mate in wall) > 2 * 0.09
+        me = moved(me, alone.command, 1 / 60)
+    assert (me.x, me.y) == pytest.approx((-4.0, 0.0), abs=0.02)

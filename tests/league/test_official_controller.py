@@ -1,0 +1,223 @@
+"""Robots obey the official game controller: all commands, both sides, cards, goalkeepers, stages.
+
+Runs where ``ROBOBT_GAME_CONTROLLER`` names its program: the controller, a served field and
+the players step by step under one simulated clock. ``pytest -m slow -s`` prints the table.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from math import hypot
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.league.serve.server import SimServer
+from robobt.league.serve.serving import served_scenario
+from robobt.league.wire.messages import Referee
+from robobt.league.wire.sockets import Sender
+from robobt.league.wire.tracker import write_tracked
+from robobt.match import Match, load_scenario
+from robobt.sim import settings_from
+from robobt.world import Frame, RobotId, Team
+from tests.league.lockstep import LockstepWorld
+from tests.league.official_controller import OfficialController, change, command, team_state
+from tests.league.served import free_endpoints
+
+BINARY = os.environ.get("ROBOBT_GAME_CONTROLLER", "")
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not BINARY, reason="ROBOBT_GAME_CONTROLLER does not name the official program"),
+]
+
+HULL = 0.09
+
+
+class Refereed:
+    """A scenario played on a served field under the official controller."""
+
+    def __init__(self, name: str, folder: Path, blue_on_positive_half: bool = False) -> None:
+        scenario = load_scenario(name).without_referee().model_copy(update={"period": 1 / 60})
+        endpoints = free_endpoints("127.0.0.1")
+        settings = settings_from(scenario.simulator)
+        self.controller = OfficialController(BINARY, folder)
+        self.server = SimServer(served_scenario(scenario), endpoints)
+        self.world = LockstepWorld(
+            self.server,
+            field=scenario.field,
+            robots={robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots},
+            settings=settings,
+            period=scenario.period,
+            simulator="grsim",
+            endpoints=endpoints,
+            follow_referee=True,
+        )
+        self._sender = Sender(*endpoints.referee)
+        self._frames = 0
+        self.message = Referee()
+        self.controller.step(0.0, None, {2: 1})
+        sides = {"blue": blue_on_positive_half, "yellow": not blue_on_positive_half}
+        self._hear(
+            # Nothing by itself: the test gives the commands.
+            {3: {5: 0}},
+            change(12, {1: 2, 2: 2}),
+            *[
+                team_state(team, name=team, on_positive_half=side, can_place_ball=True)
+                for team, side in sides.items()
+            ],
+        )
+        self.match = Match(scenario, 1, lambda _: self.world)
+
+    def close(self) -> None:
+        self.world.close()
+        self.server.close()
+        self._sender.close()
+        self.controller.__exit__(None, None, None)
+
+    def play(self, seconds: float, *inputs: dict[int, Any]) -> list[Frame]:
+        """Play on, after changing the match; return the true frames."""
+        frames = []
+        for _ in range(round(seconds * 60)):
+            self._hear(*inputs)
+            inputs = ()
+            if not self.match.tick():
+                break
+            frames.append(self.server.field.truth())
+        return frames
+
+    def stop_with_ball_at(self, x: float, y: float) -> None:
+        """Put the ball down in a stop, and again once the robots have cleared the place."""
+        for _ in range(2):
+            self.server.field.place_ball(x, y)
+            self.play(2.5, command("STOP"))
+
+    def _hear(self, *inputs: dict[int, Any]) -> None:
+        self._frames += 1
+        truth = self.server.field.truth()
+        tracked = write_tracked(truth, self._frames, truth.time, "robobt-test")
+        data = self.controller.step(1.0 + self._frames / 60, tracked, *inputs)
+        self.message = Referee.FromString(data)
+        self._sender.send(data)
+
+
+@pytest.fixture
+def refereed(tmp_path: Path) -> Iterator[Callable[..., Refereed]]:
+    opened: list[Refereed] = []
+
+    def open_one(name: str, **options: bool) -> Refereed:
+        folder = tmp_path / str(len(opened))
+        folder.mkdir()
+        opened.append(Refereed(name, folder, **options))
+        return opened[-1]
+
+    yield open_one
+    for one in opened:
+        one.close()
+
+
+def fastest(frame: Frame) -> float:
+    return max(robot.speed for robot in frame.robots().values())
+
+
+def nearest(frame: Frame, team: Team) -> float:
+    """Distance of a team's nearest hull to the ball."""
+    return min(
+        hypot(state.x - frame.ball.x, state.y - frame.ball.y) - HULL
+        for robot, state in frame.robots().items()
+        if robot.team is team
+    )
+
+
+@pytest.mark.parametrize("name", ["striker_vs_goalie", "attack_vs_goalkeeper_motion_full", "six_v_six"])
+def test_halt_and_timeouts_stop_everybody_within_half_a_second(
+    name: str, refereed: Callable[..., Refereed]
+) -> None:
+    game = refereed(name)
+    for order, team in (("HALT", None), ("TIMEOUT", "blue"), ("TIMEOUT", "yellow")):
+        moving = game.play(1.5, command("FORCE_START"))
+        assert max(map(fastest, moving)) > 0.5
+        # On its way down from full speed the robot brakes; after that it stands.
+        halted = game.play(2.0, command(order, team))
+        still = next(i for i in range(len(halted)) if max(map(fastest, halted[i:])) < 0.05)
+        print(f"{name}: {order} {team or ''}: all at rest after {still / 60:.2f} s")
+        assert still / 60 <= 0.5
+
+
+@pytest.mark.parametrize("positive", [False, True], ids=["blue -x", "blue +x"])
+def test_no_command_is_ignored(positive: bool, refereed: Callable[..., Refereed]) -> None:
+    game = refereed("six_v_six", blue_on_positive_half=positive)
+    side = {Team.BLUE: 1.0 if positive else -1.0, Team.YELLOW: -1.0 if positive else 1.0}
+
+    def say(what: str) -> None:
+        print(f"blue at {'+' if positive else '-'}x: {what}")
+
+    stop = game.play(4.0, command("STOP"))[120:]
+    say(f"STOP: fastest {max(map(fastest, stop)):.2f} m/s")
+    assert max(map(fastest, stop)) <= 1.55
+    assert all(min(nearest(frame, team) for team in Team) >= 0.49 for frame in stop[60:])
+    for team in Team:
+        game.stop_with_ball_at(0.0, 0.0)
+        frame = game.play(6.0, command("KICKOFF", team.value))[-1]
+        own = [it for robot, it in frame.robots().items() if robot.team is not team]
+        say(f"KICKOFF {team.value}: opponents nearest {nearest(frame, team.other):.2f} m")
+        assert nearest(frame, team.other) >= 0.49
+        assert all(it.x * side[team.other] > -HULL for it in own)
+        begun = game.play(6.0, command("NORMAL_START"))
+        assert any(frame.ball.speed > 0.5 for frame in begun), "the kick-off is taken"
+    for team in Team:
+        spot = (1.5 * side[team], 1.0)
+        game.stop_with_ball_at(*spot)
+        free = game.play(9.0, command("DIRECT", team.value))
+        taken = next(i for i, frame in enumerate(free) if frame.ball.speed > 0.5)
+        say(f"DIRECT {team.value}: taken after {taken / 60:.1f} s")
+        assert free[taken].last_touch is None or free[taken].last_touch.team is team
+        assert min(nearest(frame, team.other) for frame in free[90:taken]) >= 0.45 if taken > 90 else True
+    for team in Team:
+        game.stop_with_ball_at(2.0 * side[team], -1.5)
+        target = {1: 0.5 * side[team], 2: 1.0}
+        placed = game.play(20.0, change(4, {1: target}), command("BALL_PLACEMENT", team.value))
+        ball = placed[-1].ball
+        off = hypot(ball.x - target[1], ball.y - target[2])
+        say(f"BALL_PLACEMENT {team.value}: {off * 1000:.0f} mm off after 20 s, {ball.speed:.2f} m/s")
+        assert off < 0.15
+        assert ball.speed < 0.2
+        assert game.message.command == Referee.Command.Value(f"BALL_PLACEMENT_{team.name}")
+        assert max(frame.ball.speed for frame in placed) < 2.0, "it is never kicked"
+        assert nearest(placed[-1], team.other) >= 0.49
+    for team in Team:
+        mark = -side[team] * (4.5 - 6.0)
+        game.stop_with_ball_at(mark, 0.0)
+        ready = game.play(8.0, command("PENALTY", team.value))[-1]
+        keeper = ready.robots()[RobotId(team.other, 0)]
+        say(f"PENALTY {team.value}: keeper {abs(abs(keeper.x) - 4.5) * 1000:.0f} mm from its line")
+        assert abs(abs(keeper.x) - 4.5) < 0.12
+        assert keeper.x * side[team.other] > 0.0
+        shot = game.play(10.0, command("NORMAL_START"))
+        assert any(frame.ball.speed > 1.0 for frame in shot), "the penalty is taken"
+
+
+def test_cards_goalkeepers_and_stages_are_obeyed(refereed: Callable[..., Refereed]) -> None:
+    game = refereed("six_v_six")
+    game.play(2.0, command("STOP"))
+    off = game.play(10.0, change(5, {1: 1}))[-1]
+    assert game.message.yellow.max_allowed_bots == 5
+    # What the controller counts: not behind the own goal line.
+    counted = [state for robot, state in off.robots().items() if robot.team is Team.YELLOW and state.x < 4.59]
+    print(f"yellow card: {len(counted)} yellow robots on the field after 10 s")
+    assert len(counted) == 5
+    kept = game.play(10.0, team_state("blue", goalkeeper=3))[-1].robots()
+    assert game.message.blue.goalkeeper == 3
+    print(f"keeper is blue 3: at x {kept[RobotId(Team.BLUE, 3)].x:.2f}")
+    assert kept[RobotId(Team.BLUE, 3)].x < -3.9
+    assert kept[RobotId(Team.BLUE, 0)].x > -3.9
+    for number, stage in enumerate(Referee.Stage.keys()):
+        if number == 0:
+            continue
+        game.play(0.5, change(3, {1: number}))
+        print(f"stage {stage}: {game.match.game.stage.name}")
+        assert game.match.game.stage.name == stage
+    assert game.match.outcome is not None
+    assert game.match.outcome.value == "full_time"
