@@ -1,6 +1,6 @@
 """``python -m robobt`` is the command ``robobt``."""
 
-from robobt.cli import app
+from robobt.cli import main
 
 if __name__ == "__main__":
-    app(prog_name="robobt")
+    main()

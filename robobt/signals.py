@@ -12,6 +12,7 @@ from __future__ import annotations
 import atexit
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -165,6 +166,22 @@ def at_the_latest_after(seconds: float) -> Iterator[None]:
         if _told.force is not None:
             _told.force.cancel()
             _told.force = None
+
+
+def leave_after_signal(status: object) -> None:
+    """End the process at once if its exit status is that of a signal; else do nothing.
+
+    The interpreter would take apart its modules first, which takes longer than all the rest. What
+    is registered with ``atexit`` is still done.
+    """
+    if not isinstance(status, int) or status - _BASE not in (signal.SIGINT, *TERMINATE):
+        return
+    for stream in (sys.stdout, sys.stderr):
+        # Nobody may be there to read.
+        with suppress(OSError, ValueError):
+            stream.flush()
+    atexit._run_exitfuncs()
+    os._exit(status)
 
 
 def _end_by_force() -> None:

@@ -17,6 +17,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import console, log
+from robobt.signals import leave_after_signal
 
 _GROUPS = (
     "match",
@@ -67,3 +68,12 @@ def _main(
 
 for _group in _GROUPS:
     import_module(f"robobt.cli.{_group}").add_to(app)
+
+
+def main() -> None:
+    """Run the command ``robobt``."""
+    try:
+        app(prog_name="robobt")
+    except SystemExit as end:
+        leave_after_signal(end.code)
+        raise

@@ -118,7 +118,8 @@ def told_after(seconds: float, number: int) -> Iterator[None]:
 
 
 def soon(what: Callable[[], bool]) -> bool:
-    end = time.monotonic() + 30.0
+    # Long enough to compile for the first time on a busy machine.
+    end = time.monotonic() + 120.0
     while not what():
         if time.monotonic() > end:
             return False
