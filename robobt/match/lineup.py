@@ -90,7 +90,7 @@ def leave(view: Frame, me: RobotState) -> RobotCommand:
         me: the robot.
     """
     field = view.field
-    behind = -(field.half_length + field.margin)
+    behind = -field.outer[0]
     y = copysign(field.defense_width / 2 + _ASIDE, me.y)
     taken = [robot for robot in view.own if robot.id > me.id and robot.x < -field.half_length]
     y = copysign(abs(y) + _ASIDE * len([robot for robot in taken if robot.y * y > 0.0]), y)

@@ -105,7 +105,8 @@ def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: b
     y = min(most_y, max(-most_y, y))
     # Behind the goal line there is the goal or a strip too narrow to be of use near it.
     beside_goal = abs(y) > field.goal_width / 2 + ROBOT_RADIUS + _WALL_GAP
-    most_x = field.half_length + (field.margin - ROBOT_RADIUS - _WALL_GAP if beside_goal else 0.0)
+    behind = field.goal_line_margin - ROBOT_RADIUS - _WALL_GAP if beside_goal else 0.0
+    most_x = field.half_length + behind
     x = min(most_x, max(-most_x, x))
     x, y = _expelled(field, x, y, _their_gap(frame))
     if not goalkeeper:
@@ -221,8 +222,11 @@ def _around_area(field: FieldGeometry, x: float, y: float, target: Point, gap: f
 
 
 def _open(field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper: bool) -> bool:
-    border = field.margin - ROBOT_RADIUS
-    if not field.contains(x, y, border) or in_their_defense_area(field, x, y, their_gap - _AREA_GAP):
+    most_x = field.half_length + (field.goal_line_margin - ROBOT_RADIUS)
+    most_y = field.half_width + (field.margin - ROBOT_RADIUS)
+    if abs(x) > most_x or abs(y) > most_y:
+        return False
+    if in_their_defense_area(field, x, y, their_gap - _AREA_GAP):
         return False
     return goalkeeper or not in_own_defense_area(field, x, y, ROBOT_RADIUS)
 

@@ -62,7 +62,7 @@ class Arenas:
         self.sub_steps = max(1, ceil(period / settings.sub_step - 1e-9))
         self.dt = period / self.sub_steps
         count = len(limits)
-        pitch_x = field.length + 2 * (field.margin + BEYOND) + 1.0
+        pitch_x = field.length + 2 * (field.goal_line_margin + BEYOND) + 1.0
         pitch_y = field.width + 2 * (field.margin + BEYOND) + 1.0
         columns = isqrt(n - 1) + 1
         self.origins = np.array(

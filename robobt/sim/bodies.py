@@ -30,7 +30,7 @@ Box = tuple[float, float, float, float]
 
 def walls_of(field: FieldGeometry) -> list[tuple[Box, str]]:
     """Return the static boxes of a field: surrounding walls, and per goal two sides and a back."""
-    outer_x, outer_y = field.half_length + field.margin, field.half_width + field.margin
+    outer_x, outer_y = field.outer
     far_x, far_y = outer_x + BEYOND, outer_y + BEYOND
     boxes: list[tuple[Box, str]] = [
         ((-far_x, outer_y, far_x, far_y), "wall"),

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+_PENALTY_SHARE = 2.0 / 3.0
+"""Penalty mark to attacked goal as a share of the field's length: 6 of 9 m, 8 of 12 m. Source: SSL rules."""
 
 
 class FieldGeometry(BaseModel):
@@ -25,7 +29,17 @@ class FieldGeometry(BaseModel):
     defense_width: float = Field(gt=0, le=50, description="defence area along the goal line [m]")
     defense_depth: float = Field(gt=0, le=25, description="defence area into the field [m]")
     center_radius: float = Field(0.5, gt=0, le=10, description="centre-circle radius [m]")
-    margin: float = Field(0.3, ge=0.2, le=5, description="line to surrounding wall [m]")
+    margin: float = Field(0.3, ge=0.2, le=5, description="touch line to the wall beside it [m]")
+    goal_line_margin: float = Field(
+        0.3, ge=0.2, le=5, description="goal line to the wall behind it, by default like margin [m]"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _margin_all_around(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "margin" in data and "goal_line_margin" not in data:
+            return {**data, "goal_line_margin": data["margin"]}
+        return data
 
     @model_validator(mode="after")
     def _parts_fit(self) -> FieldGeometry:
@@ -35,8 +49,10 @@ class FieldGeometry(BaseModel):
             raise ValueError(f"defense_width {self.defense_width} must not exceed width {self.width}")
         if self.defense_depth > self.length / 2:
             raise ValueError(f"defense_depth {self.defense_depth} must not exceed half the length")
-        if self.goal_depth > self.margin:
-            raise ValueError(f"goal_depth {self.goal_depth} must not exceed margin {self.margin}")
+        if self.goal_depth > self.goal_line_margin:
+            raise ValueError(
+                f"goal_depth {self.goal_depth} must not exceed goal_line_margin {self.goal_line_margin}"
+            )
         return self
 
     @cached_property
@@ -59,13 +75,25 @@ class FieldGeometry(BaseModel):
         """Centre of the defended goal on its line [m]."""
         return (-self.length / 2, 0.0)
 
+    @cached_property
+    def outer(self) -> tuple[float, float]:
+        """The walls behind their goal and beside the left touch line, their x and y [m]."""
+        return (self.half_length + self.goal_line_margin, self.half_width + self.margin)
+
+    @cached_property
+    def penalty_distance(self) -> float:
+        """Penalty mark to the centre of the attacked goal [m]."""
+        return _PENALTY_SHARE * self.length
+
     def contains(self, x: float, y: float, tolerance: float = 0.0) -> bool:
         """Return whether (x, y) lies inside the lines, grown outwards by ``tolerance`` [m]."""
         return abs(x) <= self.half_length + tolerance and abs(y) <= self.half_width + tolerance
 
 
-DIVISION_A = FieldGeometry(length=12.0, width=9.0, goal_width=1.8, defense_width=3.6, defense_depth=1.8)
-"""Division A of the rules: 12 m x 9 m, up to 11 robots a team."""
+DIVISION_A = FieldGeometry(
+    length=12.0, width=9.0, goal_width=1.8, defense_width=3.6, defense_depth=1.8, goal_line_margin=0.6
+)
+"""Division A of the rules of 2026: 12 m x 9 m, up to 11 robots a team."""
 
 DIVISION_B = FieldGeometry(length=9.0, width=6.0, goal_width=1.0, defense_width=2.0, defense_depth=1.0)
 """Division B of the rules: 9 m x 6 m, up to 6 robots a team."""

@@ -41,7 +41,7 @@ def check_inside(what: str, values: tuple[float, ...], field: FieldGeometry) -> 
     """
     if not all(map(isfinite, values)):
         raise ValueError(f"{what} is placed at {values}: not finite")
-    outer_x, outer_y = field.half_length + field.margin, field.half_width + field.margin
+    outer_x, outer_y = field.outer
     x, y = values[:2]
     if abs(x) > outer_x or abs(y) > outer_y:
         raise ValueError(

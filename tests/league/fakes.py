@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from math import cos, hypot, inf, radians, sin
 
 from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.messages import (
     RobotControl,
     RobotControlResponse,
@@ -21,7 +22,6 @@ from robobt.league.wire.messages import (
     grSim_Packet,
 )
 from robobt.league.wire.sockets import Receiver, Sender
-from robobt.league.wire.vision import write_field
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.state import RobotId
@@ -177,7 +177,7 @@ class FakeSimulator:
                 x, y = self.ball
                 frame.balls.add(confidence=1.0, x=x * 1e3, y=y * 1e3, pixel_x=0.0, pixel_y=0.0)
             if self.geometry is not None and camera == 0 and self._frame % 30 == 1:
-                message.geometry.CopyFrom(write_field(self.geometry))
+                message.geometry.CopyFrom(write_geometry(self.geometry))
             packets.append(message.SerializeToString())
         return packets
 

@@ -18,6 +18,7 @@ from robobt.league.serve.server import SimServer
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.grsim import write_grsim, write_grsim_replacement
 from robobt.league.wire.messages import (
     Message,
@@ -33,7 +34,7 @@ from robobt.league.wire.messages import (
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.simulation import write_teleport
 from robobt.league.wire.tracker import write_tracked
-from robobt.league.wire.vision import write_field, write_vision
+from robobt.league.wire.vision import write_vision
 from robobt.league.world import LeagueWorld
 from robobt.sim.settings import REALISM
 from robobt.world.command import RobotCommand
@@ -196,7 +197,7 @@ class Vision:
     def packet(self) -> bytes:
         self.time += 1 / 60
         (frame,) = self.cameras.capture(self.field.truth(), self.time, self.time)
-        return write_vision(frame, write_field(DIVISION_B))
+        return write_vision(frame, write_geometry(DIVISION_B))
 
 
 @pytest.mark.parametrize("amount", AMOUNTS)

@@ -147,7 +147,8 @@ def test_a_target_is_moved_to_where_a_robot_may_stand(field, x: float, y: float,
     me = robot()
     world = frame(me, FAR_BALL, field=field)
     tx, ty = allowed_target(world, me, (x, y), goalkeeper=goalkeeper)
-    assert field.contains(tx, ty, field.margin - ROBOT_RADIUS)
+    assert abs(tx) <= field.outer[0] - ROBOT_RADIUS
+    assert abs(ty) <= field.outer[1] - ROBOT_RADIUS
     assert not in_their_defense_area(field, tx, ty, ROBOT_RADIUS)
     assert goalkeeper or not in_own_defense_area(field, tx, ty, ROBOT_RADIUS)
     if field.contains(x, y, -0.3) and abs(x) < field.half_length - field.defense_depth - 0.2:

@@ -1,4 +1,7 @@
-"""What cameras over a simulated field report: noisy, with gaps, from one or several of them."""
+"""What cameras over a simulated field report: noisy, with gaps, from one or several of them.
+
+Four are numbered as grSim's are: from its +x, +y quarter on, clockwise seen from above.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import numpy as np
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import RealismSettings
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import wrap_angle
+from robobt.world.geometry import Point, wrap_angle
 from robobt.world.state import Frame
 
 _OVERLAP = 0.2
@@ -29,6 +32,7 @@ class Cameras:
 
     Attributes:
         realism: as above; may be replaced.
+        places: where they hang, each over the middle of its part [m].
 
     Raises:
         ValueError: ``count`` is out of range.
@@ -41,6 +45,11 @@ class Cameras:
             raise ValueError(f"a field has 1 to {_MAX_CAMERAS} cameras, not {count}")
         self.realism, self._rng = realism, rng
         self._areas = _areas(field, count)
+        most_x, most_y = field.half_length, field.half_width
+        self.places: list[Point] = [
+            (_middle(left, right, most_x), _middle(low, high, most_y))
+            for left, right, low, high in self._areas
+        ]
         self._number = 0
 
     def capture(self, truth: Frame, captured: float, sent: float) -> list[CameraFrame]:
@@ -79,4 +88,13 @@ def _areas(field: FieldGeometry, count: int) -> list[tuple[float, float, float, 
             for i in range(parts)
         ]
 
-    return [(*x, *y) for x in edges(columns, field.length) for y in edges(rows, field.width)]
+    # Column by column from the right, down and up in turn.
+    low_to_high = edges(rows, field.width)
+    turns = (low_to_high[::-1], low_to_high)
+    return [(*x, *y) for i, x in enumerate(reversed(edges(columns, field.length))) for y in turns[i % 2]]
+
+
+def _middle(low: float, high: float, most: float) -> float:
+    """Return the middle of what lies within ``most`` from the centre, without overlaps [m]."""
+    low, high = (-most if low < -most else low + _OVERLAP), (most if high > most else high - _OVERLAP)
+    return (low + high) / 2

@@ -11,9 +11,10 @@ import numpy as np
 from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.sockets import Sender
 from robobt.league.wire.tracker import write_tracked
-from robobt.league.wire.vision import write_field, write_vision
+from robobt.league.wire.vision import write_vision
 from robobt.match.loop import WorldFactory
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import REALISM
@@ -22,8 +23,8 @@ from robobt.world.game import Team
 from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId
 
-GEOMETRY_INTERVAL = 60
-"""Frames from one geometry packet to the next."""
+GEOMETRY_INTERVAL = 30
+"""Frames from one geometry packet to the next, as grSim's."""
 
 
 class PublishedWorld(World):
@@ -95,7 +96,9 @@ class PublishedWorld(World):
         camera = Cameras(frame.field, REALISM["none"], 1, np.random.default_rng(0))
         (seen,) = camera.capture(frame, frame.time, frame.time)
         seen.number = self._number
-        geometry = write_field(frame.field) if self._number % GEOMETRY_INTERVAL == 0 else None
+        geometry = None
+        if self._number % GEOMETRY_INTERVAL == 0:
+            geometry = write_geometry(frame.field, camera.places)
         vision.send(write_vision(seen, geometry))
         tracker.send(write_tracked(frame, self._number, frame.time, self._uuid))
         referee.send(self._publisher.write(frame.game, frame.time))

@@ -210,7 +210,7 @@ class ServedField:
 
     def _park(self, i: int) -> None:
         """Put a robot beside the field, out of everybody's way."""
-        beside = self.field.half_width + self.field.margin + _PARKED
+        beside = self.field.outer[1] + _PARKED
         x = (i % TEAM_SIZE - TEAM_SIZE / 2) * 3 * ROBOT_RADIUS
         y = beside if self._ids[i].team is Team.BLUE else -beside
         self._present[i] = False
@@ -218,8 +218,8 @@ class ServedField:
         self._arenas.place_robot(0, i, (x, y, 0.0, 0.0, 0.0, 0.0))
 
     def _inside(self, x: float, y: float) -> bool:
-        field = self.field
-        return abs(x) <= field.half_length + field.margin and abs(y) <= field.half_width + field.margin
+        most_x, most_y = self.field.outer
+        return abs(x) <= most_x and abs(y) <= most_y
 
 
 def line_up(field: FieldGeometry, robots: int) -> Placement:

@@ -20,9 +20,10 @@ from robobt.league.serve.publishing import GEOMETRY_INTERVAL
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.sockets import LOOPBACK, Sender
 from robobt.league.wire.tracker import write_tracked
-from robobt.league.wire.vision import write_field, write_vision
+from robobt.league.wire.vision import write_vision
 from robobt.match.referee.settings import RefereeSettings
 from robobt.signals import check, uninterrupted
 
@@ -152,7 +153,9 @@ class SimServer:
         sent = now + self._cameras.realism.vision_delay
         truth = field.truth()
         frames = self._cameras.capture(truth, self._epoch + now, self._epoch + sent)
-        geometry = write_field(field.field) if self.frames % GEOMETRY_INTERVAL == 1 else None
+        geometry = None
+        if self.frames % GEOMETRY_INTERVAL == 1:
+            geometry = write_geometry(field.field, self._cameras.places, field.settings.ball)
         for frame in frames:
             self._post(sent, self._vision, write_vision(frame, geometry))
             geometry = None

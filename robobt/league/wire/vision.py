@@ -1,6 +1,6 @@
-"""SSL-Vision packets, converted to and from detections and a field in SI units.
+"""SSL-Vision packets, converted to and from detections in SI units.
 
-Source of the fields: ssl-vision's detection and geometry messages (millimetres there).
+Source of the fields: ssl-vision's detection messages (millimetres there).
 """
 
 from __future__ import annotations
@@ -8,19 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import isfinite, pi
 
-from pydantic import ValidationError
-
-from robobt.league.wire.messages import (
-    SSL_DetectionFrame,
-    SSL_GeometryData,
-    SSL_GeometryFieldSize,
-    SSL_WrapperPacket,
-)
+from robobt.league.wire.geometry import read_field
+from robobt.league.wire.messages import SSL_DetectionFrame, SSL_GeometryData, SSL_WrapperPacket
 from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
-from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
+from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
+from robobt.world.state import RobotId
 
 _MM = 1000.0
 
@@ -28,9 +22,6 @@ _MAX_CAMERAS = 64
 
 _MAX_LATENCY = 1.0
 """Longest plausible time from capture to sending [s]; beyond it the frame counts as sent when captured."""
-
-_LINE_THICKNESS = 0.01
-"""Width of the field's lines [m]. Source: RoboCup SSL rules."""
 
 _BALL_AREA = 80
 """Typical size of a ball in a camera's image [pixels]."""
@@ -131,40 +122,6 @@ def _read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     return frame
 
 
-def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
-    """Return the field of a geometry packet; None when no such field can exist.
-
-    Sizes that the packet leaves out are taken from the field's lines and arcs, or
-    else from the division whose length is nearest.
-    """
-    length, width = message.field_length / _MM, message.field_width / _MM
-    division = min((DIVISION_A, DIVISION_B), key=lambda division: abs(division.length - length))
-    depth, across = message.penalty_area_depth / _MM, message.penalty_area_width / _MM
-    front = next((line for line in message.field_lines if line.name == "LeftPenaltyStretch"), None)
-    if not message.HasField("penalty_area_depth"):
-        depth = division.defense_depth if front is None else length / 2 - abs(front.p1.x) / _MM
-    if not message.HasField("penalty_area_width"):
-        across = division.defense_width if front is None else abs(front.p1.y - front.p2.y) / _MM
-    radius = message.center_circle_radius / _MM
-    if not message.HasField("center_circle_radius"):
-        circles = [arc.radius / _MM for arc in message.field_arcs if arc.name == "CenterCircle"]
-        radius = circles[0] if circles else division.center_radius
-    goal_depth = message.goal_depth / _MM or division.goal_depth
-    try:
-        return FieldGeometry(
-            length=length,
-            width=width,
-            goal_width=message.goal_width / _MM,
-            goal_depth=goal_depth,
-            defense_width=across,
-            defense_depth=depth,
-            center_radius=radius,
-            margin=max(message.boundary_width / _MM, goal_depth, 0.2),
-        )
-    except ValidationError:
-        return None
-
-
 def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
     """Return the message of a camera's frame, with every field that strict readers require."""
     message = SSL_DetectionFrame(
@@ -196,41 +153,6 @@ def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
     return message
 
 
-def write_field(geometry: FieldGeometry) -> SSL_GeometryData:
-    """Return the geometry message of a field, with its lines and arcs named as the league does."""
-    message = SSL_GeometryData()
-    size = message.field
-    size.field_length = _mm(geometry.length)
-    size.field_width = _mm(geometry.width)
-    size.goal_width = _mm(geometry.goal_width)
-    size.goal_depth = _mm(geometry.goal_depth)
-    size.boundary_width = _mm(geometry.margin)
-    size.penalty_area_depth = _mm(geometry.defense_depth)
-    size.penalty_area_width = _mm(geometry.defense_width)
-    size.center_circle_radius = _mm(geometry.center_radius)
-    size.line_thickness = _mm(_LINE_THICKNESS)
-    size.ball_radius = BALL_RADIUS * _MM
-    size.max_robot_radius = ROBOT_RADIUS * _MM
-    for number, (name, x1, y1, x2, y2) in enumerate(_lines(geometry), start=2):
-        size.field_lines.add(
-            name=name,
-            p1={"x": x1 * _MM, "y": y1 * _MM},
-            p2={"x": x2 * _MM, "y": y2 * _MM},
-            thickness=_LINE_THICKNESS * _MM,
-            type=number,
-        )
-    size.field_arcs.add(
-        name="CenterCircle",
-        center={"x": 0.0, "y": 0.0},
-        radius=geometry.center_radius * _MM,
-        a1=0.0,
-        a2=2 * pi,
-        thickness=_LINE_THICKNESS * _MM,
-        type=1,
-    )
-    return message
-
-
 def write_vision(frame: CameraFrame | None, geometry: SSL_GeometryData | None = None) -> bytes:
     """Return a packet with a frame, a geometry, or both."""
     message = SSL_WrapperPacket(source="SSL_SOURCE_OTHER")
@@ -239,26 +161,3 @@ def write_vision(frame: CameraFrame | None, geometry: SSL_GeometryData | None = 
     if geometry is not None:
         message.geometry.CopyFrom(geometry)
     return bytes(message.SerializeToString())
-
-
-def _mm(metres: float) -> int:
-    return round(metres * _MM)
-
-
-def _lines(f: FieldGeometry) -> tuple[tuple[str, float, float, float, float], ...]:
-    """Return name and ends of every line, in the order of the league's line types from 2 on."""
-    x, y, edge, half = f.half_length, f.half_width, f.half_length - f.defense_depth, f.defense_width / 2
-    return (
-        ("TopTouchLine", -x, y, x, y),
-        ("BottomTouchLine", -x, -y, x, -y),
-        ("LeftGoalLine", -x, -y, -x, y),
-        ("RightGoalLine", x, -y, x, y),
-        ("HalfwayLine", 0.0, -y, 0.0, y),
-        ("CenterLine", -x, 0.0, x, 0.0),
-        ("LeftPenaltyStretch", -edge, -half, -edge, half),
-        ("RightPenaltyStretch", edge, -half, edge, half),
-        ("LeftFieldLeftPenaltyStretch", -x, half, -edge, half),
-        ("LeftFieldRightPenaltyStretch", -x, -half, -edge, -half),
-        ("RightFieldLeftPenaltyStretch", x, -half, edge, -half),
-        ("RightFieldRightPenaltyStretch", x, half, edge, half),
-    )

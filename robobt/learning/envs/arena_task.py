@@ -188,7 +188,6 @@ class ArenaTask(ABC):
             raise ValueError(f"starts must have the shape (m, {len(START_COLUMNS)}), not {rows.shape}")
         if not np.isfinite(rows).all():
             raise ValueError("a start is not finite")
-        field = self.settings.field
-        most = (field.half_length + field.margin, field.half_width + field.margin)
+        most = self.settings.field.outer
         if (np.abs(rows[:, [0, 6]]) > most[0]).any() or (np.abs(rows[:, [1, 7]]) > most[1]).any():
             raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")

@@ -23,7 +23,7 @@ def bounded(high: list[float], distances: tuple[int, ...]) -> Box[np.float32]:
 def farthest(settings: TaskSettings) -> float:
     """Return the diagonal inside the walls and what noise may add to it [m]."""
     field, noise = settings.field, settings.noise
-    inside = hypot(field.length + 2 * field.margin, field.width + 2 * field.margin)
+    inside = hypot(field.length + 2 * field.goal_line_margin, field.width + 2 * field.margin)
     return inside + CUT_OFF * sqrt(2.0) * (noise.robot_position + noise.ball_position)
 
 

@@ -37,7 +37,7 @@ class Renderer:
     def __init__(self, field: FieldGeometry, face: float, width: int = 800) -> None:
         self.field = field
         self._face = face
-        outer = field.length + 2 * field.margin, field.width + 2 * field.margin
+        outer = field.length + 2 * field.goal_line_margin, field.width + 2 * field.margin
         self._scale = width * _FINER / outer[0]
         self._centre = outer[0] / 2, outer[1] / 2
         self._size = width * _FINER, round(width * outer[1] / outer[0]) * _FINER

@@ -22,9 +22,6 @@ AREA_GAP = 1.0
 GOAL_KICK_DISTANCE = 1.0
 """Distance of a goal kick from the goal line [m]."""
 
-_PENALTY_SHARE = 2.0 / 3.0
-"""Penalty mark to attacked goal as a share of the field's length: 6 of 9 m, 8 of 12 m."""
-
 
 @dataclass(slots=True, frozen=True)
 class Resumption:
@@ -79,7 +76,7 @@ def corner_kick(field: FieldGeometry, attacker: Team, y: float) -> Resumption:
 
 def penalty(field: FieldGeometry, attacker: Team) -> Resumption:
     """Return the penalty kick of ``attacker``."""
-    mark = -own_side(attacker) * (field.half_length - _PENALTY_SHARE * field.length)
+    mark = -own_side(attacker) * (field.half_length - field.penalty_distance)
     return Resumption((mark, 0.0), Restart.PENALTY, attacker)
 
 

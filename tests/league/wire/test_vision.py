@@ -6,19 +6,16 @@ from math import inf, nan, pi
 
 import pytest
 
-from robobt.league.wire.messages import SSL_GeometryFieldSize, SSL_WrapperPacket
+from robobt.league.wire.messages import SSL_WrapperPacket
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import (
     BallDetection,
     CameraFrame,
     RobotDetection,
-    read_field,
     read_vision,
-    write_field,
     write_frame,
     write_vision,
 )
-from robobt.world.field import DIVISION_A, DIVISION_B, FIELDS
 from robobt.world.game import Team
 from robobt.world.state import RobotId
 
@@ -49,43 +46,6 @@ def test_a_frame_comes_back_as_it_was() -> None:
 
 def test_lengths_are_millimetres_in_the_packet() -> None:
     assert write_frame(frame()).balls[0].x == 250.0
-
-
-@pytest.mark.parametrize("field", FIELDS.values(), ids=list(FIELDS))
-def test_a_field_comes_back_as_it_was(field: object) -> None:
-    packet = read_vision(write_vision(None, write_field(field)), PacketCounts())  # type: ignore[arg-type]
-    assert packet is not None
-    assert packet.field == field
-
-
-def test_defence_area_and_circle_are_read_from_the_lines_where_the_sizes_are_left_out() -> None:
-    size = write_field(DIVISION_A).field
-    for name in ("penalty_area_depth", "penalty_area_width", "center_circle_radius"):
-        size.ClearField(name)
-    found = read_field(size)
-    assert found is not None
-    assert found.defense_depth == pytest.approx(1.8)
-    assert found.defense_width == pytest.approx(3.6)
-    assert found.center_radius == 0.5
-
-
-def test_without_lines_the_nearest_divisions_sizes_are_taken() -> None:
-    bare = SSL_GeometryFieldSize(
-        field_length=9050, field_width=6020, goal_width=1000, goal_depth=180, boundary_width=300
-    )
-    found = read_field(bare)
-    assert found is not None
-    assert (found.length, found.width) == (9.05, 6.02)
-    assert found.defense_depth == DIVISION_B.defense_depth
-
-
-@pytest.mark.parametrize("length", [0, -9000, 10**9])
-def test_a_field_that_cannot_be_is_dropped(length: int) -> None:
-    geometry = write_field(DIVISION_B)
-    geometry.field.field_length = length
-    counts = PacketCounts()
-    assert read_vision(write_vision(None, geometry), counts) is None
-    assert counts.implausible == 1
 
 
 @pytest.mark.parametrize("value", [nan, inf, -inf, 1e30, 40_000.0])

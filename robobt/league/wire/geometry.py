@@ -1,0 +1,206 @@
+"""SSL-Vision's geometry of a field, converted to and from SI units.
+
+Source of the fields: ssl-vision's geometry messages (millimetres there). What is written
+has the lines, arcs and models that grSim sends, and the sizes that it leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+
+from pydantic import ValidationError
+
+from robobt.league.wire.messages import SSL_GeometryData, SSL_GeometryFieldSize
+from robobt.sim.settings import BallSettings
+from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
+from robobt.world.geometry import Point
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_MM = 1000.0
+
+_LINE_THICKNESS = 0.01
+"""Width of the field's lines [m]. Source: RoboCup SSL rules."""
+
+_GOAL_HEIGHT = 0.16
+"""Height of the goals inside [m]. Source: RoboCup SSL rules."""
+
+_SUBSTITUTION_WIDTH = 0.3
+"""Strip along the walls behind the goal lines in which robots are off the field [m].
+
+The rules have it in division A; without it the game controller counts robots that left the
+field for a card as long as they are seen.
+"""
+
+_CAMERA_HEIGHT = 4.0
+"""Height of the cameras above the ground [m]. Source: grSim's."""
+
+_FOCAL_LENGTH, _IMAGE = 390.0, (780, 580)
+"""Of a camera that sees a quarter of a division B field from there [pixels]."""
+
+_CHIP = (0.75, 0.95, 0.5)
+"""What a chipped ball keeps: in the plane at its first and its other hops, upwards. Source: Sumatra."""
+
+
+def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
+    """Return the field of a geometry packet; None when no such field can exist.
+
+    Sizes that the packet leaves out are taken from the field's lines and arcs, or
+    else from the division whose length is nearest.
+    """
+    length, width = message.field_length / _MM, message.field_width / _MM
+    division = min((DIVISION_A, DIVISION_B), key=lambda division: abs(division.length - length))
+    depth, across = message.penalty_area_depth / _MM, message.penalty_area_width / _MM
+    lines = {line.name: line for line in message.field_lines}
+    # As the game controller does; grSim's front line lies half its thickness off.
+    side, front = lines.get("LeftFieldLeftPenaltyStretch"), lines.get("LeftPenaltyStretch")
+    if not message.HasField("penalty_area_depth"):
+        depth = division.defense_depth if side is None else abs(side.p1.x - side.p2.x) / _MM
+    if not message.HasField("penalty_area_width"):
+        across = division.defense_width if front is None else abs(front.p1.y - front.p2.y) / _MM
+    radius = message.center_circle_radius / _MM
+    if not message.HasField("center_circle_radius"):
+        circles = [arc for arc in message.field_arcs if arc.name == "CenterCircle"]
+        # An arc is the middle of its line.
+        radius = (circles[0].radius + circles[0].thickness / 2) / _MM if circles else division.center_radius
+    goal_depth = message.goal_depth / _MM or division.goal_depth
+    least, margin = max(goal_depth, 0.2), message.boundary_width / _MM
+    behind = margin
+    if message.HasField("boundary_width_goal_line"):
+        behind = message.boundary_width_goal_line / _MM
+    try:
+        return FieldGeometry(
+            length=length,
+            width=width,
+            goal_width=message.goal_width / _MM,
+            goal_depth=goal_depth,
+            defense_width=across,
+            defense_depth=depth,
+            center_radius=radius,
+            margin=max(margin, least),
+            goal_line_margin=max(behind, least),
+        )
+    except ValidationError:
+        return None
+
+
+def write_geometry(
+    field: FieldGeometry, cameras: Sequence[Point] = (), ball: BallSettings | None = None
+) -> SSL_GeometryData:
+    """Return the geometry message of a field.
+
+    Args:
+        field: the field.
+        cameras: places of the cameras over it, by number [m].
+        ball: how the ball moves; None leaves it out.
+    """
+    message = SSL_GeometryData()
+    _write_size(message.field, field)
+    for number, (x, y) in enumerate(cameras):
+        _write_camera(message, number, x, y)
+    if ball is not None:
+        straight = message.models.straight_two_phase
+        straight.acc_slide, straight.acc_roll = -ball.slide_deceleration, -ball.roll_deceleration
+        straight.k_switch = ball.switch_share
+        chip = message.models.chip_fixed_loss
+        chip.damping_xy_first_hop, chip.damping_xy_other_hops, chip.damping_z = _CHIP
+    return message
+
+
+def _write_size(size: SSL_GeometryFieldSize, field: FieldGeometry) -> None:
+    size.field_length = _mm(field.length)
+    size.field_width = _mm(field.width)
+    size.goal_width = _mm(field.goal_width)
+    size.goal_depth = _mm(field.goal_depth)
+    size.goal_height = _mm(_GOAL_HEIGHT)
+    size.boundary_width = _mm(field.margin)
+    size.boundary_width_goal_line = _mm(field.goal_line_margin)
+    size.goal_substitution_area_width = _mm(min(_SUBSTITUTION_WIDTH, field.goal_line_margin))
+    size.penalty_area_depth = _mm(field.defense_depth)
+    size.penalty_area_width = _mm(field.defense_width)
+    size.goal_center_to_penalty_mark = _mm(field.penalty_distance)
+    size.center_circle_radius = _mm(field.center_radius)
+    size.line_thickness = _mm(_LINE_THICKNESS)
+    size.ball_radius = BALL_RADIUS * _MM
+    size.max_robot_radius = ROBOT_RADIUS * _MM
+    for kind, (name, x1, y1, x2, y2) in _lines(field):
+        line = size.field_lines.add(
+            name=name,
+            p1={"x": x1 * _MM, "y": y1 * _MM},
+            p2={"x": x2 * _MM, "y": y2 * _MM},
+            thickness=_LINE_THICKNESS * _MM,
+        )
+        if kind is not None:
+            line.type = kind
+    size.field_arcs.add(
+        name="CenterCircle",
+        center={"x": 0.0, "y": 0.0},
+        radius=(field.center_radius - _LINE_THICKNESS / 2) * _MM,
+        a1=0.0,
+        a2=2 * pi,
+        thickness=_LINE_THICKNESS * _MM,
+        type=1,
+    )
+
+
+def _write_camera(message: SSL_GeometryData, number: int, x: float, y: float) -> None:
+    """Add a camera that looks straight down, its picture's x axis along the field's."""
+    message.calib.add(
+        camera_id=number,
+        focal_length=_FOCAL_LENGTH,
+        principal_point_x=_IMAGE[0] / 2,
+        principal_point_y=_IMAGE[1] / 2,
+        distortion=0.0,
+        # x, y, z, w: half a turn about x; and the field's centre as the camera sees it.
+        q0=1.0,
+        q1=0.0,
+        q2=0.0,
+        q3=0.0,
+        tx=-x * _MM,
+        ty=y * _MM,
+        tz=_CAMERA_HEIGHT * _MM,
+        derived_camera_world_tx=x * _MM,
+        derived_camera_world_ty=y * _MM,
+        derived_camera_world_tz=_CAMERA_HEIGHT * _MM,
+        pixel_image_width=_IMAGE[0],
+        pixel_image_height=_IMAGE[1],
+    )
+
+
+def _mm(metres: float) -> int:
+    return round(metres * _MM)
+
+
+_Line = tuple[str, float, float, float, float]
+
+
+def _lines(f: FieldGeometry) -> list[tuple[int | None, _Line]]:
+    """Return type, name and ends of every line; outer lines run in their middle, as grSim's do."""
+    x, y, half = f.half_length, f.half_width, f.defense_width / 2
+    edge, post, back = f.half_length - f.defense_depth, f.goal_width / 2, f.half_length + f.goal_depth
+    in_x, in_y = x - _LINE_THICKNESS / 2, y - _LINE_THICKNESS / 2
+    named = [
+        ("TopTouchLine", -in_x, in_y, in_x, in_y),
+        ("BottomTouchLine", -in_x, -in_y, in_x, -in_y),
+        ("LeftGoalLine", -in_x, -in_y, -in_x, in_y),
+        ("RightGoalLine", in_x, -in_y, in_x, in_y),
+        ("HalfwayLine", 0.0, -in_y, 0.0, in_y),
+        ("CenterLine", -in_x, 0.0, in_x, 0.0),
+        ("LeftPenaltyStretch", -edge, -half, -edge, half),
+        ("RightPenaltyStretch", edge, -half, edge, half),
+        ("LeftFieldLeftPenaltyStretch", -x, half, -edge, half),
+        ("LeftFieldRightPenaltyStretch", -x, -half, -edge, -half),
+        ("RightFieldLeftPenaltyStretch", x, -half, edge, -half),
+        ("RightFieldRightPenaltyStretch", x, half, edge, half),
+    ]
+    goals = [
+        ("RightGoalTopLine", x, post, back, post),
+        ("RightGoalBottomLine", x, -post, back, -post),
+        ("RightGoalDepthLine", back, -post, back, post),
+        ("LeftGoalTopLine", -x, post, -back, post),
+        ("LeftGoalBottomLine", -x, -post, -back, -post),
+        ("LeftGoalDepthLine", -back, -post, -back, post),
+    ]
+    # The league's types of the named lines go from 2 on; those of the goals have none.
+    kinds = [*range(2, 2 + len(named)), *[None] * len(goals)]
+    return list(zip(kinds, [*named, *goals], strict=True))
