@@ -177,7 +177,7 @@ def test_workers_end_with_a_run_that_is_killed(tmp_path: Path, start_python: Sta
 
 
 def _soon(what: Callable[[], bool]) -> bool:
-    return any(what() or time.sleep(0.05) for _ in range(600))
+    return any(what() or time.sleep(0.05) for _ in range(2400))
 
 
 def _lives(process: str) -> bool:
