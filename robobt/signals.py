@@ -163,9 +163,14 @@ def at_the_latest_after(seconds: float) -> Iterator[None]:
         yield
     finally:
         _told.patience = None
-        if _told.force is not None:
-            _told.force.cancel()
-            _told.force = None
+        let_go()
+
+
+def let_go() -> None:
+    """Say that the main thread is on its way out: no end has to be forced any more."""
+    if _told.force is not None:
+        _told.force.cancel()
+        _told.force = None
 
 
 def leave_after_signal(status: object) -> None:
@@ -192,6 +197,8 @@ def _end_by_force() -> None:
     end = time.monotonic() + _WAIT_FOR_WRITERS
     while uninterrupted.depth and time.monotonic() < end:
         time.sleep(0.001)
+    if _told.force is None:
+        return
     name = signal.Signals(number).name
     with suppress(OSError):
         os.write(2, f"robobt: ended by force on {name}: a skill or a callback does not let go\n".encode())

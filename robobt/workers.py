@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Generic, TypeVar
 
-from robobt.signals import TERMINATE, ending, uninterrupted
+from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 
 TaskT = TypeVar("TaskT")
 ReportT = TypeVar("ReportT")
@@ -126,6 +126,7 @@ def run_tasks(
                 else:
                     raise work.error(f"a worker process does not know what this one does: {content}")
     finally:
+        let_go()
         _end([worker.process for worker in crew])
 
 

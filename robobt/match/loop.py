@@ -19,7 +19,7 @@ from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
-from robobt.signals import check, uninterrupted
+from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
@@ -104,6 +104,7 @@ class Match:
 
     def close(self) -> None:
         """Finish the recording; a match played tick by tick is closed by ``with`` or by this."""
+        let_go()
         if self._recorder is not None:
             with uninterrupted, self._recorder as recorder:
                 if self.outcome is not None:
