@@ -43,6 +43,15 @@ def test_importing_it_imports_nothing_heavy() -> None:
     assert done.stdout == "set()\n"
 
 
+def test_a_match_without_a_learned_skill_needs_no_torch() -> None:
+    code = (
+        "import sys; sys.modules['torch'] = None; import robobt\n"
+        "print(robobt.play_match(robobt.load_scenario('table4_trial1_own').lasting(0.1)).ticks)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(done.stdout) > 1
+
+
 def test_trials_are_played_in_the_simulator_unless_another_world_is_given() -> None:
     scenario = robobt.load_scenario("table4_trial1_own").lasting(0.5)
     run = robobt.run_trials(scenario, 2, seed=3)

@@ -10,13 +10,8 @@ from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
+from robobt.models.checks.limits import MAX_BYTES, MAX_PRODUCTS
 from robobt.models.file import ModelError
-
-MAX_BYTES = 64 * 2**20
-"""What all steps of a network may answer together, for a small batch [bytes]."""
-
-MAX_PRODUCTS = 10**10
-"""How many multiplications all steps of a network may take together, for a small batch."""
 
 
 class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from robobt.models.checks.bounds import MAX_BYTES, MAX_PRODUCTS
+from robobt.models.checks.limits import MAX_BYTES, MAX_PRODUCTS
 from robobt.models.file import ModelError
 from robobt.models.protobuf import fields
 
