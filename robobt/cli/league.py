@@ -5,16 +5,24 @@ from __future__ import annotations
 import time
 from contextlib import ExitStack, suppress
 from dataclasses import asdict
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say
+from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say, warn
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
     from robobt.league.serve.server import SimServer
+
+
+class Clock(StrEnum):
+    """What timestamps count from."""
+
+    SIM = "sim"
+    UNIX = "unix"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -54,6 +62,14 @@ def serve(
     speed: Annotated[
         float, typer.Option("--speed", min=0.05, max=20, help="Simulated time over real time.")
     ] = 1.0,
+    clock: Annotated[
+        Clock,
+        typer.Option(
+            "--clock",
+            help="Timestamps of the vision: sim counts from the start as grSim does, unix from 1970 "
+            "as real cameras do.",
+        ),
+    ] = Clock.SIM,
     referee: Annotated[
         bool, typer.Option("--referee", help="Referee the match, and publish the referee's messages.")
     ] = False,
@@ -91,7 +107,8 @@ def serve(
     Vision and tracked frames go out; grSim's packets and the simulation
     protocol come in. Robots stop a tenth of a second after their last command.
 
-    Keys of --json: frames (sent), simulated_s, packets: for each port, what happened to them.
+    Keys of --json: frames (sent), simulated_s, speed_kept (share of the speed asked for),
+    packets: for each port, what happened to them.
     """
     from robobt.league.log.files import LogWriter
     from robobt.league.serve.server import SimServer
@@ -127,25 +144,55 @@ def serve(
     with ExitStack() as stack:
         writer = None if log is None else stack.enter_context(LogWriter(log))
         server = stack.enter_context(
-            SimServer(served, endpoints, interface, cameras, speed, seed, time.time(), writer, rules)
+            SimServer(
+                served,
+                endpoints,
+                interface,
+                cameras,
+                speed,
+                seed,
+                epoch=time.time(),
+                log=writer,
+                referee=rules,
+                clock=clock.value,
+            )
         )
         if not as_json:
             _announce(server)
         # A signal is how one stops serving.
         with suppress(KeyboardInterrupt, Terminated):
-            server.run(seconds)
+            server.run(seconds, on_slow=_TellOnce())
     packets = {port: asdict(counts) for port, counts in server.counts.items()}
-    figures = {"frames": server.frames, "simulated_s": served.time, "packets": packets}
+    figures = {
+        "frames": server.frames,
+        "simulated_s": served.time,
+        "speed_kept": server.kept,
+        "packets": packets,
+    }
     if as_json:
         print_json(figures)
         return
-    say(f"Served {server.frames} frames, {served.time:.1f} s.")
+    say(f"Served {server.frames} frames, {served.time:.1f} s, at {server.kept:.1%} of the speed asked for.")
     for port, counts in server.counts.items():
         if counts.dropped:
             say(
                 f"{port}: "
                 + ", ".join(f"{number} {name}" for name, number in packets[port].items() if number)
             )
+
+
+class _TellOnce:
+    """Warns at the first slow stretch; the last line sums up."""
+
+    told = False
+
+    def __call__(self, kept: float) -> None:
+        if not self.told:
+            warn(
+                f"this machine is too busy: the field ran at {kept:.0%} of the speed asked for; "
+                "timestamps stay those of the simulated time"
+            )
+            self.told = True
 
 
 def _announce(server: SimServer) -> None:

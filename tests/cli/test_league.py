@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.league.log.files import read_log
+from robobt.league.log.files import LogKind, read_log
+from robobt.league.wire.messages import Referee
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.vision import read_vision
 from tests.league.served import free_endpoints
 
 ANY_PORT = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
@@ -52,6 +56,24 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
     page = tmp_path / "game.html"
     assert robobt("replay", log) == f"Replay: {page}\n"
     assert "<html" in page.read_text()
+
+
+@pytest.mark.parametrize("clock", ["sim", "unix"])
+def test_serve_stamps_its_vision_by_the_clock_that_is_asked_for(tmp_path: Path, clock: str) -> None:
+    log = tmp_path / "game.log"
+    before = time.time()
+    robobt("serve", "--robots", 1, *quiet(), "--seconds", 0.3, "--clock", clock, "--referee", "--log", log)
+    start = before if clock == "unix" else 0.0
+    records = list(read_log(log))
+    for record in records:
+        # Logs and referees always have Unix time.
+        assert before <= record.time / 1e9 < before + 60
+        seen = read_vision(record.data, PacketCounts()) if record.kind == LogKind.VISION else None
+        if seen is not None and seen.frame is not None:
+            assert start < seen.frame.captured < start + 60
+        if record.kind == LogKind.REFEREE:
+            assert before < Referee.FromString(record.data).packet_timestamp / 1e6 < before + 60
+    assert {record.kind for record in records} == {3, 4, 5}
 
 
 def test_serve_takes_a_scenario() -> None:

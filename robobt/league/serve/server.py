@@ -8,13 +8,14 @@ import time as clocks
 from collections.abc import Callable
 from contextlib import ExitStack
 from itertools import count
-from typing import Self
+from typing import Literal, Self
 from uuid import UUID
 
 import numpy as np
 
 from robobt.league.log.files import LogKind, LogWriter
 from robobt.league.serve.cameras import Cameras
+from robobt.league.serve.pace import ServingPace
 from robobt.league.serve.ports import ClientPorts
 from robobt.league.serve.publishing import GEOMETRY_INTERVAL
 from robobt.league.serve.referee import ServedReferee
@@ -27,8 +28,8 @@ from robobt.league.wire.vision import write_vision
 from robobt.match.referee.settings import RefereeSettings
 from robobt.signals import check, uninterrupted
 
-_BEHIND = 0.25
-"""A server that is later than this skips what it missed instead of catching up [s]."""
+Clock = Literal["sim", "unix"]
+"""What timestamps count from: the start of the simulation, as grSim's, or 1970."""
 
 
 class SimServer:
@@ -41,14 +42,17 @@ class SimServer:
         cameras: how many share the field.
         speed: simulated time over real time; clients may change it.
         seed: of the cameras' noise.
-        epoch: added to the simulated time to get timestamps [s].
+        epoch: Unix time of the start, for what has Unix time always: the referee's messages and logs [s].
         log: also receives everything that is sent.
         referee: settings of the referee, whose decisions are published; None plays without one.
+        clock: of the timestamps of vision and tracked frames. They advance with the simulated time
+            exactly, however busy this machine is.
 
     Attributes:
         endpoints: as above, with the ports that were picked for 0.
         counts: what happened to the packets, by port.
         frames: how many were sent.
+        kept: share of its speed that the field has kept.
         referee: the referee, None without one.
 
     Raises:
@@ -67,11 +71,14 @@ class SimServer:
         epoch: float = 0.0,
         log: LogWriter | None = None,
         referee: RefereeSettings | None = None,
+        clock: Clock = "sim",
     ) -> None:
         self.field = field
         self.frames = 0
+        self.kept = 1.0
         self.referee = None if referee is None else ServedReferee(field, referee)
         self._epoch, self._log = epoch, log
+        self._stamped_from = epoch if clock == "unix" else 0.0
         rng = np.random.default_rng(seed)
         self._cameras = Cameras(field.field, field.settings.realism, cameras, rng)
         self._uuid = str(UUID(bytes=rng.bytes(16), version=4))
@@ -103,6 +110,7 @@ class SimServer:
         seconds: float | None = None,
         on_step: Callable[[ServedField], None] | None = None,
         stop: Callable[[], bool] | None = None,
+        on_slow: Callable[[float], None] | None = None,
     ) -> None:
         """Serve in real time, scaled by ``speed``, until interrupted or for a while.
 
@@ -110,33 +118,36 @@ class SimServer:
             seconds: of this machine's clock [s].
             on_step: called after every step.
             stop: called after every step; True ends it.
+            on_slow: called with the share of its speed that the field kept in the last
+                seconds, where this machine is too busy for it.
         """
         began = clocks.monotonic()
-        base, base_time = began, self.field.time
+        pace = ServingPace(began, self.field.time)
         speed = self.speed
         while True:
             check()
             now = clocks.monotonic()
             if seconds is not None and now - began >= seconds:
                 return
-            if self.speed != speed:
-                base, base_time, speed = now, self.field.time, self.speed
-            simulated = base_time + (now - base) * speed
-            if simulated - self.field.time > _BEHIND + self.field.period:
-                base, base_time = now, self.field.time + self.field.period
-                simulated = base_time
-            if simulated >= self.field.time + self.field.period:
+            pace.advance(now, speed)
+            speed = self.speed
+            pace.reached(self.field.time, self.field.period)
+            self.kept = pace.kept
+            if pace.due >= self.field.time + self.field.period:
                 self.receive()
                 self.step()
+                slow = pace.slow()
+                if slow is not None and on_slow is not None:
+                    on_slow(slow)
                 if on_step is not None:
                     on_step(self.field)
                 if stop is not None and stop():
                     return
-            self.send_due(simulated)
+            self.send_due(pace.due)
             due = self.field.time + self.field.period
             if self._outbox:
                 due = min(due, self._outbox[0][0])
-            left = (due - base_time) / speed + base - clocks.monotonic()
+            left = (due - pace.due) / speed + now - clocks.monotonic()
             if left > 0.0 and select.select(self._ports.receivers, [], [], left)[0]:
                 self.receive()
 
@@ -149,17 +160,18 @@ class SimServer:
         field = self.field
         field.step()
         self.frames += 1
-        now = field.time
-        sent = now + self._cameras.realism.vision_delay
+        now, stamped = field.time, self._stamped_from + field.time
+        delay = self._cameras.realism.vision_delay
+        sent = now + delay
         truth = field.truth()
-        frames = self._cameras.capture(truth, self._epoch + now, self._epoch + sent)
+        frames = self._cameras.capture(truth, stamped, stamped + delay)
         geometry = None
         if self.frames % GEOMETRY_INTERVAL == 1:
             geometry = write_geometry(field.field, self._cameras.places, field.settings.ball)
         for frame in frames:
             self._post(sent, self._vision, write_vision(frame, geometry))
             geometry = None
-        tracked = write_tracked(truth, self.frames, self._epoch + now, self._uuid)
+        tracked = write_tracked(truth, self.frames, stamped, self._uuid)
         self._post(now, self._tracker, tracked)
         self._ports.report_status()
         message = None if self.referee is None else self.referee.judge(self._epoch + now)

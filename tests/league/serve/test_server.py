@@ -10,7 +10,7 @@ from typing import TypeVar
 import pytest
 
 from robobt.league.serve.served_field import ServedField
-from robobt.league.serve.server import SimServer
+from robobt.league.serve.server import Clock, SimServer
 from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
@@ -105,6 +105,31 @@ def test_vision_and_tracker_go_out_with_every_step(server: SimServer, endpoints:
     assert tracked is not None
     assert [robot.id for robot in tracked[1].own] == [ME.number]
     assert tracked[1].ball.position == pytest.approx(server.field.truth().ball.position, abs=1e-6)
+
+
+@pytest.mark.parametrize(("clock", "start"), [("sim", 0.0), ("unix", 1_800_000_000.0)])
+def test_stamps_advance_with_the_simulated_time_however_busy_the_machine_is(
+    endpoints: Endpoints, clock: Clock, start: float
+) -> None:
+    field = ServedField(DIVISION_B, Placement({ME: (0.0, 0.0, 0.0)}))
+
+    def busy(_: ServedField) -> None:
+        if server.frames in (3, 20):
+            time.sleep(0.4)
+
+    with (
+        SimServer(field, endpoints, epoch=1_800_000_000.0, clock=clock) as server,
+        Receiver(*endpoints.vision) as vision,
+        Receiver(*endpoints.tracker) as tracker,
+    ):
+        server.run(1.2, on_step=busy)
+        seen = [read_vision(packet.data, PacketCounts()) for packet in vision.receive()]
+        tracked = [read_tracked(packet.data, DIVISION_B, PacketCounts()) for packet in tracker.receive()]
+    assert server.frames == len(seen) == len(tracked) > 20
+    assert server.kept < 0.8
+    stamps = [packet.frame.captured for packet in seen if packet is not None and packet.frame is not None]
+    assert stamps == [start + number * ServedField.period for number in range(1, len(seen) + 1)]
+    assert [frame.time for _, frame in filter(None, tracked)] == stamps
 
 
 def test_the_visions_delay_keeps_frames_back() -> None:

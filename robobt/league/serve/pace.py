@@ -1,0 +1,57 @@
+"""When a served field has to be simulated on. No clock here: all times are arguments."""
+
+from __future__ import annotations
+
+_BEHIND = 0.25
+"""A server that is later than this leaves out what it missed instead of sending it all at once [s]."""
+
+_CATCH_UP = 0.005
+"""Share by which it then runs faster until it is back in time: less than clients notice."""
+
+_WINDOW = 5.0
+"""Over how long it is judged whether the field keeps its speed [s]."""
+
+_SLOW = 0.98
+"""A field that keeps less than this share of its speed is slow."""
+
+
+class ServingPace:
+    """Simulated time that follows this machine's clock at some speed, through stalls too.
+
+    Args:
+        now: this machine's clock [s].
+        time: simulated time [s].
+
+    Attributes:
+        due: simulated time that has to be reached [s].
+        kept: share of its speed that the field has kept.
+    """
+
+    def __init__(self, now: float, time: float) -> None:
+        self.due = self._asked = self._start = time
+        self.kept = 1.0
+        self._now = self._looked = now
+        self._then = time, time
+
+    def advance(self, now: float, speed: float) -> None:
+        """Take note of this machine's clock [s], and of the speed that has been in force so far."""
+        passed = (now - self._now) * speed
+        behind = self._asked - self.due
+        self._now = now
+        self._asked += passed
+        self.due += passed + min(behind, passed * _CATCH_UP)
+
+    def reached(self, time: float, period: float) -> None:
+        """Take note of how far the simulation has come [s]; if it is far behind, more is not asked of it."""
+        if self.due - time > _BEHIND + period:
+            self.due = time + period
+        if self._asked > self._start:
+            self.kept = (self.due - self._start) / (self._asked - self._start)
+
+    def slow(self) -> float | None:
+        """Return the share of its speed that the field kept lately, None while it keeps it."""
+        if self._now - self._looked < _WINDOW:
+            return None
+        asked, done = self._asked - self._then[0], self.due - self._then[1]
+        self._looked, self._then = self._now, (self._asked, self.due)
+        return done / asked if done < _SLOW * asked else None
