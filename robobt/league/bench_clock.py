@@ -180,6 +180,9 @@ class _Silent(KnownField):
     def tell(self, what: str, message: str) -> None:
         """Do nothing."""
 
+    def tell_again(self, message: str) -> None:
+        """Do nothing."""
+
 
 def _frame(time: float) -> CameraFrame:
     robot = RobotDetection(RobotId(Team.BLUE, 0), 1.0, 0.0, 0.0)

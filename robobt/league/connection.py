@@ -31,6 +31,10 @@ class Connection(BaseModel):
         None, description="own address of the interface to listen on; none: this machine's packets only"
     )
     endpoints: Endpoints = Endpoints()
+    geometry: Literal["scenario", "seen"] = Field(
+        "scenario",
+        description="the scenario's field, which the vision's has to equal, or the one that is seen",
+    )
     source: Literal["vision", "tracker"] = Field("vision", description="cameras, or a vision filter's frames")
     teams: tuple[Team, ...] = Field(
         (Team.BLUE, Team.YELLOW), description="teams whose robots are commanded, whatever the trees decide"
@@ -60,8 +64,14 @@ class Connection(BaseModel):
         local = IPv4Address(self.host).is_loopback or self.host == self.interface
         return self.simulator != "observer" and local and set(self.teams) == set(Team)
 
+    @property
+    def where(self) -> str:
+        """The name of the field that is commanded; that of its ports."""
+        ports = self.endpoints
+        return f"{self.host}:{ports.grsim}/{ports.blue}/{ports.yellow}"
+
     def link(self) -> Link:
         """Return a new link that commands the robots."""
         if self.simulator == "grsim":
-            return GrSimLink(self.host, self.endpoints, self.interface)
+            return GrSimLink(self.host, self.endpoints, self.interface, self.teams)
         return ProtocolLink(self.host, self.endpoints) if self.simulator == "protocol" else Link()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from math import pi
 
-from robobt.league.connection import Connection
+from robobt.league.connection import Connection, LeagueError
 from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.known_field import KnownField
@@ -17,7 +17,7 @@ from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
 from robobt.sim.settings import SimSettings
-from robobt.world.field import FieldGeometry
+from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
@@ -28,6 +28,12 @@ ALL_CAMERAS = 0.002
 
 _HORIZON = 0.25
 """Longest prediction beyond the last capture [s]."""
+
+_SIZES = ("length", "width", "goal_width", "defense_width", "defense_depth")
+"""Dimensions that have to be the scenario's."""
+
+_EQUAL = 0.02
+"""Sizes closer than this are equal [m]."""
 
 _UNEQUAL = 0.05
 """A first guess of the rate that was off by this share has spoiled the cameras' offsets."""
@@ -41,7 +47,7 @@ class Feed:
 
     Args:
         connection: how the field is reached.
-        field: dimensions until the vision reports others.
+        field: dimensions that the vision's have to equal; None takes whatever it reports.
         settings: physics to expect there.
         limits: of individual robots, where they differ.
         clock: monotonic seconds.
@@ -60,7 +66,7 @@ class Feed:
     def __init__(
         self,
         connection: Connection,
-        field: FieldGeometry,
+        field: FieldGeometry | None,
         settings: SimSettings,
         limits: Mapping[RobotId, RobotLimits],
         clock: Callable[[], float],
@@ -68,7 +74,8 @@ class Feed:
     ) -> None:
         self.connection = connection
         self.known = known or KnownField(connection.speed)
-        self.filter = VisionFilter(field, settings, limits)
+        self._expected = field if connection.geometry == "scenario" else None
+        self.filter = VisionFilter(self.known.field or field or DIVISION_B, settings, limits)
         self.frames = 0
         self.fresh = False
         self.arrived = self.heard = -1e9
@@ -170,8 +177,8 @@ class Feed:
                 if self._clock() > end:
                     break
                 continue
-            if seen.field is not None and seen.field != self.filter.field:
-                self.filter.field = seen.field
+            if seen.field is not None:
+                self._see(seen.field)
             if seen.frame is not None:
                 self.add(seen.frame, arrived)
         if self.referee is not None:
@@ -201,6 +208,28 @@ class Feed:
         self.fresh = True
         self._cameras[frame.camera] = frame.captured
 
+    def _see(self, field: FieldGeometry) -> None:
+        """Play on the field that the vision reports.
+
+        Raises:
+            LeagueError: it is not of the size that is expected.
+        """
+        if field == self.known.field:
+            return
+        other = [
+            name for name in _SIZES if abs(_size(field, name) - _size(self._expected or field, name)) > _EQUAL
+        ]
+        if self._expected is not None and other:
+            listed = ", ".join(
+                f"{name} {_size(field, name):g} m instead of {_size(self._expected, name):g} m"
+                for name in other
+            )
+            raise LeagueError(
+                f"the vision shows another field than the scenario's: {listed}; set the scenario's field so, "
+                "or the simulator's, or play on what is seen with 'geometry=seen' in the address"
+            )
+        self.known.field = self.filter.field = field
+
     def _learn(self, arrived: float, sent: float) -> None:
         """Learn from a packet how the field's clock runs."""
         clock = self.known.clock
@@ -226,6 +255,10 @@ class Feed:
         if self.sign() > 0.0:
             return self.referee.watch(frame)
         return self.referee.watch(frame.mirrored()).mirrored()
+
+
+def _size(field: FieldGeometry, name: str) -> float:
+    return float(getattr(field, name))
 
 
 def _turned(frame: CameraFrame) -> CameraFrame:

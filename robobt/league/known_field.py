@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 
 from robobt.league.estimate.clocks import FieldClock
+from robobt.world.field import FieldGeometry
 
 _log = logging.getLogger(__name__)
 
@@ -23,10 +24,12 @@ class KnownField:
 
     Attributes:
         clock: the field's clock.
+        field: the dimensions that the vision reported, None before it has.
     """
 
     def __init__(self, speed: float = 1.0) -> None:
         self.clock = FieldClock(speed)
+        self.field: FieldGeometry | None = None
         self._speed = speed
         self._told: set[str] = set()
         self._since: tuple[float, float] | None = None
@@ -41,6 +44,10 @@ class KnownField:
         if what not in self._told:
             self._told.add(what)
             _log.warning(message)
+
+    def tell_again(self, message: str) -> None:
+        """Warn the user of something each time that it happens."""
+        _log.warning(message)
 
     def restarted(self) -> None:
         """Take note that the field's clock was restarted."""

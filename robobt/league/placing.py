@@ -56,6 +56,8 @@ class Placer:
             LeagueError: nothing is received, or something is not seen where it was put.
         """
         self._await_vision()
+        if self._feed.connection.geometry == "seen":
+            self._await_field()
         if self._feed.connection.places:
             self._put(placement)
         else:
@@ -74,6 +76,11 @@ class Placer:
         while not self._feed.filter.robots() and self._feed.filter.ball_unseen() == inf:
             if self._clock() > end:
                 raise LeagueError(self._feed.no_frames(TIMEOUT))
+            self._feed.receive(0.05)
+
+    def _await_field(self) -> None:
+        end = self._clock() + TIMEOUT
+        while self._feed.known.field is None and self._clock() < end:
             self._feed.receive(0.05)
 
     def _await_robots(self) -> None:

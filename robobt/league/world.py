@@ -6,20 +6,23 @@ import atexit
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Self
 
+from robobt.league.claims import Claims
 from robobt.league.connection import Connection
 from robobt.league.feed import ALL_CAMERAS, Feed
 from robobt.league.known_field import KnownField
 from robobt.league.pacing import Pace
 from robobt.league.placing import Placer
+from robobt.league.watch import MatchWatch
 from robobt.league.wire.commands import clamp_command
 from robobt.league.wire.packets import PacketCounts
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
-from robobt.world.field import DIVISION_B, FieldGeometry
+from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
 from robobt.world.placement import check_inside, check_placement
 from robobt.world.protocol import Placement, World
@@ -41,17 +44,18 @@ _SLOWEST = 0.25
 class LeagueWorld(World):
     """Implements :class:`robobt.world.World` over SSL-Vision and a simulator's ports.
 
-    The field's size is taken from the vision. Frames are predicted from the last
-    capture to now with the commands sent since. Commands go out once a control
-    period, and at least 60 times a second, whether or not the vision sends; without
-    frames for 0.2 s they stop the robots, as they do when this world is closed or its
-    process ends.
+    Frames are predicted from the last capture to now with the commands sent since.
+    Commands go out once a control period, and at least 60 times a second, whether or not
+    the vision sends; without frames for 0.2 s they stop the robots, as they do when this
+    world is closed or its process ends. Another world of this process that commands one
+    of the same robots is closed.
 
     All times but those of the attributes pass as on the field's own clock, whose rate is
     measured: a simulator at half speed is played at half speed.
 
     Args:
-        field: dimensions until the vision reports others.
+        field: dimensions that the vision's have to equal, unless ``connection.geometry`` is "seen"; None
+            takes whatever it reports.
         robots: limits of the robots that play; None as a limit takes the settings' own, and
             without the mapping all robots that are seen play.
         settings: physics to expect there.
@@ -72,7 +76,7 @@ class LeagueWorld(World):
 
     def __init__(
         self,
-        field: FieldGeometry = DIVISION_B,
+        field: FieldGeometry | None = None,
         robots: Mapping[RobotId, RobotLimits | None] | None = None,
         settings: SimSettings | None = None,
         period: float = 1 / _RATE,
@@ -90,13 +94,21 @@ class LeagueWorld(World):
         self._limits = {robot: limits for robot, limits in (robots or {}).items() if limits is not None}
         self._commands: dict[RobotId, RobotCommand] = {}
         self._clock = clock
-        self._feed = Feed(self.connection, field, self.settings, self._limits, clock, known)
-        try:
-            self._link = self.connection.link()
-        except OSError:
-            self._feed.close()
-            raise
+        here = self.connection
+        commanded = () if here.simulator == "observer" else robots
+        with ExitStack() as opened:
+            # First, as who is released thereby gives up its ports.
+            claims = Claims(here.where, commanded, here.teams, self.close)
+            opened.callback(claims.close)
+            self._feed = Feed(here, field, self.settings, self._limits, clock, known)
+            opened.callback(self._feed.close)
+            self._link = here.link()
+            opened.callback(self._link.close)
+            self._opened = opened.pop_all()
+        if claims.taken:
+            self._feed.known.tell("players", claims.message())
         self._placer = Placer(self._feed, self._link, self._commanded, clock)
+        self._watch = MatchWatch(self._feed, period)
         now = self._feed.now()
         self._pace = Pace(period, now)
         self._sent_at = self._looked = self._looked_at = self._began = now
@@ -112,7 +124,8 @@ class LeagueWorld(World):
         (see :class:`Connection`) the match begins as soon as the commanded robots are seen.
 
         Raises:
-            LeagueError: no vision is received, or something is not seen where it was put.
+            LeagueError: no vision is received, something is not seen where it was put, or the field is not
+                the expected one.
             ValueError: as in the protocol.
         """
         check_placement(placement, self._feed.filter.field, self._robots)
@@ -122,6 +135,7 @@ class LeagueWorld(World):
         self._restart_time()
         self._pace.restart(self._looked)
         self._feed.fresh = False
+        self._watch.begin()
 
     def observe(self) -> Frame:
         """Return the field predicted to now, seen from blue's side."""
@@ -138,6 +152,8 @@ class LeagueWorld(World):
         Raises:
             KeyError: a command for a robot that does not play here.
             ValueError: a command that is not finite. Nothing is sent then.
+            LeagueError: the field is not the expected one; the simulator of a match that was set up there
+                sends no more, or was restarted.
         """
         clamped = {}
         for robot, command in commands.items():
@@ -162,6 +178,7 @@ class LeagueWorld(World):
         seen = feed.filter.kicks
         self._kicks = [(kick.robot, min(self._time, max(0.0, kick.time - self._began))) for kick in seen]
         seen.clear()
+        self._watch.acted()
 
     def seen_kicks(self) -> list[tuple[RobotId, float]]:
         """Return who was seen to kick during the last act, and when; see the protocol."""
@@ -198,8 +215,7 @@ class LeagueWorld(World):
             # Repeated, because packets get lost.
             for _ in range(3):
                 self._link.send(stop, self._feed.now())
-            self._link.close()
-            self._feed.close()
+            self._opened.close()
 
     def __enter__(self) -> Self:
         return self

@@ -21,6 +21,7 @@ from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
 from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
+from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
@@ -81,7 +82,8 @@ class Match:
             for team in Team
         }
         self._judge = EndJudge(scenario, self.world.refereed, self.world.scenario_ends)
-        self._referee = _referee_of(scenario)
+        self._field = self.world.truth().field
+        self._referee = _referee_of(scenario, self._field)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
         self._time = 0.0
@@ -229,7 +231,7 @@ class Match:
             trial=self.trial,
             seed=self.seed,
             period=scenario.period,
-            field=scenario.field,
+            field=self._field,
             played=scenario.model_dump(mode="json"),
             robots=tuple(
                 RecordedRobot(
@@ -271,12 +273,12 @@ def play_match(
     return Match(scenario, seed, world_factory, record, trial).play()
 
 
-def _referee_of(scenario: Scenario) -> Referee | None:
+def _referee_of(scenario: Scenario, field: FieldGeometry) -> Referee | None:
     settings = scenario.referee
     if settings is None:
         return None
     keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
-    return Referee(scenario.field, settings.model_copy(update=keepers))
+    return Referee(field, settings.model_copy(update=keepers))
 
 
 def _record_decision(recorder: Recorder, event: RefereeEvent) -> None:

@@ -39,7 +39,7 @@ def test_grsim_never_takes_a_command_back(endpoints: Endpoints, form: str, teams
     with (
         running(grsim(endpoints)) as simulator,
         LeagueWorld(
-            robots=dict.fromkeys((ME, HER)), simulator=form, endpoints=endpoints, teams=teams
+            robots=dict.fromkeys((ME, HER)), simulator=form, endpoints=endpoints, teams=teams, place=True
         ) as world,
     ):
         world.reset(START, 0)
@@ -90,8 +90,10 @@ def test_vision_that_is_later_than_it_tells_can_be_reckoned_with(endpoints: Endp
         assert abs(me.x - robot.x) + abs(me.y - robot.y) < 0.035
 
 
-def test_a_simulator_that_is_started_anew_is_played_on_with(endpoints: Endpoints) -> None:
-    with LeagueWorld(robots=dict.fromkeys((ME, HER)), endpoints=endpoints) as world:
+def test_vision_that_is_started_anew_is_played_on_with_where_people_place_the_robots(
+    endpoints: Endpoints,
+) -> None:
+    with LeagueWorld(robots=dict.fromkeys((ME, HER)), endpoints=endpoints, place=False) as world:
         with running(grsim(endpoints, clock_from=5000.0)):
             world.reset(START, 0)
             for _ in range(10):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
@@ -84,9 +84,17 @@ class GrSimLink(_SimulatorLink):
     grSim stops the blue robots after every frame unless something arrives on its
     yellow control port every second, and the yellow robots likewise; commands on
     its own port do not count.
+
+    Args:
+        host: where grSim runs.
+        endpoints: its ports.
+        interface: own address of the interface to listen on.
+        teams: whose robots are commanded.
     """
 
-    def __init__(self, host: str, endpoints: Endpoints, interface: str | None) -> None:
+    def __init__(
+        self, host: str, endpoints: Endpoints, interface: str | None, teams: Collection[Team] = tuple(Team)
+    ) -> None:
         super().__init__(host, endpoints)
         self._commands = self._sender(host, endpoints.grsim)
         self._status: dict[Team, Receiver] = {}
@@ -95,8 +103,14 @@ class GrSimLink(_SimulatorLink):
             try:
                 receiver = Receiver(interface or LOOPBACK, port, interface)
             except OSError as error:
-                # Another program has the port: ball contact is then inferred from the vision.
-                _log.warning("%s; ball contact of %s robots is estimated", error, team.value)
+                # Ball contact is then inferred from the vision.
+                if team in teams:
+                    _log.warning(
+                        "%s: another program receives there, perhaps a second player; ball contact of %s "
+                        "robots is estimated",
+                        error,
+                        team.value,
+                    )
                 continue
             self._status[team] = receiver
             self._sockets.append(receiver)
