@@ -56,8 +56,8 @@ class EndJudge:
         self._goal_ends = free if ends.goal is None else ends.goal
         self._out_ends = free if ends.ball_out is None else ends.ball_out
         self._keepers = {RobotId(team, number) for team, number in scenario.goalkeepers().items()}
-        self._last_tick = ceil(ends.time_limit / scenario.period - 1e-9)
-        self._ticks = -1
+        # Half a period early, as frames of a world of its own pace are not on the tick.
+        self._last = (ceil(ends.time_limit / scenario.period - 1e-9) - 0.5) * scenario.period
         self._ball_before: Point | None = None
         self._was_out = False
         self._held_since: float | None = None
@@ -74,7 +74,6 @@ class EndJudge:
             kicks: how often the ball has been kicked so far.
             kicked: who kicked it since the frame before.
         """
-        self._ticks += 1
         goal_by = self._goal_by(truth, game)
         if not self._hold:
             return Outcome.FULL_TIME if game.stage is Stage.POST_GAME else None
@@ -93,7 +92,7 @@ class EndJudge:
             return Outcome.SAVED
         if _lasted(self._since_rest(truth, kicks), self._ends.ball_at_rest, truth.time):
             return Outcome.REST
-        return Outcome.TIME if self._ticks >= self._last_tick else None
+        return Outcome.TIME if truth.time >= self._last else None
 
     def _goal_by(self, truth: Frame, game: GameState) -> Team | None:
         """Return who has scored since the frame before."""

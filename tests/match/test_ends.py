@@ -125,6 +125,15 @@ def test_the_time_limit_ends_at_the_first_tick_that_reaches_it(limit: float) -> 
     assert outcomes[25 if limit == 0.5 else 26] is Outcome.TIME
 
 
+def test_the_time_limit_is_one_of_the_frames_time_however_many_there_are() -> None:
+    trial = Trial({"time_limit": 0.5})
+    outcomes = []
+    for _ in range(9):
+        trial.time += 2 * PERIOD
+        outcomes.append(trial.see())
+    assert outcomes == [None] * 8 + [Outcome.TIME]
+
+
 @pytest.mark.parametrize(("gap", "saved"), [(REACH - 0.001, True), (REACH + 0.001, False)])
 def test_a_goalkeeper_holds_the_ball_on_any_side_of_its_hull(gap: float, saved: bool) -> None:
     trial = Trial({"held_by_goalkeeper": 0.1})
