@@ -15,13 +15,20 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, fields
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 import torch
+
+try:
+    import fcntl
+except ImportError:  # Windows has none, and no two runs are kept apart there.
+    fcntl = None  # type: ignore[assignment]
 
 from robobt import __version__
 from robobt.config.atomic import write_atomically
@@ -43,6 +50,30 @@ ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensor
 
 class RunFolderError(RobobtError, ValueError):
     """A run's folder cannot be used; the message is one line that names it."""
+
+
+@contextmanager
+def alone_in(path: Path) -> Iterator[None]:
+    """Keep other runs out of a folder, which is made if it is not there; a run that dies lets them in.
+
+    Raises:
+        RunFolderError: another run is in it.
+    """
+    if fcntl is None or (path.exists() and not path.is_dir()):
+        yield
+        return
+    path.mkdir(parents=True, exist_ok=True)
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise RunFolderError(
+                f"{path}: another run is being trained there; wait for it, or give another folder"
+            ) from error
+        yield
+    finally:
+        os.close(handle)
 
 
 class RunFolder:

@@ -20,7 +20,7 @@ from robobt.learning.training.demonstrations import demonstrations_for
 from robobt.learning.training.problems import Problem, problem_of, training_seed
 from robobt.learning.training.progress import OnProgress, Reporter
 from robobt.learning.training.results import Figures, TrainResult, Validation, held_out_figures
-from robobt.learning.training.run_folder import RunFolder
+from robobt.learning.training.run_folder import RunFolder, alone_in
 from robobt.learning.training.selection import Selection
 from robobt.learning.training.settings import TrainSettings, environment_of
 
@@ -52,20 +52,22 @@ def train(
         problem: the task to learn in place of the one the settings name.
 
     Raises:
-        RunFolderError: the folder holds a run already, or another one, or cannot be resumed.
+        RunFolderError: the folder holds a run already, or another one, or cannot be resumed, or
+            another process trains in it.
         TrainError: the weights became NaN.
         OSError: a file cannot be written.
     """
     clock = RunClock()
     if problem is None:
         problem = problem_of(environment_of(settings))
-    folder = RunFolder(Path(out), settings, resume)
-    if folder.result is not None:
-        return folder.result
-    if folder.warning is not None:
-        warnings.warn(f"{folder.warning}; going on from the checkpoint before it", stacklevel=2)
-    with folder, one_thread():
-        return _Run(settings, problem, folder, clock, on_progress).to_end()
+    with alone_in(Path(out)):
+        folder = RunFolder(Path(out), settings, resume)
+        if folder.result is not None:
+            return folder.result
+        if folder.warning is not None:
+            warnings.warn(f"{folder.warning}; going on from the checkpoint before it", stacklevel=2)
+        with folder, one_thread():
+            return _Run(settings, problem, folder, clock, on_progress).to_end()
 
 
 class _Run:

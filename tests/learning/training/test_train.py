@@ -344,3 +344,28 @@ def test_a_real_run_killed_at_ten_random_moments_ends_with_the_same_weights(tmp_
 
 def _changed(path):
     return path.stat().st_mtime_ns if path.exists() else None
+
+
+def test_two_runs_in_one_folder_at_a_time_are_one_too_many(tmp_path):
+    refusals = []
+
+    class Meanwhile(Slide):
+        def step(self, actions):
+            if not refusals:
+                with pytest.raises(RunFolderError) as caught:
+                    train(slide_settings(), tmp_path, resume=True, problem=SLIDE)
+                refusals.append(str(caught.value))
+            return super().step(actions)
+
+    result = train(slide_settings(), tmp_path, problem=replace(SLIDE, make=Meanwhile))
+    alone = train(slide_settings(), tmp_path / "alone", problem=SLIDE)
+    said = f"{tmp_path}: another run is being trained there; wait for it, or give another folder"
+    assert refusals == [said]
+    assert result.figures["weights"] == alone.figures["weights"]
+    assert load_run(tmp_path).validations == result.validations
+
+
+def test_a_run_that_was_killed_keeps_nobody_out(tmp_path):
+    with pytest.raises(KilledError):
+        train(slide_settings(), tmp_path, problem=breaking_after(100))
+    train(slide_settings(), tmp_path, resume=True, problem=SLIDE)
