@@ -12,7 +12,7 @@ from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
 from robobt.config.errors import RobobtError
-from robobt.tree.engine import Marks, Tick, Visit, abandon, compile_tree
+from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
 _log = logging.getLogger(__name__)
@@ -34,9 +34,10 @@ class TreeError(RobobtError, RuntimeError):
 class TreeRunner:
     """A tree bound to one store.
 
-    An exception in a node fails it and stops this tree: running nodes are interrupted,
-    the node has FAILURE and the exception as its feedback, every other one INVALID,
-    ``error`` says what happened and where, and the next tick starts from the root again.
+    What a node raises fails it and stops this tree: running nodes are interrupted, the node has
+    FAILURE and the exception as its feedback, every other one INVALID, ``error`` says what
+    happened and where, and the next tick starts from the root again. Only what ends the
+    program (SystemExit, KeyboardInterrupt) goes on, with the tree at rest.
 
     Args:
         root: the tree.
@@ -75,17 +76,17 @@ class TreeRunner:
             self._failed.feedback_message, self._failed = "", None
         try:
             self._tick()
-        except (Exception, SystemExit) as error:
-            # A skill that calls sys.exit() has failed like any other; only Ctrl-C ends the program,
-            # and whoever goes on after it finds a tree at rest.
+        except LEAVING:
+            # Whoever goes on after it finds a tree at rest.
+            abandon(self.root)
+            raise
+        except BaseException as error:
+            # A GeneratorExit, or an exception of the skill's own that is no Exception, as well.
             self._fail(error)
             if self.on_error == "raise":
                 raise TreeError(self.error) from error
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
             return Status.INVALID
-        except BaseException:
-            abandon(self.root)
-            raise
         return self.root.status
 
     def _fail(self, error: BaseException) -> None:
@@ -168,7 +169,10 @@ class TreeRunner:
         """End the run; running leaves are interrupted, and what they raise then is logged."""
         try:
             self.root.stop(Status.INVALID)
-        except (Exception, SystemExit) as error:
+        except LEAVING:
+            abandon(self.root)
+            raise
+        except BaseException as error:
             node, said = self._raiser(error)
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
@@ -198,7 +202,9 @@ def text_of(said: object) -> str:
     """Return ``str(said)``, or the error it raised."""
     try:
         return str(said)
-    except (Exception, SystemExit) as error:
+    except LEAVING:
+        raise
+    except BaseException as error:
         return f"a {type(said).__name__} whose text is a {type(error).__name__}"
 
 

@@ -64,3 +64,19 @@ def test_finished_trials_can_be_continued_under_the_other_policy(tmp_path: Path)
 def test_another_word_is_refused() -> None:
     with pytest.raises(ScenarioError, match=r"mine\.yaml: on_error: input should be 'stop' or 'raise'"):
         breaking("", on_error="ignore")
+
+
+def test_a_skill_that_ends_the_program_ends_the_match_and_its_recording_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "left.robobt.arrows"
+    match = Match(breaking(""), 0, PlainWorld, record=path)
+
+    def leave(*_: object) -> None:
+        raise SystemExit(3)
+
+    assert match.tick()
+    monkeypatch.setattr(type(match.players[0].runner.root), "update", leave)
+    with pytest.raises(SystemExit), match:
+        match.tick()
+    assert len(load_recording(path)) == 1

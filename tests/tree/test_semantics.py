@@ -6,7 +6,7 @@ import itertools
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import py_trees
 import pytest
@@ -901,29 +901,67 @@ def test_86_after_an_exception_nothing_runs(script: str, caplog: pytest.LogCaptu
     assert "'stubborn' raised again" in caplog.text
 
 
-@pytest.mark.parametrize("what", [SystemExit("bye"), KeyboardInterrupt()])
-def test_rows_84_to_86_hold_when_a_leaf_would_end_the_program(what: BaseException) -> None:
-    class Leaving(Scripted):
-        def on_interrupt(self) -> None:
-            raise SystemExit("bye")
+class OwnError(BaseException):
+    """Not even an Exception."""
 
-    class Broken(Scripted):
-        def on_running(self) -> Any:
-            raise what
 
-    root = Parallel(
-        "root", ParallelPolicy.SuccessOnAll(), children=[Leaving("leaving", "R"), Broken("b", "R")]
-    )
-    runner = TreeRunner(root, Notes())
-    if isinstance(what, KeyboardInterrupt):
-        with pytest.raises(KeyboardInterrupt):
-            runner.tick()
-        assert runner.statuses() == "---"
-    else:
-        assert runner.tick() is INVALID
-        assert runner.statuses() == "--F"
-    root.children[0].status = R
+class Breaking(Scripted):
+    """Raises something when it runs, and something else when it is interrupted."""
+
+    def __init__(
+        self, name: str, running: BaseException | None, interrupted: BaseException | None = None
+    ) -> None:
+        super().__init__(name, "R")
+        self.running, self.interrupted = running, interrupted
+
+    def on_running(self) -> Any:
+        if self.running is not None:
+            raise self.running
+        return super().on_running()
+
+    def on_interrupt(self) -> None:
+        if self.interrupted is not None:
+            raise self.interrupted
+
+
+def side_by_side(*children: Behaviour) -> Behaviour:
+    return Parallel("root", ParallelPolicy.SuccessOnAll(), children=[*children])
+
+
+@pytest.mark.parametrize("what", [GeneratorExit(), OwnError("odd"), StopIteration(), RecursionError()])
+def test_rows_84_to_86_hold_for_whatever_a_node_raises(what: BaseException) -> None:
+    runner = TreeRunner(side_by_side(Breaking("again", None, OwnError()), Breaking("b", what)), Notes())
+    assert runner.tick() is INVALID
+    assert runner.statuses() == "--F"
+    assert str(runner.error).startswith(f"root/b: {type(what).__name__}: ")
+    runner.root.children[0].status = R
     runner.stop()
+    assert runner.statuses() == "---"
+
+
+@pytest.mark.parametrize("on_error", ["stop", "raise"])
+@pytest.mark.parametrize("what", [SystemExit("bye"), KeyboardInterrupt()])
+def test_89_what_ends_the_program_is_no_failure(
+    what: BaseException, on_error: Literal["stop", "raise"]
+) -> None:
+    runner = TreeRunner(side_by_side(Breaking("a", None), Breaking("b", what)), Notes(), on_error)
+    with pytest.raises(type(what)) as raised:
+        runner.tick()
+    assert raised.value is what
+    assert runner.error is None
+    assert runner.statuses() == "---"
+
+
+@pytest.mark.parametrize("what", [SystemExit("bye"), KeyboardInterrupt()])
+def test_row_89_holds_while_a_tree_is_being_stopped(what: BaseException) -> None:
+    runner = TreeRunner(side_by_side(Breaking("a", None, what), Breaking("b", None)), Notes())
+    runner.tick()
+    with pytest.raises(type(what)):
+        runner.stop()
+    assert runner.statuses() == "---"
+    runner = TreeRunner(side_by_side(Breaking("a", None, what), Breaking("b", ValueError())), Notes())
+    with pytest.raises(type(what)):
+        runner.tick()
     assert runner.statuses() == "---"
 
 

@@ -14,6 +14,7 @@ from pydantic import JsonValue
 
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import TreeRunner
+from robobt.tree.engine import LEAVING
 from robobt.tree.recording import make_reader
 from robobt.tree.runner import text_of
 from robobt.world.state import Frame, RobotId
@@ -116,7 +117,9 @@ def plain(value: object, depth: int = 0) -> JsonValue:
         return value  # type: ignore[return-value]
     try:
         return _plain(value, depth)
-    except (Exception, SystemExit):
+    except LEAVING:
+        raise
+    except BaseException:
         return f"a {kind.__name__}"
 
 

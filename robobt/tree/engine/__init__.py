@@ -17,11 +17,12 @@ is logged at debug level.
 
 from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit, not_a_status, own_method
 from robobt.tree.engine.dispatch import compile_node, compile_tree
-from robobt.tree.engine.fast_tree import FastTree, abandon
+from robobt.tree.engine.fast_tree import LEAVING, FastTree, abandon
 from robobt.tree.engine.plan import Plan, composite_stop, replan
 from robobt.tree.engine.reach import stops_children, ticked_children
 
 __all__ = [
+    "LEAVING",
     "BringsClosures",
     "FastTree",
     "Marks",

@@ -13,6 +13,9 @@ from robobt.tree.engine.dispatch import compile_tree
 
 _log = logging.getLogger(__name__)
 
+LEAVING = (SystemExit, KeyboardInterrupt)
+"""What ends the program, on a signal too: it is never a node's failure."""
+
 
 class FastTree(BehaviourTree):
     """A py_trees ``BehaviourTree`` ticked by :func:`compile_tree`; visitors and handlers as ever.
@@ -74,13 +77,21 @@ def abandon(root: Behaviour) -> None:
 
     Nodes that were running are stopped, so they hear of their interruption; what
     they raise then is logged and keeps no other node from being stopped.
+
+    Raises:
+        SystemExit, KeyboardInterrupt: one of them ended the program; all are at rest by then.
     """
+    left: BaseException | None = None
     # Children first, as composites stop; each is asked for itself, for a half-ticked
     # parent does not know that its child runs.
     for node in root.iterate():
         if node.status is RUNNING:
             try:
                 node.stop(INVALID)
-            except (Exception, SystemExit):
+            except LEAVING as error:
+                left = error
+            except BaseException:
                 _log.warning("%r raised again while its tree was being stopped", node.name, exc_info=True)
         node.status = INVALID
+    if left is not None:
+        raise left

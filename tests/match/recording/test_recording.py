@@ -654,6 +654,10 @@ def test_whatever_a_skill_writes_can_be_recorded(path: Path) -> None:
     assert recording.written_at(BLUE_1, 8)["target"] == "a object"
 
 
+class OwnError(BaseException):
+    """Not even an Exception."""
+
+
 class MuteError(Exception):
     def __str__(self) -> str:
         raise RuntimeError("no text")
@@ -669,10 +673,10 @@ class Ends(Leaf[None]):
         raise self.error
 
 
-@pytest.mark.parametrize("error", [SystemExit(3), MuteError("x"), RuntimeError(MuteError())])
-def test_leaving_the_program_or_an_error_without_a_text_fails_one_robot(
-    path: Path, error: BaseException
-) -> None:
+@pytest.mark.parametrize(
+    "error", [GeneratorExit(3), OwnError("x"), MuteError("x"), RuntimeError(MuteError())]
+)
+def test_whatever_a_skill_raises_fails_one_robot(path: Path, error: BaseException) -> None:
     runner: TreeRunner = TreeRunner(Ends(error), None)
     with Recorder(path, header(), {BLUE_1: runner}) as recorder:
         for tick in range(3):
