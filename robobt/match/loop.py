@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
+from robobt.match.views import KeptView
 from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
@@ -26,6 +28,8 @@ from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
 from robobt.world.state import Frame, RobotId
+
+_log = logging.getLogger(__name__)
 
 WorldFactory = Callable[[Scenario], World]
 """Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
@@ -86,6 +90,7 @@ class Match:
         self._referee = _referee_of(scenario, self._field)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
+        self._spoilers: set[RobotId] = set()
         self._time = 0.0
         with uninterrupted:
             self._recorder = None if record is None else self._make_recorder(Path(record))
@@ -185,10 +190,11 @@ class Match:
         """
         commands: dict[RobotId, RobotCommand] = {}
         halted = frame.game.halted
-        # Both views before any tree is ticked: a tree that spoils its frame spoils no opponent's.
+        # Both views before any tree is ticked, for they may share the frame's objects.
         views = [(lineup, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
         for lineup, view in views:
             leaving = lineup.follow(view)
+            kept = KeptView(view)
             for me in view.own:
                 player = lineup.players.get(me.id)
                 if player is None:
@@ -197,6 +203,9 @@ class Match:
                     commands[player.robot] = leave(view, me)
                     continue
                 command = player.decide(view, me)
+                if kept.mend() and player.robot not in self._spoilers:
+                    self._spoilers.add(player.robot)
+                    _log.warning("%s: a skill changes its frame, which was put right again", player.robot)
                 if command is None:
                     self._note_failure(player)
                     command = RobotCommand()

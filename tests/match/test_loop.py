@@ -1,12 +1,15 @@
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
 import pytest
+from py_trees.common import Status
 
 from robobt.match import Match, MatchResult, play_match
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import Scenario, scenario_from
-from robobt.world import RobotCommand, RobotId, Team
+from robobt.world import Frame, RobotCommand, RobotId, Team
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
 
@@ -229,3 +232,45 @@ def test_kicks_are_those_the_simulator_reports():
         told += match.world.kicks
     assert seen == told[: len(seen)]
     assert len(seen) == len(told) > 0
+
+
+def _replaces(frame: Frame) -> None:
+    frame.ball, frame.own, frame.opponents, frame.game = None, (), (), None  # type: ignore[assignment]
+
+
+def _moves(frame: Frame) -> None:
+    frame.ball.x += 1.0
+    for robot in (*frame.own, *frame.opponents):
+        robot.x, robot.heading, robot.id = robot.x + 1.0, 3.0, 7
+
+
+def _deletes(frame: Frame) -> None:
+    del frame.ball.x, frame.own, frame.opponents[0].vx
+
+
+def _odd(frame: Frame) -> None:
+    frame.ball.x = np.zeros(2)  # type: ignore[assignment]
+
+
+@pytest.mark.parametrize("spoil", [_replaces, _moves, _deletes, _odd])
+@pytest.mark.parametrize("team", ["blue", "yellow"])
+def test_a_skill_that_spoils_its_frame_spoils_nobody_elses(
+    team: str, spoil: Callable[[Frame], None], caplog: pytest.LogCaptureFixture
+) -> None:
+    places = {"blue": -1.0, "yellow": 1.0}
+    robots = {name: [robot(number=i, x=i / 2 - 2.0, y=y) for i in range(3)] for name, y in places.items()}
+    plain, spoilt = [Match(scenario(robots=robots), 3, PlainWorld) for _ in range(2)]
+    first = next(player for player in spoilt.players if player.robot == RobotId(Team(team), 0))
+    decide = first.runner.tick
+
+    def tick() -> Status:
+        status = decide()
+        spoil(first.store.frame)
+        return status
+
+    first.runner.tick = tick  # type: ignore[method-assign]
+    for _ in range(3):
+        plain.tick()
+        spoilt.tick()
+    assert spoilt.result().trace == plain.result().trace
+    assert caplog.text.count(f"{team} 0: a skill changes its frame") == 1

@@ -1,0 +1,49 @@
+"""A team's view of the field, kept as it is whatever its robots' trees do to it."""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from robobt.world.state import BallState, Frame, RobotState
+
+_FRAME = tuple(Frame.__dataclass_fields__)
+_BALL = tuple(BallState.__dataclass_fields__)
+_ROBOT = tuple(RobotState.__dataclass_fields__)
+_frame, _ball, _robot = attrgetter(*_FRAME), attrgetter(*_BALL), attrgetter(*_ROBOT)
+
+
+class KeptView:
+    """Notices and undoes what a tree has done to the view that it shares with its team-mates'.
+
+    Args:
+        view: a frame, before any tree has seen it.
+    """
+
+    def __init__(self, view: Frame) -> None:
+        self._view, self._the_ball = view, view.ball
+        self._robots = (*view.own, *view.opponents)
+        self._before = self._read()
+
+    def mend(self) -> bool:
+        """Put back what was changed; whether anything was."""
+        try:
+            if self._read() == self._before:
+                return False
+        except Exception:
+            # An attribute was deleted, or has become what does not compare to a truth.
+            pass
+        frame, ball, robots = self._before
+        _restore(self._view, _FRAME, frame)
+        _restore(self._the_ball, _BALL, ball)
+        for robot, values in zip(self._robots, robots, strict=True):
+            _restore(robot, _ROBOT, values)
+        return True
+
+    def _read(self) -> tuple[tuple[object, ...], tuple[object, ...], list[tuple[object, ...]]]:
+        # Far quicker than copies for every robot, and than comparing the objects.
+        return _frame(self._view), _ball(self._the_ball), [*map(_robot, self._robots)]
+
+
+def _restore(target: object, names: tuple[str, ...], values: tuple[object, ...]) -> None:
+    for name, value in zip(names, values, strict=True):
+        setattr(target, name, value)
