@@ -7,16 +7,20 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 from pathlib import Path
 from typing import Self, TextIO
 
 from robobt import __version__
+from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError, naming
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import is_play_file
 
 FORMAT = "robobt-results"
+
+_log = logging.getLogger(__name__)
 
 
 class ResultsFileError(RobobtError, ValueError):
@@ -27,7 +31,7 @@ class ResultsFile:
     """A results file that is open for appending. A context manager.
 
     A file that exists is continued when it holds the same scenario, seed and
-    version; a last line that was cut short is dropped.
+    version; damaged lines are dropped, and their trials played again.
 
     Args:
         path: the file, by custom ``*.jsonl``.
@@ -89,24 +93,34 @@ class ResultsFile:
             self._file.flush()
 
     def _read(self, head: dict[str, object]) -> int:
-        """Read the results in the file and return how much of it is sound [bytes]."""
-        kept = 0
+        """Read the results in the file and return how much of it is sound [bytes].
+
+        Damaged lines with sound ones behind them are taken out of the file.
+        """
+        sound: list[bytes] = []
+        read = kept = good_until = 0
         for number, line in enumerate(self.path.read_bytes().splitlines(keepends=True), start=1):
+            read += len(line)
             try:
                 data = json.loads(line) if line.endswith(b"\n") else None
-            except ValueError:
+            except (ValueError, RecursionError):
                 data = None
             if number == 1:
                 self._check_head(data, head)
             elif data is None:
-                break
+                _log.warning("%s: line %d is damaged; its trial is played again", self.path, number)
+                continue
             else:
                 try:
                     result = MatchResult.from_json(data)
                 except ValueError as error:
                     raise ResultsFileError(f"{self.path}: line {number}: {error}") from error
                 self.done[result.trial] = result
+            sound.append(line)
             kept += len(line)
+            good_until = read
+        if sound and good_until != kept:
+            write_atomically(self.path, b"".join(sound))
         return kept
 
     def _check_head(self, found: object, head: dict[str, object]) -> None:

@@ -123,6 +123,19 @@ class TestResultsFile:
         with ResultsFile(path, self.scenario, 0) as file:
             assert sorted(file.done) == [0, 2]
 
+    @pytest.mark.parametrize("damage", [b"\x00" * 50 + b"\n", b"{\n", b"[" * 100_000 + b"\n", b"\n"])
+    def test_a_damaged_line_costs_no_other(self, tmp_path: Path, damage: bytes):
+        path = tmp_path / "results.jsonl"
+        self.write(path, trial(0), trial(1), trial(2), trial(3))
+        lines = path.read_bytes().splitlines(keepends=True)
+        path.write_bytes(b"".join([*lines[:2], damage, *lines[3:-1], lines[-1][:-9]]))
+        with ResultsFile(path, self.scenario, 0) as file:
+            assert sorted(file.done) == [0, 2]
+            file.add(trial(1))
+            file.add(trial(3))
+        with ResultsFile(path, self.scenario, 0) as file:
+            assert file.done == {number: trial(number) for number in range(4)}
+
     def test_how_often_does_not_make_it_another_scenario(self, tmp_path: Path):
         path = tmp_path / "results.jsonl"
         self.write(path, trial(0))
