@@ -19,6 +19,9 @@ from robobt.world.state import RobotId
 MOST_TEXT = 32 * 2**20
 """The most text that is read, which takes many times as much as Python's objects [bytes]."""
 
+_FEW_VALUES, _BYTES_PER_VALUE = 100_000, 8
+"""Values in the text that any file may hold, and bytes of the file for each one more; ours have about 30."""
+
 _LONGEST = 1e9
 """The latest time [s]."""
 
@@ -41,7 +44,7 @@ def parse_recording(data: bytes, path: Path) -> Recording:
         RecordingError: as by :func:`load_recording`.
     """
     header, batches = open_stream(data, path)
-    reader = _Reader(path, header)
+    reader = _Reader(path, header, _FEW_VALUES + len(data) // _BYTES_PER_VALUE)
     for batch in batches:
         reader.read(batch)
     return reader.recording()
@@ -50,8 +53,8 @@ def parse_recording(data: bytes, path: Path) -> Recording:
 class _Reader:
     """Takes the batches of a recording one by one."""
 
-    def __init__(self, path: Path, header: RecordingHeader) -> None:
-        self._path, self._header = path, header
+    def __init__(self, path: Path, header: RecordingHeader, most_values: int) -> None:
+        self._path, self._header, self._values_left = path, header, most_values
         self._slots = {str(robot.id): slot for slot, robot in enumerate(header.robots)}
         robots = len(header.robots)
         self._times = [np.zeros(0)]
@@ -121,6 +124,9 @@ class _Reader:
         )
 
     def _change(self, tick: int, text: str) -> None:
+        self._values_left -= sum([text.count(sign) for sign in ",[{"])
+        if self._values_left < 0:
+            raise self._error(tick, None, "holds more values than a match does")
         try:
             changes = TickChanges.model_validate_json(text)
         except ValidationError as error:

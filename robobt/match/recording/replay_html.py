@@ -10,6 +10,7 @@ import html
 import json
 from collections.abc import Iterable, Iterator
 from importlib.resources import files
+from math import isfinite
 from pathlib import Path
 from typing import TypeAlias
 
@@ -237,7 +238,10 @@ def _goal_lines(changes: _Written, texts: _Table) -> Iterator[tuple[int, tuple[J
             continue
         try:
             line = GoalLine(**change[_GOAL_LINE])  # type: ignore[arg-type]
-            found = plain(float(line.reach) * 1000.0), texts[_base64(base64.b64decode(line.chances))]
+            reach = float(line.reach) * 1000.0
+            if not isfinite(reach):
+                raise ValueError("reaches to nowhere")
+            found = plain(reach), texts[_base64(base64.b64decode(line.chances))]
         except (TypeError, ValueError):
             # Some other skill's idea of it, which the page shows nothing of.
             yield tick, None

@@ -35,6 +35,9 @@ _FORMAT, _VERSION, _HEADER = b"format", b"version", b"header"
 MOST_BYTES = 200 * 2**20
 """The most that is read, unpacked: an hour of play of six a side."""
 
+_SMALL, _RATIO = 24 * 2**20, 10
+"""What any file may unpack to [bytes], and how many times its own size; ours are packed to a third."""
+
 _FOREIGN = "is not a robobt recording"
 
 _STREAM, _END = b"\xff\xff\xff\xff", b"\xff\xff\xff\xff\x00\x00\x00\x00"
@@ -140,7 +143,7 @@ def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.R
 
 
 def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool) -> Iterator[pa.RecordBatch]:
-    unpacked = 0
+    unpacked, most = 0, min(MOST_BYTES, _SMALL + _RATIO * source.size())
     while True:
         start = source.tell()
         try:
@@ -151,8 +154,8 @@ def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool
             return
         try:
             unpacked += _unpacked_size(_checked(message, "record batch"))
-            if unpacked > MOST_BYTES:
-                raise too_large(path)
+            if unpacked > most:
+                raise too_large(path, most)
             batch = pa.ipc.read_record_batch(message, schema)
             batch.validate(full=True)
         except (pa.ArrowException, OSError, struct.error) as error:
@@ -191,9 +194,9 @@ def _unpacked_size(message: pa.Message) -> int:
     return total
 
 
-def too_large(path: Path) -> RecordingError:
+def too_large(path: Path, most: int = MOST_BYTES) -> RecordingError:
     """Return the error of a file that no match could have been recorded to."""
-    return RecordingError(path, f"is larger than {MOST_BYTES >> 20} MiB unpacked, as no match is")
+    return RecordingError(path, f"is larger than {most >> 20} MiB unpacked, as no match is")
 
 
 def invalid(path: Path, error: ValidationError, tick: int | None = None) -> RecordingError:

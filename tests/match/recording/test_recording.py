@@ -2,6 +2,7 @@ import json
 import random
 import re
 import signal
+import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
@@ -27,7 +28,6 @@ from robobt.match.recording import (
     load_recording,
     reader,
 )
-from robobt.match.recording import stream as stream_module
 from robobt.match.recording.stream import new_stream
 from robobt.match.scenario.scenario import load_scenario, scenario_from
 from robobt.skills.store import Store
@@ -532,7 +532,6 @@ def test_a_packed_bomb_is_refused_before_it_is_unpacked(path: Path, monkeypatch:
     record(path, ticks=10)
     edited(path, "changes", " " * 2**26)
     assert path.stat().st_size < 2**16
-    monkeypatch.setattr(stream_module, "MOST_BYTES", 2**25)
     unpack, sizes = pa.ipc.read_record_batch, []
 
     def watched(message: pa.Message, schema: pa.Schema) -> pa.RecordBatch:
@@ -541,9 +540,25 @@ def test_a_packed_bomb_is_refused_before_it_is_unpacked(path: Path, monkeypatch:
         return batch
 
     monkeypatch.setattr(pa.ipc, "read_record_batch", watched)
-    with pytest.raises(RecordingError, match="is larger than 32 MiB unpacked, as no match is"):
+    with pytest.raises(RecordingError, match="is larger than 24 MiB unpacked, as no match is"):
         load_recording(path)
     assert sizes == [0]
+
+
+@pytest.mark.parametrize(
+    "values", ["[" + "0," * 2**22 + "0]", "[" + "[]," * 2**20 + "0]", "[" + "{}," * 2**20 + "0]"]
+)
+def test_lists_that_would_fill_the_memory_are_refused_before_they_are_read(path: Path, values: str) -> None:
+    record(path, ticks=10)
+    edited(path, "changes", f'{{"written": {{"blue": {{"x": {values}}}}}}}')
+    assert path.stat().st_size < 2**16
+    tracemalloc.start()
+    try:
+        with pytest.raises(RecordingError, match="holds more values than a match does"):
+            load_recording(path)
+        assert tracemalloc.get_traced_memory()[1] < 50e6
+    finally:
+        tracemalloc.stop()
 
 
 def test_more_text_than_a_match_has_is_refused(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

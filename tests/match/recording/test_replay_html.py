@@ -2,6 +2,7 @@ import base64
 import json
 import re
 from html.parser import HTMLParser
+from math import inf, nan
 from pathlib import Path
 from typing import Any
 
@@ -254,6 +255,15 @@ def test_the_page_holds_the_goal_line_as_a_robot_judges_it_when_that_changes(tmp
         assert len(percent) == 94
         assert percent[best].max() == percent.max() > 90
     assert not any("goal_line" in text for text in data["texts"])
+
+
+@pytest.mark.parametrize("reach", [inf, -inf, nan, 1e308])
+def test_a_goal_line_of_no_length_is_not_shown(tmp_path: Path, reach: float) -> None:
+    recording = shooting(tmp_path / "shooting.robobt.arrows", "expected_goal")
+    for _, values in recording.written["blue 0"]:
+        if "goal_line" in values:
+            values["goal_line"] = {"reach": reach, "chances": "AAAA"}
+    assert page_data(recording)["robots"][0]["goal_line"][1::2] == [None, None]
 
 
 def test_a_robot_with_a_geometric_rater_has_no_goal_line(tmp_path: Path) -> None:
