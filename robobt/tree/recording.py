@@ -209,13 +209,16 @@ def node_ids(nodes: Sequence[Behaviour]) -> list[tuple[int, str]]:
     """
     found: dict[int, tuple[int, str]] = {}
     taken: set[str] = set()
+    # Where to go on counting, else many of one name would take as long as their square.
+    numbers: dict[str, int] = {}
     for node in nodes:
         depth, above = found[id(node.parent)] if found else (-1, "")
         name = path = f"{above}/{node.name}" if found else str(node.name)
-        number = 1
+        number = numbers.get(name, 1)
         while path in taken:
             number += 1
             path = f"{name}#{number}"
+        numbers[name] = number
         taken.add(path)
         found[id(node)] = (depth + 1, path)
     return list(found.values())

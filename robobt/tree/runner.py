@@ -15,6 +15,9 @@ from robobt.config.errors import RobobtError
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
+MAX_DEPTH = 100
+"""Nodes from the root of a tree down; Python itself takes some hundreds."""
+
 _log = logging.getLogger(__name__)
 
 
@@ -49,9 +52,13 @@ class TreeRunner:
         nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
         error: what the last tick raised, None when it went well.
         ticks: how often the tree has been ticked.
+
+    Raises:
+        TreeError: the tree is more than :data:`MAX_DEPTH` nodes deep.
     """
 
     def __init__(self, root: Behaviour, store: object, on_error: Literal["stop", "raise"] = "stop") -> None:
+        _check_depth(root)
         self.root = root
         self.on_error = on_error
         self.error: str | None = None
@@ -210,10 +217,20 @@ def text_of(said: object) -> str:
 
 def preorder(root: Behaviour) -> list[Behaviour]:
     """Return every node below and including ``root``, parents before children."""
-    nodes = [root]
-    for child in root.children:
-        nodes.extend(preorder(child))
+    nodes, left = [], [root]
+    while left:
+        node = left.pop()
+        nodes.append(node)
+        left += reversed(node.children)
     return nodes
+
+
+def _check_depth(root: Behaviour) -> None:
+    level = [root]
+    for _ in range(MAX_DEPTH):
+        level = [child for node in level for child in node.children]
+    if level:
+        raise TreeError(f"{root.name}: a tree may be {MAX_DEPTH} nodes deep, and this one is deeper")
 
 
 # By value: hashing an enum's member is a Python call, hashing its string is not.

@@ -5,20 +5,24 @@ from __future__ import annotations
 import inspect
 import random
 import textwrap
+import time
 from typing import Any
 
 import py_trees
 import pytest
 from py_trees.behaviour import Behaviour
+from py_trees.behaviours import Success
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
 from py_trees.decorators import Inverter
 from py_trees.trees import BehaviourTree
 from py_trees.visitors import SnapshotVisitor
 
-from robobt.tree import bind
+from robobt.tree import TreeError, TreeRunner, bind
 from robobt.tree.engine import FastTree, compile_tree, composites, dispatch, leaves, plan
 from robobt.tree.nodes import CommittingSelector, Cooldown, Gate, ParallelCount, SequenceWithMemory, Switch
+from robobt.tree.recording import node_ids
+from robobt.tree.runner import preorder
 from tests.tree.random_trees import Log, Told, random_tree
 
 S, F, R, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
@@ -335,3 +339,29 @@ def test_an_exception_comes_through_as_it_is() -> None:
 
     with pytest.raises(KeyError):
         compile_tree(Sequence("s", memory=False, children=[Bad("bad")]))()
+
+
+@pytest.mark.parametrize("depth", [100, 101, 500, 20_000])
+def test_a_tree_that_is_too_deep_is_told_so(depth: int) -> None:
+    root: Behaviour = Success("leaf")
+    for number in range(depth - 1):
+        root = Sequence(f"level {number}", memory=False, children=[root])
+    if depth == 100:
+        assert TreeRunner(root, None).tick() is Status.SUCCESS
+        return
+    with pytest.raises(TreeError, match="may be 100 nodes deep, and this one is deeper"):
+        TreeRunner(root, None)
+    # Else the interpreter frees them one inside the other.
+    while root.children:
+        root = root.children.pop()
+        root.parent = None
+
+
+def test_many_siblings_of_one_name_are_told_apart_in_no_time() -> None:
+    nodes = [Success("same") for _ in range(20_000)]
+    root = Sequence("root", memory=False, children=nodes)
+    before = time.perf_counter()
+    ids = node_ids(preorder(root))
+    assert time.perf_counter() - before < 2.0
+    assert [path for _, path in ids[1:4]] == ["root/same", "root/same#2", "root/same#3"]
+    assert len({path for _, path in ids}) == 20_001
