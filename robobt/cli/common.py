@@ -11,7 +11,7 @@ import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
@@ -28,8 +28,21 @@ if TYPE_CHECKING:
     from robobt.match.loop import WorldFactory
     from robobt.tree.registry import Registry
 
-console = Console(highlight=False)
-errors = Console(stderr=True, highlight=False)
+
+class _Console(Console):
+    """A console that leaves it to the command what happens when nobody reads on."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
+for _name in ("stdout", "stderr"):
+    if getattr(sys, _name) is None:
+        # The process was started with it closed: nobody wants to read it.
+        setattr(sys, _name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
+
+console = _Console(highlight=False)
+errors = _Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 """The option of every command that can print its figures for another program."""
@@ -96,8 +109,14 @@ def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
     def run(*args: _P.args, **kwargs: _P.kwargs) -> None:
         try:
             command(*args, **kwargs)
-        except (typer.Exit, typer.Abort, typer.BadParameter, BrokenPipeError):
+            sys.stdout.flush()
+        except (typer.Exit, typer.Abort, typer.BadParameter):
             raise
+        except BrokenPipeError as error:
+            # Who read our lines has enough, as head has. What is left goes nowhere.
+            with suppress(OSError, ValueError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(0) from error
         except KeyboardInterrupt as error:
             errors.print("robobt: ended by SIGINT")
             raise typer.Exit(130) from error

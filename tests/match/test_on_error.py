@@ -72,11 +72,11 @@ def test_a_skill_that_ends_the_program_ends_the_match_and_its_recording_is_kept(
     path = tmp_path / "left.robobt.arrows"
     match = Match(breaking(""), 0, PlainWorld, record=path)
 
-    def leave(*_: object) -> None:
+    def leave() -> None:
         raise SystemExit(3)
 
     assert match.tick()
-    monkeypatch.setattr(type(match.players[0].runner.root), "update", leave)
+    monkeypatch.setattr(match.players[0].runner, "_tick", leave)
     with pytest.raises(SystemExit), match:
         match.tick()
     assert len(load_recording(path)) == 1
