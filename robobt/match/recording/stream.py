@@ -14,6 +14,7 @@ is JSON in the schema's metadata.
 
 from __future__ import annotations
 
+import os
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -95,7 +96,9 @@ def read_bytes(path: Path) -> bytes:
     """
     try:
         with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
+            # Python makes room for all that it is asked to read.
+            size = os.fstat(file.fileno()).st_size if path.is_file() else MOST_BYTES
+            data = file.read(min(size, MOST_BYTES) + 1)
     except OSError as error:
         raise RecordingError(path, error.strerror or str(error)) from None
     if len(data) > MOST_BYTES:

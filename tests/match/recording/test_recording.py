@@ -545,11 +545,10 @@ def test_a_packed_bomb_is_refused_before_it_is_unpacked(path: Path, monkeypatch:
     assert sizes == [0]
 
 
-@pytest.mark.parametrize(
-    "values", ["[" + "0," * 2**22 + "0]", "[" + "[]," * 2**20 + "0]", "[" + "{}," * 2**20 + "0]"]
-)
-def test_lists_that_would_fill_the_memory_are_refused_before_they_are_read(path: Path, values: str) -> None:
+@pytest.mark.parametrize("item", ["0,", "[],", "{},", "0.1,"])
+def test_lists_that_would_fill_the_memory_are_refused_before_they_are_read(path: Path, item: str) -> None:
     record(path, ticks=10)
+    values = f"[{item * 2**21}0]"
     edited(path, "changes", f'{{"written": {{"blue": {{"x": {values}}}}}}}')
     assert path.stat().st_size < 2**16
     tracemalloc.start()
