@@ -15,7 +15,7 @@ from robobt.config.errors import RobobtError
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 
-MAX_DEPTH = 100
+MAX_DEPTH = 200
 """Nodes from the root of a tree down; Python itself takes some hundreds."""
 
 _log = logging.getLogger(__name__)

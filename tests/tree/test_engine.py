@@ -341,15 +341,15 @@ def test_an_exception_comes_through_as_it_is() -> None:
         compile_tree(Sequence("s", memory=False, children=[Bad("bad")]))()
 
 
-@pytest.mark.parametrize("depth", [100, 101, 500, 20_000])
+@pytest.mark.parametrize("depth", [200, 201, 500, 20_000])
 def test_a_tree_that_is_too_deep_is_told_so(depth: int) -> None:
     root: Behaviour = Success("leaf")
     for number in range(depth - 1):
         root = Sequence(f"level {number}", memory=False, children=[root])
-    if depth == 100:
+    if depth == 200:
         assert TreeRunner(root, None).tick() is Status.SUCCESS
         return
-    with pytest.raises(TreeError, match="may be 100 nodes deep, and this one is deeper"):
+    with pytest.raises(TreeError, match="may be 200 nodes deep, and this one is deeper"):
         TreeRunner(root, None)
     # Else the interpreter frees them one inside the other.
     while root.children:
