@@ -151,8 +151,9 @@ def random_onnx(rng: random.Random, victim: Path) -> onnx.ModelProto:
         "NonZero",
         "StringSplit",
     ]
-    names, nodes = ["observation", "weights", "shape"], []
-    for place in range(rng.randrange(1, 12)):
+    nodes = [helper.make_node("MatMul", ["observation", "weights"], ["sum"])]
+    names = ["observation", "weights", "shape", "sum"]
+    for place in range(rng.randrange(12)):
         kind = rng.choice(foreign) if rng.random() < 0.05 else rng.choice(sorted(_OPERATIONS))
         inputs = [rng.choice(names) for _ in range(rng.randrange(1, 4))]
         node = helper.make_node(kind, inputs, [f"y{place}"])
@@ -164,7 +165,7 @@ def random_onnx(rng: random.Random, victim: Path) -> onnx.ModelProto:
             node.attribute.append(helper.make_attribute(key, value))
         nodes.append(node)
         names.append(f"y{place}")
-    nodes.append(helper.make_node("Tanh", [names[-1]], ["output"]))
+    nodes.append(helper.make_node("Tanh", [rng.choice([names[-1], "sum"])], ["output"]))
     shape = numpy_helper.from_array(
         np.array(rng.choice([[3], [-1, 3], [10**6, 10**6]]), dtype=np.int64), "shape"
     )
