@@ -293,7 +293,7 @@ def test_a_match_over_the_network_ends_within_a_second_at_any_moment(
             whole = not recording.exists() or recording.read_bytes().endswith(WHOLE)
             facts = (process.returncode, said.count("\n"), told_to_stop(last), whole)
             if facts != (143, 1, True, True):
-                wrong.append((moment, *facts, said))
+                wrong.append((float(moment), *facts, said))
     with capsys.disabled():
         within = sum(taken < 1.0 for taken in times)
         print(f"\nended within 1 s: {within} of {moments}; median {np.median(times):.3f} s, ", end="")
