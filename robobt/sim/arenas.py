@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from robobt.sim.bodies import BEYOND, fill, moment_of_inertia, walls_of
 from robobt.sim.chipmunk import BodyBuffer
-from robobt.sim.columns import COMMAND, ROBOT_PARAMETERS, arena_row, robot_row
+from robobt.sim.columns import COMMAND, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.kernels import control_tick, report
 from robobt.sim.settings import SimSettings
+from robobt.sim.wheels import WHEEL_STATE
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
@@ -41,7 +42,7 @@ class Arenas:
         history: (sub_steps, n, R + 1, 6) states after every sub-step in space
             coordinates, the ball's last; empty unless ``keep_history``.
         sub_steps: physics steps a control period.
-        arena_parameters, robot_parameters: what the kernels use; columns are
+        arena_parameters, robot_parameters, wheel_parameters: what the kernels use; columns are
             named in :mod:`robobt.sim.columns`. Writing to them randomises arenas.
         switch: (n,) sub-step of a period from which a command is in force, the
             part of the command delay beyond whole periods; may be written to as well.
@@ -88,8 +89,11 @@ class Arenas:
             ),
             (n, 1, 1),
         )
+        self.wheel_parameters = np.tile(wheel_row(settings.wheels), (n, 1))
+        self._wheels = np.zeros((n, count, WHEEL_STATE))
         self._velocity = np.zeros((n, 2))
         self._spin = np.zeros((n, 2))
+        self._twist = np.zeros((n, 1))
         self._cooldown = np.zeros((n, count))
         delay = round(settings.realism.command_delay / self.dt)
         self.switch: NDArray[np.int64] = np.full(n, delay % self.sub_steps, dtype=np.int64)
@@ -101,7 +105,7 @@ class Arenas:
 
         Args:
             robots: (m, R, 3) x, y, heading, at rest, or (m, R, 6) with vx, vy, omega.
-            balls: (m, 4) x, y, vx, vy; a moving ball rolls.
+            balls: (m, 4) x, y, vx, vy; a moving ball rolls, or slides if the settings have it so.
             arenas: indices of the m arenas; all of them without.
         """
         which = np.arange(len(self.origins)) if arenas is None else np.atleast_1d(np.asarray(arenas))
@@ -118,8 +122,10 @@ class Arenas:
         rows[which, count, :2] = ball[:, :2] + origin
         rows[which, count, 3:5] = ball[:, 2:]
         self._velocity[which] = ball[:, 2:]
-        self._spin[which] = ball[:, 2:]
+        self._spin[which] = ball[:, 2:] if self.settings.ball.placed_rolls else 0.0
+        self._twist[which] = 0.0
         self._cooldown[which] = 0.0
+        self._wheels[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
         for commands in self._pipeline:
@@ -148,6 +154,7 @@ class Arenas:
         row[3:5] = vx, vy
         self._velocity[arena] = vx, vy
         self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
+        self._twist[arena] = 0.0
         self._buffer.write()
         self._refresh()
 
@@ -165,6 +172,7 @@ class Arenas:
         row[:] = state
         row[:2] += self.origins[arena]
         self._cooldown[arena, robot] = 0.0
+        self._wheels[arena, robot] = 0.0
         self._buffer.write()
         self._refresh()
 
@@ -195,6 +203,8 @@ class Arenas:
             self._walls,
             self.arena_parameters,
             self.robot_parameters,
+            self.wheel_parameters,
+            self._wheels,
             self._pipeline[0],
             self._pipeline[1],
             self.switch,
@@ -202,6 +212,7 @@ class Arenas:
             self.dt,
             self._velocity,
             self._spin,
+            self._twist,
             self._cooldown,
             self.contact,
             self.touch,

@@ -7,6 +7,7 @@ from math import acos, cos, pi, sin
 
 import pymunk
 
+from robobt.sim.columns import SOFT
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
@@ -77,15 +78,20 @@ def fill(
             robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
             # Somewhere of their own until placed, so that no two start inside each other.
             robot.position = (origin_x, origin_y + 3 * ROBOT_RADIUS * (i + 1))
-            disc = pymunk.Circle(robot, ROBOT_RADIUS)
-            shell = pymunk.Poly(robot, hull)
-            front = pymunk.Poly(robot, plate)
+            hull_parts: list[pymunk.Shape]
+            if settings.shell is None:
+                hull_parts = [pymunk.Poly(robot, hull), pymunk.Poly(robot, plate)]
+                _finish(hull_parts[0], contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
+                _finish(hull_parts[1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
+            else:
+                # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
+                hull_parts = [pymunk.Circle(robot, settings.shell.core - SOFT)]
+                _finish(hull_parts[0], 0.0, contact.hull_friction, _HULL, _BALL)
             # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
             share = contact.robot_restitution**0.5, contact.robot_friction**0.5
+            disc = pymunk.Circle(robot, ROBOT_RADIUS)
             _finish(disc, *share, _DISC, _DISC | _STATIC)
-            _finish(shell, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
-            _finish(front, contact.front_restitution, contact.front_friction, _HULL, _BALL)
-            space.add(robot, disc, shell, front)
+            space.add(robot, disc, *hull_parts)
             bodies.append(robot)
         # Spin about the vertical axis matters to nobody: the ball cannot turn.
         ball = pymunk.Body(settings.ball.mass, float("inf"))

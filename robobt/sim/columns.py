@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+SOFT = 0.008
+"""How far inside a robot's core, where there is one, the ball meets something hard [m]."""
+
+GRAVITY = 9.81
+"""Acceleration of free fall [m/s^2]."""
 
 # Columns of a command.
 VX, VY, OMEGA, KICK, ON_CONTACT, DRIBBLE = range(6)
@@ -45,8 +52,35 @@ ROBOT_PARAMETERS = 7
     RECHARGE,
     BALL_R,
     ROBOT_R,
-) = range(18)
-ARENA_PARAMETERS = 18
+    BALL_M,
+    CORE,
+    SOLID,
+    HALF_WHEEL,
+    SOFTNESS,
+    FRONT_FRICTION,
+    HULL_FRICTION,
+) = range(25)
+ARENA_PARAMETERS = 25
+
+# Columns of the parameters of an arena's robots' wheels; those from LOAD_REST on are four, one a wheel.
+(
+    MASS,
+    INERTIA,
+    RIM_MASS,
+    MOTOR,
+    MU_TANGENT,
+    MU_AXIAL,
+    INNER,
+    OUTER,
+    COMMAND_RADIUS,
+    GAIN,
+    FRAME,
+    LOAD_LAG,
+    CENTRE,
+    GYRO,
+) = range(14)
+LOAD_REST, LOAD_AHEAD, LOAD_ASIDE, WHEEL_COS, WHEEL_SIN = range(14, 34, 4)
+WHEEL_PARAMETERS = 34
 
 
 def arena_row(settings: SimSettings) -> FloatArray:
@@ -72,6 +106,47 @@ def arena_row(settings: SimSettings) -> FloatArray:
     row[RECHARGE] = kicker.recharge
     row[BALL_R] = BALL_RADIUS
     row[ROBOT_R] = ROBOT_RADIUS
+    row[BALL_M] = ball.mass
+    if settings.shell is not None:
+        row[CORE] = settings.shell.core
+        row[SOLID] = settings.shell.core - SOFT
+        row[HALF_WHEEL] = settings.shell.wheel_width / 2
+        row[SOFTNESS] = settings.shell.softness
+        row[FRONT_FRICTION] = settings.contact.front_friction
+        row[HULL_FRICTION] = settings.contact.hull_friction
+    return row
+
+
+def wheel_row(wheels: WheelSettings | None) -> FloatArray:
+    """Return an arena's row of parameters of its robots' wheels; a mass of 0 means that they have none."""
+    row = np.zeros(WHEEL_PARAMETERS)
+    if wheels is None:
+        return row
+    row[MASS] = wheels.mass
+    row[INERTIA] = wheels.inertia
+    # A cylinder that rolls resists as if half its mass were at the rim.
+    row[RIM_MASS] = wheels.wheel_mass / 2
+    row[MOTOR] = wheels.torque / wheels.radius
+    row[MU_TANGENT] = wheels.tangent_friction
+    row[MU_AXIAL] = wheels.axial_friction
+    row[INNER], row[OUTER] = wheels.inner_edge, wheels.outer_edge
+    row[COMMAND_RADIUS] = wheels.command_radius
+    row[GAIN] = wheels.acceleration
+    row[FRAME] = wheels.frame
+    row[LOAD_LAG] = wheels.load_lag
+    row[CENTRE] = wheels.centre
+    row[GYRO] = wheels.wheel_mass / 2 * wheels.radius / (wheels.mass * wheels.height)
+    angles = np.radians(wheels.angles)
+    row[WHEEL_COS : WHEEL_COS + 4] = np.cos(angles)
+    row[WHEEL_SIN : WHEEL_SIN + 4] = np.sin(angles)
+    x, y = wheels.outer_edge * np.cos(angles), wheels.outer_edge * np.sin(angles)
+    # Equal springs under a rigid body: the loads lie on a plane over the wheels' places.
+    places = np.array([np.ones(4), x, y])
+    plane = np.linalg.solve(places @ places.T, np.eye(3)).T @ places
+    weight = wheels.mass * GRAVITY
+    row[LOAD_REST : LOAD_REST + 4] = weight * plane[0] + weight * wheels.centre * plane[1]
+    row[LOAD_AHEAD : LOAD_AHEAD + 4] = wheels.mass * wheels.height * plane[1]
+    row[LOAD_ASIDE : LOAD_ASIDE + 4] = wheels.mass * wheels.height * plane[2]
     return row
 
 

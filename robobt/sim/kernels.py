@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 from robobt.sim.chipmunk import call_each_body, call_step
 from robobt.sim.columns import (
     BALL_R,
+    CORE,
     DRIBBLE,
     FACE,
     GLUE,
     IDLE_HOLD,
     KICK,
+    MASS,
     ON_CONTACT,
     REACH,
     RECHARGE,
@@ -30,8 +32,10 @@ from robobt.sim.columns import (
     SENSOR,
 )
 from robobt.sim.motion import drive, friction
-from robobt.sim.mouth import carry, hold, in_mouth, kick
+from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick
+from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
+from robobt.sim.wheels import HELD, drive_wheels
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 
@@ -114,6 +118,8 @@ def control_tick(
     walls: FloatArray,
     arena_parameters: FloatArray,
     robot_parameters: FloatArray,
+    wheel_parameters: FloatArray,
+    wheels: FloatArray,
     old: FloatArray,
     new: FloatArray,
     switch: IntArray,
@@ -121,6 +127,7 @@ def control_tick(
     dt: float,
     ball_velocity: FloatArray,
     ball_spin: FloatArray,
+    ball_twist: FloatArray,
     cooldown: FloatArray,
     contact: BoolArray,
     touch: IntArray,
@@ -139,6 +146,8 @@ def control_tick(
         walls: (W, 4) boxes x0, y0, x1, y1 relative to an arena's centre [m].
         arena_parameters: (N, ARENA_PARAMETERS).
         robot_parameters: (N, R, ROBOT_PARAMETERS).
+        wheel_parameters: (N, WHEEL_PARAMETERS), a mass of 0 for robots without wheels.
+        wheels: (N, R, WHEEL_STATE), kept between calls.
         old: (N, R, COMMAND) commands before each arena's sub-step ``switch``, which is how
             a command delay works; a fired kick is set to 0 in place.
         new: (N, R, COMMAND) commands from that sub-step on.
@@ -147,6 +156,7 @@ def control_tick(
         dt: length of each [s].
         ball_velocity: (N, 2), kept between calls [m/s].
         ball_spin: (N, 2), kept between calls [m/s].
+        ball_twist: (N, 1) turning about the vertical, kept between calls [rad/s].
         cooldown: (N, R) time until a kicker is ready again [s].
         contact: (N, R) out: ball in the mouth.
         touch: (N,) last robot to touch the ball, -1 before the first.
@@ -159,6 +169,7 @@ def control_tick(
     width = robots + 1
     move = np.zeros(2)
     pull = np.zeros(2)
+    hit = np.zeros(3)
     target = np.zeros((arenas, 2))
     kicked[:] = False
     for step in range(sub_steps):
@@ -175,7 +186,13 @@ def control_tick(
             for i in range(robots):
                 command = commands[i]
                 robot = rows[first + i]
-                drive(robot, command, robot_parameters[a, i], dt)
+                begins = False
+                if wheel_parameters[a, MASS] > 0.0:
+                    begins = drive_wheels(
+                        robot, command, robot_parameters[a, i], wheel_parameters[a], wheels[a, i], dt
+                    )
+                else:
+                    drive(robot, command, robot_parameters[a, i], dt)
                 if cooldown[a, i] > 0.0:
                     cooldown[a, i] -= dt
                     continue
@@ -186,6 +203,7 @@ def control_tick(
                         kicked[a, i] = fired = True
                         touch[a] = i
                         cooldown[a, i] = p[RECHARGE]
+                        wheels[a, i, HELD] = 0.0
                         glued = -1
                         held = False
                         pull[0] = pull[1] = 0.0
@@ -194,7 +212,14 @@ def control_tick(
                         command[KICK] = 0.0
                 if fired:
                     continue
-                if command[DRIBBLE] > 0.0:
+                if p[CORE] > 0.0:
+                    if begins:
+                        holds = command[DRIBBLE] > 0.0 and keeps(ball, robot, p, wheels[a, i, HELD] > 0.0)
+                        wheels[a, i, HELD] = 1.0 if holds else 0.0
+                    if wheels[a, i, HELD] > 0.0:
+                        held = True
+                        glued = i
+                elif command[DRIBBLE] > 0.0:
                     if in_mouth(ball, robot, p, p[REACH]):
                         held = True
                         if p[GLUE] > 0.0:
@@ -217,6 +242,8 @@ def control_tick(
                     hold(ball, velocity, rows[first + glued], p, -1.0, dt, pull)
                     glued = -1
             if glued >= 0:
+                if p[CORE] > 0.0:
+                    drag(ball, velocity, move, rows[first + glued], p, wheel_parameters[a], dt)
                 velocity[0] = spin[0] = move[0]
                 velocity[1] = spin[1] = move[1]
             elif held:
@@ -226,6 +253,15 @@ def control_tick(
                 move[1] = spin[1] = velocity[1]
             else:
                 friction(velocity, spin, p, dt, move)
+            if glued < 0 and p[CORE] > 0.0:
+                before_x, before_y = velocity[0], velocity[1]
+                for i in range(robots):
+                    meet(
+                        ball, velocity, spin, ball_twist[a], rows[first + i], p, wheel_parameters[a], dt, hit
+                    )
+                if velocity[0] != before_x or velocity[1] != before_y:
+                    # Pushed, it moves as it leaves the contact: what friction took is made up for.
+                    move[0], move[1] = velocity[0], velocity[1]
             if glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
                 share = sweep(rows, first, robots, walls, origins[a], move, p, dt)
                 if share < 1.0:

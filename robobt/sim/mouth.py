@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.columns import BALL_R, CENTRING, FACE, HALF_MOUTH, KICK_DAMPING, KICK_MAX, PULL, SIDE
+from robobt.sim.columns import (
+    BALL_R,
+    CENTRING,
+    CORE,
+    FACE,
+    HALF_MOUTH,
+    KICK_DAMPING,
+    KICK_MAX,
+    PULL,
+    REACH,
+    SIDE,
+)
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
+
+_CLEAR = 2e-4
+"""Gap that a ball needs to be free of the front that pushed it [m]."""
 
 _GLUE_GAP = 2e-4
 """Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
@@ -23,6 +37,19 @@ def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -
     ahead = c * px + s * py
     aside = c * py - s * px
     return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
+
+
+@compiled
+def keeps(ball: FloatArray, robot: FloatArray, p: FloatArray, held: bool) -> bool:
+    """Return whether grSim's dribbler holds the ball from now on, as it decides once a frame.
+
+    It does not take a ball that has got into the front, which a robot runs into
+    when it covers the whole of its reach between two frames.
+    """
+    if not in_mouth(ball, robot, p, p[REACH]):
+        return False
+    ahead = cos(robot[2]) * (ball[0] - robot[0]) + sin(robot[2]) * (ball[1] - robot[1])
+    return held or ahead >= p[FACE] + p[BALL_R] + _CLEAR
 
 
 @compiled
@@ -65,6 +92,8 @@ def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: F
     c, s = cos(robot[2]), sin(robot[2])
     px, py = ball[0] - robot[0], ball[1] - robot[1]
     ahead = p[FACE] + p[BALL_R] + _GLUE_GAP
+    if p[CORE] > 0.0:
+        ahead = max(ahead, c * px + s * py)
     aside = c * py - s * px
     turned = robot[2] + robot[5] * dt
     c, s = cos(turned), sin(turned)

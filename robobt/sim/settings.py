@@ -9,19 +9,21 @@ the ball and how much acceleration it bears was measured in this one.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from robobt.sim.robot_settings import (
+    BodySettings,
+    DribblerSettings,
+    KickerSettings,
+    Settings,
+    ShellSettings,
+    WheelSettings,
+)
 from robobt.world.limits import RobotLimits
-from robobt.world.state import ROBOT_RADIUS
 
 
-class _Settings(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class BallSettings(_Settings):
+class BallSettings(Settings):
     """A ball that slides, then rolls.
 
     A kicked ball slides with constant deceleration and picks up spin until it
@@ -36,54 +38,10 @@ class BallSettings(_Settings):
     )
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
     stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
+    placed_rolls: bool = Field(True, description="whether a ball that is placed moving rolls, or slides")
 
 
-class BodySettings(_Settings):
-    """A robot's body: a disc cut flat at the front, with the mouth in the flat."""
-
-    mass: float = Field(2.5, gt=0.1, le=20, description="mass [kg]")
-    face: float = Field(0.075, gt=0.03, lt=ROBOT_RADIUS, description="centre to the flat front [m]")
-    mouth_width: float = Field(
-        0.08, gt=0.02, le=0.16, description="width in which ball counts as in the mouth [m]"
-    )
-    sensor_depth: float = Field(
-        0.01, gt=0.0005, le=0.03, description="gap to the front that still counts [m]"
-    )
-
-
-class DribblerSettings(_Settings):
-    """How the dribbler holds the ball.
-
-    ``force`` pulls the ball towards the front with a limited acceleration, so the
-    ball is lost when holding it would take more: turning at w with the ball's
-    centre at distance L needs w^2 L, driving backwards needs the robot's own
-    acceleration. ``glue`` carries the ball rigidly, as grSim's hinge does.
-    """
-
-    kind: Literal["force", "glue"] = "force"
-    pull: float = Field(4.0, ge=0, le=200, description="largest pull towards the front [m/s^2]")
-    side: float = Field(6.0, ge=0, le=200, description="largest sideways acceleration [m/s^2]")
-    reach: float = Field(0.012, gt=0, le=0.1, description="gap up to which it pulls [m]")
-    centring: float = Field(0.05, gt=0.005, le=5, description="time constant towards the middle [s]")
-    idle_hold: float = Field(
-        0.0,
-        ge=0,
-        le=200,
-        description="as pull and side, with the dribbler off and the robot not backing away [m/s^2]",
-    )
-
-
-class KickerSettings(_Settings):
-    """The kicker. The sideways velocity of the ball stays as it was at the kick."""
-
-    max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
-    damping: float = Field(
-        0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
-    )
-    recharge: float = Field(0.1, ge=0, le=10, description="no kick and no dribbling after a kick [s]")
-
-
-class ContactSettings(_Settings):
+class ContactSettings(Settings):
     """Restitution and friction of the ball against things, and of robots against each other."""
 
     front_restitution: float = Field(0.2, ge=0, le=1)
@@ -99,7 +57,7 @@ class ContactSettings(_Settings):
     robot_friction: float = Field(0.2, ge=0, le=5)
 
 
-class RealismSettings(_Settings):
+class RealismSettings(Settings):
     """Noise, losses and delays between the world and the trees."""
 
     ball_noise: float = Field(0.0, ge=0, le=1, description="standard deviation of the ball's position [m]")
@@ -140,11 +98,13 @@ REALISM: dict[str, RealismSettings] = {
 """Realism levels. Source: ER-Force's simulator-realism configurations."""
 
 
-class SimSettings(_Settings):
+class SimSettings(Settings):
     """Everything that makes one simulator differ from another."""
 
     ball: BallSettings = BallSettings()
     body: BodySettings = BodySettings()
+    wheels: WheelSettings | None = Field(None, description="of robots that slip; none without")
+    shell: ShellSettings | None = Field(None, description="of robots with wheels; a round hull without")
     limits: RobotLimits = Field(RobotLimits(), description="of robots that are given none of their own")
     dribbler: DribblerSettings = DribblerSettings()
     kicker: KickerSettings = KickerSettings()
@@ -154,22 +114,34 @@ class SimSettings(_Settings):
 
 
 _GRSIM = SimSettings(
-    ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
-    body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
+    ball=BallSettings(
+        mass=0.043,
+        slide_deceleration=10.3,
+        switch_share=0.695,
+        roll_deceleration=0.701,
+        stop_speed=0.01,
+        placed_rolls=False,
+    ),
+    body=BodySettings(mass=2.82, face=0.0805, mouth_width=0.08, sensor_depth=0.01),
+    wheels=WheelSettings(),
+    shell=ShellSettings(),
     limits=RobotLimits(
         max_speed=5.0,
-        acceleration=4.15,
-        braking=4.6,
+        acceleration=4.1,
+        braking=3.4,
         side_acceleration=3.67,
         side_braking=4.1,
         max_turn=20.0,
         turn_acceleration=50.0,
-        catch_speed=4.0,
+        catch_speed=0.6,
         hold_acceleration=50.0,
     ),
-    dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-    kicker=KickerSettings(max_speed=10.0, damping=0.2),
-    contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
+    dribbler=DribblerSettings(kind="glue", reach=0.01),
+    kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6),
+    contact=ContactSettings(
+        front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
+    ),
+    sub_step=1 / 300,
 )
 
 PRESETS: dict[str, SimSettings] = {
@@ -227,7 +199,9 @@ PRESETS: dict[str, SimSettings] = {
         kicker=KickerSettings(max_speed=7.5),
         contact=ContactSettings(front_restitution=0.0, goal_restitution=0.3),
     ),
-    "robobulls": _GRSIM.model_copy(update={"kicker": KickerSettings(max_speed=7.5, damping=0.2)}),
+    "robobulls": _GRSIM.model_copy(
+        update={"kicker": KickerSettings(max_speed=7.5, damping=0.2, recharge=1 / 6)}
+    ),
 }
 """Named presets. ``robobulls`` is grSim with the kicks that RoboBulls' software sends."""
 

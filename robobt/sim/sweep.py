@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-from robobt.sim.columns import BALL_R, FACE, ROBOT_R
+from robobt.sim.columns import BALL_R, FACE, ROBOT_R, SOLID
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 
@@ -61,6 +61,9 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
 def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
     """Return when in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
     radius, round_, face = p[BALL_R], p[ROBOT_R], p[FACE]
+    if p[SOLID] > 0.0:
+        t_in, t_out = _meets_disc(x, y, dx, dy, p[SOLID] + radius)
+        return t_in if 0.0 < t_in <= t_out and t_in < 1.0 else 1.0
     half = sqrt(round_ * round_ - face * face)
     first = 1.0
     if dx < 0.0 and x > face + radius:

@@ -145,11 +145,11 @@ def _ramped_square(acceleration: float) -> Commands:
     velocity = np.zeros(2)
     path: list[tuple[float, float]] = []
     for tick in range(600):
+        path.append((float(velocity[0]), float(velocity[1])))
         change = 2.0 * np.array(_SIDES[min(tick // 90, 4)]) - velocity
         length = float(np.hypot(*change))
         if length > 0.0:
             velocity = velocity + change * min(acceleration * PERIOD / length, 1.0)
-        path.append((float(velocity[0]), float(velocity[1])))
     return lambda tick: RobotCommand(*path[tick])
 
 

@@ -13,7 +13,7 @@ from robobt.world import RobotCommand, RobotLimits
 from tests.sim.rig import ME, one_robot
 
 # Measured in the running simulators: time to 90 % of 1.5 m/s forward and sideways, and to brake from it [s].
-MEASURED = {"grsim": (0.333, 0.383, 0.333), "rsim": (0.425, 0.575, 0.400), "erforce": (0.215, 0.315, 0.195)}
+MEASURED = {"grsim": (0.333, 0.383, 0.367), "rsim": (0.425, 0.575, 0.400), "erforce": (0.215, 0.315, 0.195)}
 
 
 @pytest.mark.parametrize("name", MEASURED)
@@ -28,7 +28,7 @@ def test_a_preset_speeds_up_and_brakes_as_measured(name: str) -> None:
     while world.truth().own[0].speed < 1.499:
         world.act({ME: RobotCommand(vx=1.5)})
     start = world.time
-    while world.truth().own[0].speed > 0.0:
+    while world.truth().own[0].speed > 0.001:
         world.act({})
     assert world.time - start == pytest.approx(brake, rel=0.10)
 

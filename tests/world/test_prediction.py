@@ -21,7 +21,8 @@ PERIOD = 0.03
 
 def world(ball: tuple[float, float] = (2.0, 2.0), **realism: float) -> PredictedWorld:
     late = RealismSettings(**realism)
-    settings = preset("grsim", realism=late)
+    # Its robots follow their commands within their limits, which is what the prediction reckons with.
+    settings = preset("rsim", realism=late)
     sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, settings, PERIOD)
     made = PredictedWorld(sim, late.vision_delay, late.command_delay, gaps=late.missing_robot > 0.0)
     made.reset(Placement({BLUE: (-1.0, 0.0, 0.5), YELLOW: (1.0, 1.0, -2.0)}, (*ball, 0.0, 0.0)), 1)

@@ -8,7 +8,7 @@ from math import cos, hypot, sin
 
 from robobt.league.estimate.ball_track import BallMotion
 from robobt.league.estimate.robot_track import RobotMotion
-from robobt.sim.settings import BodySettings
+from robobt.sim.robot_settings import BodySettings
 from robobt.world.geometry import to_robot_frame
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 

@@ -30,6 +30,7 @@ class Randomiser:
         self._rng = rng
         self._arena_parameters = arenas.arena_parameters.copy()
         self._robot_parameters = arenas.robot_parameters.copy()
+        self._grip = arenas.wheel_parameters[:, sim.MU_TANGENT].copy()
         self._mass = settings.simulator.body.mass
         self._own_delay = settings.simulator.realism.command_delay
         longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
@@ -57,6 +58,7 @@ class Randomiser:
         for column in _ACCELERATIONS:
             own = self._robot_parameters[which, 0, column]
             arenas.robot_parameters[which, 0, column] = own * self.acceleration[which]
+        arenas.wheel_parameters[which, sim.MU_TANGENT] = self._grip[which] * self.acceleration[which]
         if ranges.mass != (1.0, 1.0):
             for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):
                 arenas.weigh(arena, self._mass * factor)

@@ -84,7 +84,9 @@ class RandomisationSettings(Settings):
     """
 
     friction: Span = Field((1.0, 1.0), description="on the ball's sliding and rolling deceleration")
-    acceleration: Span = Field((1.0, 1.0), description="on the robot's accelerations, turning included")
+    acceleration: Span = Field(
+        (1.0, 1.0), description="on the robot's accelerations, turning included, and its wheels' grip"
+    )
     mass: Span = Field((1.0, 1.0), description="on the robot's mass")
     kick_speed: Span = Field((1.0, 1.0), description="on the speed of kicks")
     dribbler: Span = Field((1.0, 1.0), description="on the dribbler's pull and side acceleration")

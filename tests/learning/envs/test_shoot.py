@@ -178,7 +178,7 @@ def test_named_rewards(name: str, facing: float, turned: float) -> None:
 @pytest.mark.parametrize("rate", [2.0, 6.0])
 def test_turning_with_the_ball_costs_the_same_at_any_rate(rate: float) -> None:
     """The sum of Eq. 12 over a turn is -(L / dt) times the integral of beta - alpha over beta."""
-    made = task([start(heading=pi)], simulator="grsim", reward={"waiting": 0, "kick": 0})
+    made = task([start(heading=pi)], simulator="rsim", reward={"waiting": 0, "kick": 0})
     action = np.array([[rate / made.action.max_turn, -1.0]])
     total, alpha = 0.0, 2 * atan2(0.5, 2.5)
     for _ in range(70):
@@ -211,7 +211,7 @@ def test_random_actions_hardly_ever_score() -> None:
 def test_left_is_as_good_as_right() -> None:
     left = start(2.0, 0.7, 1.1)
     signs = np.array([1, -1, -1, 1, -1, -1, 1, -1, 1, -1])
-    one, other = task([left], simulator="grsim"), task([(signs * left).tolist()], simulator="grsim")
+    one, other = task([left], simulator="rsim"), task([(signs * left).tolist()], simulator="rsim")
     rng = np.random.default_rng(6)
     for tick in range(25):
         action = rng.uniform(-1, 1, (1, 2))

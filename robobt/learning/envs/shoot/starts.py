@@ -14,7 +14,7 @@ from robobt.sim.arenas import Arenas
 from robobt.sim.columns import DRIBBLE
 from robobt.world.state import BALL_RADIUS
 
-_GAP = 1e-4
+_GAP = 3e-4
 """Between ball and front before the dribbler takes it [m]."""
 
 _POINTS = 17
