@@ -85,11 +85,11 @@ class Placer:
 
     def _await_robots(self) -> None:
         """Wait, as long as it takes, until people have brought the robots; they stand still meanwhile."""
-        told = False
+        told, patience = False, self._clock() + _SETTLING * 10
         while missing := [
             str(robot) for robot in self._commanded() if robot not in self._feed.filter.robots()
         ]:
-            if not told:
+            if not told and self._clock() > patience:
                 _log.warning("waiting until these robots are seen on the field: %s", ", ".join(missing))
                 told = True
             self._link.send({robot: RobotCommand() for robot in self._commanded()}, self._feed.now())

@@ -293,7 +293,7 @@ def test_where_nothing_may_be_placed_nothing_is_moved() -> None:
 def test_where_nothing_may_be_placed_it_waits_for_the_robots(caplog: pytest.LogCaptureFixture) -> None:
     endpoints = free_endpoints()
     with served(field(1), endpoints, SPEED) as server, connect(endpoints, place=False) as world:
-        late = threading.Timer(0.4, lambda: server.field.teleport(Teleport(HER, 2.0, -1.0, 0.0)))
+        late = threading.Timer(2.0, lambda: server.field.teleport(Teleport(HER, 2.0, -1.0, 0.0)))
         late.start()
         world.reset(START, 0)
         late.join()
