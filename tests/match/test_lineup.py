@@ -13,6 +13,8 @@ from robobt.world.game import TeamStatus
 from robobt.world.protocol import World
 from robobt.worlds import sim_world
 
+pytestmark = pytest.mark.integration
+
 
 class Controlled:
     """Six against six in the simulator, refereed by whoever sets ``game``."""

@@ -60,6 +60,7 @@ def test_a_trial_does_not_depend_on_the_others():
     assert figures(run_trials(scenario(), PlainWorld, 2, seed=1)) != figures(few)
 
 
+@pytest.mark.integration
 def test_a_run_over_worker_processes_is_the_same_run():
     """Determinism over processes, in the real simulator: traces and figures are identical."""
     alone = run_trials(scenario(), sim_world, 5)

@@ -57,6 +57,7 @@ def test_the_same_network_and_card_give_the_same_files(tmp_path: Path) -> None:
     assert read_manifest(tmp_path / "a") == read_manifest(tmp_path / "c")
 
 
+@pytest.mark.integration
 def test_another_process_writes_the_same_file(tmp_path: Path) -> None:
     export_model(network(), go_to_ball_card(), tmp_path / "a")
     code = (

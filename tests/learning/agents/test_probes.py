@@ -68,7 +68,11 @@ def test_a_reward_that_comes_two_steps_later_is_discounted_once(switches):
 
 @pytest.mark.parametrize(
     "switches",
-    [{}, {"twin": True, "actor_every": 2, "smoothing": 0.1}, {"atoms": 101, "returns": (-3.0, 1.0)}],
+    [
+        {},
+        pytest.param({"twin": True, "actor_every": 2, "smoothing": 0.1}, marks=pytest.mark.slow),
+        pytest.param({"atoms": 101, "returns": (-3.0, 1.0)}, marks=pytest.mark.slow),
+    ],
     ids=str,
 )
 def test_the_actor_finds_the_action_with_the_largest_reward(switches):

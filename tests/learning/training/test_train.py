@@ -71,7 +71,15 @@ def test_the_task_is_learned(tmp_path):
 
 
 @pytest.mark.parametrize("switches", [{}, EVERYTHING], ids=["plain", "everything"])
-@pytest.mark.parametrize("moments", [(100,), (5, 41, 170), (60, 60, 60, 60)], ids=str)
+@pytest.mark.parametrize(
+    "moments",
+    [
+        (100,),
+        pytest.param((5, 41, 170), marks=pytest.mark.slow),
+        pytest.param((60,) * 4, marks=pytest.mark.slow),
+    ],
+    ids=str,
+)
 def test_a_run_that_was_cut_off_and_resumed_ends_with_the_same_weights(tmp_path, switches, moments):
     settings = slide_settings(**switches)
     whole = train(settings, tmp_path / "whole", problem=SLIDE)
@@ -163,6 +171,7 @@ def test_a_run_with_a_checkpoint_is_resumable_even_before_its_first_evaluation(t
         train(settings, tmp_path, problem=SLIDE)
 
 
+@pytest.mark.slow
 def test_killed_anywhere_in_writing_a_checkpoint_it_ends_with_the_same_weights(tmp_path, monkeypatch):
     settings = slide_settings(**EVERYTHING)
     whole = train(settings, tmp_path / "whole", problem=SLIDE)

@@ -514,6 +514,7 @@ while True:
 """
 
 
+@pytest.mark.integration
 def test_a_process_that_is_killed_leaves_all_but_its_last_second(
     path: Path, start_python: StartPython
 ) -> None:

@@ -6,6 +6,8 @@ from robobt.config.resources import bundled_scenarios
 from robobt.match import load_scenario, play_match, run_trials, summarise
 from robobt.worlds import sim_world
 
+pytestmark = pytest.mark.integration
+
 
 @pytest.mark.parametrize("name", bundled_scenarios())
 def test_it_plays_without_a_tree_failing(name: str):

@@ -18,6 +18,8 @@ from robobt.worlds import sim_world
 from tests.match.scenario.mutation import mutated
 from tests.match.scripted import data
 
+pytestmark = pytest.mark.integration
+
 TICKS = 20
 HANG = 60
 """Seconds after which a case counts as hanging; they take some hundredths [s]."""

@@ -31,6 +31,7 @@ def scenario(folder: Path, children: str, play: str = "kicker.yaml") -> Path:
     return path
 
 
+@pytest.mark.integration
 def test_it_is_played_by_workers_too(tmp_path: Path) -> None:
     loaded = load_scenario(scenario(tmp_path, "SelectShot, KickToTarget"))
     alone = run_trials(loaded, sim_world, trials=2)
