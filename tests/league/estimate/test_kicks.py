@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from robobt.league.estimate.kicks import Kick, KickWatch
 from robobt.league.estimate.robot_track import RobotMotion, SentCommands
-from robobt.sim.settings import BodySettings
+from robobt.sim.robot_settings import BodySettings
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import BALL_RADIUS, RobotId
