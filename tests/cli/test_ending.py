@@ -103,20 +103,6 @@ def in_a_process(*arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
 
-@contextmanager
-def told_after(seconds: float, number: int) -> Iterator[None]:
-    """Send this process a signal in a while."""
-    timer = threading.Timer(seconds, os.kill, (os.getpid(), number))
-    # For a command that has ended before.
-    handler = signal.signal(number, lambda *_: None)
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.join()
-        signal.signal(number, handler)
-
-
 def soon(what: Callable[[], bool]) -> bool:
     # Long enough to compile for the first time on a busy machine.
     end = time.monotonic() + 120.0
@@ -125,6 +111,29 @@ def soon(what: Callable[[], bool]) -> bool:
             return False
         time.sleep(0.02)
     return True
+
+
+@contextmanager
+def told_when(what: Callable[[], bool], number: int) -> Iterator[None]:
+    """Send this process a signal as soon as something is the case."""
+
+    def tell() -> None:
+        soon(what)
+        os.kill(os.getpid(), number)
+
+    thread = threading.Thread(target=tell)
+    # For a command that has ended before.
+    handler = signal.signal(number, lambda *_: None)
+    thread.start()
+    try:
+        yield
+    finally:
+        thread.join()
+        signal.signal(number, handler)
+
+
+def large(file: Path) -> bool:
+    return file.exists() and file.stat().st_size > 5_000
 
 
 @pytest.fixture
@@ -184,7 +193,7 @@ def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     ends, log = free_endpoints(), tmp_path / "sent.log.gz"
     where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}"]
     ports = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
-    with told_after(1.0, number):
+    with told_when(lambda: large(log), number):
         ended = robobt("serve", *where, *ports, "--speed", 10, "--log", log, "--json")
     assert ended.exit_code == 0
     frames = json.loads(ended.output)["frames"]
@@ -195,7 +204,7 @@ def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
 def test_a_logger_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     ends, log = free_endpoints(), tmp_path / "heard.log.gz"
     where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee={ends.referee}"]
-    with served(served_line_up(DIVISION_B, 1), ends, speed=5.0), told_after(1.0, number):
+    with served(served_line_up(DIVISION_B, 1), ends, speed=5.0), told_when(lambda: large(log), number):
         ended = robobt("log", log, *where, "--json")
     assert ended.exit_code == 0
     heard = json.loads(ended.output)["vision"]
@@ -219,7 +228,7 @@ def test_a_server_ends_with_a_complete_log_when_its_terminal_closes(tmp_path: Pa
         return bool(found)
 
     try:
-        assert soon(lambda: log.exists() and log.stat().st_size > 10_000)
+        assert soon(lambda: large(log))
         os.close(terminal)
         assert soon(ended)
     finally:
@@ -260,7 +269,7 @@ def told_to_stop(last: dict[RobotId, RobotCommand]) -> bool:
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_match_over_the_network_stops_its_robots_before_it_ends(tmp_path: Path, number: int) -> None:
     endpoints, recording = free_endpoints(), tmp_path / "ended.robobt.arrows"
-    with served_six_v_six(endpoints) as last, told_after(3.0, number):
+    with served_six_v_six(endpoints) as last, told_when(lambda: large(recording), number):
         ended = robobt(*six_v_six(endpoints, recording))
         assert soon(lambda: told_to_stop(last))
     assert ended.exit_code == 128 + number
