@@ -20,7 +20,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
-from robobt.config.errors import RobobtError
+from robobt.config.errors import RobobtError, one_line
 from robobt.config.resources import models_folder
 from robobt.models.card import ModelCard, read_card
 from robobt.models.protobuf import field, fields
@@ -111,7 +111,7 @@ def read_model_file(path: str | Path) -> ModelFile:
         if sealed and card.payload != digest:
             raise ModelError("its content is not what its card was written for")
     except ValueError as error:
-        raise ModelError(f"{path}: {error}") from error
+        raise ModelError(f"{path}: {one_line(str(error), 400)}") from error
     return ModelFile(path, kind, checksum, len(data), card, content)
 
 

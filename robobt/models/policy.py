@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.config.errors import one_line
 from robobt.models.card import ModelCard
 from robobt.models.checks.onnx_file import check_onnx
 from robobt.models.checks.operations import check_frozen, check_loaded
@@ -130,7 +131,7 @@ def load_policy(
             network = LOADERS[file.format](file)
             _probe(network, card)
         except ModelError as error:
-            raise ModelError(f"{path}: {error}") from error
+            raise ModelError(f"{path}: {one_line(str(error), 400)}") from error
         if len(_LOADED) >= _MOST_LOADED:
             del _LOADED[next(iter(_LOADED))]
         _LOADED[key] = Policy(file, network)
@@ -163,7 +164,7 @@ class _TorchScript:
         archive = pack_archive(checked_members(unpack_archive(file.content)))
         size = file.card.observation.size
         with quiet():
-            try:
+            with _telling("torch cannot load it"):
                 loaded = torch.jit.load(BytesIO(archive), map_location="cpu")  # type: ignore[no-untyped-call]
                 loaded.eval()
                 check_loaded(loaded.inlined_graph)
@@ -171,19 +172,8 @@ class _TorchScript:
                 with Bounds():
                     module = torch.jit.freeze(loaded)
                 check_frozen(module.inlined_graph)
-            except ModelError:
-                raise
-            except Exception as error:
-                raise ModelError(f"torch cannot load it: {_first_line(error)}") from error
-            try:
-                with torch.inference_mode(), Bounds():
-                    module(torch.zeros(_PROBES, size))
-            except ModelError:
-                raise
-            except Exception as error:
-                raise ModelError(
-                    f"fails on an observation of {size} entries: {_first_line(error)}"
-                ) from error
+            with _telling(f"fails on an observation of {size} entries"), torch.inference_mode(), Bounds():
+                module(torch.zeros(_PROBES, size))
         self.module = module
         self._torch = torch
         self._size = size
@@ -238,12 +228,10 @@ class _Onnx:
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1
         options.log_severity_level = 4
-        try:
+        with _telling("onnxruntime cannot load it"):
             self._session = onnxruntime.InferenceSession(
                 file.content, options, providers=["CPUExecutionProvider"]
             )
-        except Exception as error:
-            raise ModelError(f"onnxruntime cannot load it: {_first_line(error)}") from error
         inputs, outputs = self._session.get_inputs(), self._session.get_outputs()
         if len(inputs) != 1 or len(outputs) != 1 or inputs[0].type != "tensor(float)":
             raise ModelError("does not take one array of single precision and answer one")
@@ -276,16 +264,12 @@ def _probe(network: Network, card: ModelCard) -> None:
     inputs = np.random.default_rng(0).normal(0.0, 2.0, (_PROBES, size)).astype(np.float32)
     inputs[0] = 0.0
     low, high = card.output_range
-    try:
+    with _telling(f"fails on an observation of {size} entries"):
         first, again = network.batch(inputs), network.batch(inputs)
         if first.shape != (_PROBES, outputs):
             raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({_PROBES}, {outputs})")
         one = network.single()
         singles = np.array([one(row.tolist()) for row in inputs])
-    except ModelError:
-        raise
-    except Exception as error:
-        raise ModelError(f"fails on an observation of {size} entries: {_first_line(error)}") from error
     if not np.isfinite(first).all():
         raise ModelError("answers what is no finite number")
     if first.min() < low - _SLACK or first.max() > high + _SLACK:
@@ -299,6 +283,17 @@ def _probe(network: Network, card: ModelCard) -> None:
 def _first_line(error: Exception) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return f"{type(error).__name__}: {lines[0][:200]}" if lines else type(error).__name__
+
+
+@contextmanager
+def _telling(what: str) -> Iterator[None]:
+    """Raise a ModelError that says so for whatever else is raised."""
+    try:
+        yield
+    except ModelError:
+        raise
+    except Exception as error:
+        raise ModelError(f"{what}: {_first_line(error)}") from error
 
 
 @contextmanager

@@ -133,6 +133,10 @@ def many_nodes(model: onnx.ModelProto) -> None:
     model.graph.node.extend([onnx.NodeProto()] * 200_000)
 
 
+def odd_names(model: onnx.ModelProto) -> None:
+    model.graph.node[0].op_type = "two\nlines"
+
+
 def loop(model: onnx.ModelProto) -> None:
     model.graph.node[0].op_type = "Loop"
 
@@ -151,13 +155,15 @@ def loop(model: onnx.ModelProto) -> None:
         packed_numbers,
         many_nodes,
         loop,
+        odd_names,
     ],
 )
 def test_what_no_network_needs_is_refused(change: Callable[[onnx.ModelProto], None], tmp_path: Path) -> None:
     model = plain()
     change(model)
-    with pytest.raises(ModelError, match=r"crafted\.onnx: "):
+    with pytest.raises(ModelError, match=r"crafted\.onnx: ") as caught:
         load_policy(sealed_onnx(tmp_path, model))
+    assert "\n" not in str(caught.value)
 
 
 def constant(name: str, values: list[int]) -> TensorProto:

@@ -59,6 +59,7 @@ def refused(path: Path, said: str = ".") -> None:
     with pytest.raises(ModelError, match=said) as caught:
         load_policy(path)
     assert str(caught.value).startswith(f"{path}: ")
+    assert len(str(caught.value).splitlines()) == 1
     assert time.monotonic() - before < 5.0
 
 
@@ -284,6 +285,7 @@ PICKLES = {
     "an attribute too few": b"\x80\x02c__torch__\nAttack\n)\x81}b.",
     "an attribute too many": PLAIN_STATE.replace(b"\x89s", b"\x89sX\x01\x00\x00\x00a\x89s"),
     "a bare name": b"\x80\x02ctorch\nFloatStorage\n.",
+    "a name of two lines": PLAIN_STATE.replace(b"Attack", b"At\rtack"),
     "two values": b"\x80\x02NN.",
     "something behind": PLAIN_STATE + PLAIN_STATE,
     "a mark": b"\x80\x02(.",
