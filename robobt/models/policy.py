@@ -154,10 +154,8 @@ class _TorchScript:
     """A frozen TorchScript module."""
 
     def __init__(self, file: ModelFile) -> None:
-        try:
+        with _telling("needs torch to run"):
             import torch
-        except ImportError as error:
-            raise ModelError(f"needs torch to run: {_first_line(error)}") from error
 
         from robobt.models.checks.bounds import Bounds
 
@@ -220,10 +218,8 @@ class _Onnx:
 
     def __init__(self, file: ModelFile) -> None:
         check_onnx(file.content, _PROBES, file.card.observation.size)
-        try:
+        with _telling("needs onnxruntime to run"):
             import onnxruntime  # type: ignore[import-untyped]
-        except ImportError as error:
-            raise ModelError(f"needs onnxruntime to run: {_first_line(error)}") from error
 
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1
