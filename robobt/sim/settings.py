@@ -210,8 +210,8 @@ PRESETS: dict[str, SimSettings] = {
 }
 """Named presets. ``robobulls`` has the kicks that RoboBulls' software sends, and a simpler grSim: a robot
 that follows its commands within limits, a dribbler that takes every ball and a hull that lets none roll off.
-In it RoboBulls' skills need the times of the paper and of the real grSim; with ``grsim``'s wheels and contacts
-they push the ball away more often than there."""
+In it RoboBulls' skills need the times of the paper and of the real grSim; with ``grsim``'s wheels and
+contacts they push the ball away more often than there."""
 
 
 def preset(name: str, **changes: object) -> SimSettings:
