@@ -197,7 +197,9 @@ def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
         ended = robobt("serve", *where, *ports, "--speed", 10, "--log", log, "--json")
     assert ended.exit_code == 0
     frames = json.loads(ended.output)["frames"]
-    assert [record.kind for record in read_log(log)].count(4) == frames > 10
+    # The last one may have been simulated and not yet sent when the signal came.
+    assert frames - [record.kind for record in read_log(log)].count(4) in (0, 1)
+    assert frames > 10
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])

@@ -51,7 +51,7 @@ class SimServer:
     Attributes:
         endpoints: as above, with the ports that were picked for 0.
         counts: what happened to the packets, by port.
-        frames: how many were sent.
+        frames: how many were made; the last may still wait to be sent.
         kept: share of its speed that the field has kept.
         referee: the referee, None without one.
 
