@@ -10,7 +10,7 @@ from pathlib import Path
 from robobt.league.log.files import LogKind, LogWriter
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.sockets import Receiver
-from robobt.signals import Terminated, check
+from robobt.signals import Terminated, check, uninterrupted
 
 
 def log_field(
@@ -48,6 +48,7 @@ def log_field(
                 check()
                 for receiver in select.select(list(receivers), [], [], 0.1)[0]:
                     for packet in receiver.receive():
-                        log.write(time.time_ns(), receivers[receiver], packet.data)
-                        written[receivers[receiver]] += 1
+                        with uninterrupted:  # so that the count is that of the file
+                            log.write(time.time_ns(), receivers[receiver], packet.data)
+                            written[receivers[receiver]] += 1
     return written
