@@ -38,7 +38,10 @@ def main(trials: int = 3) -> None:
     try:
         assert server.stdout is not None
         print(server.stdout.readline(), end="")  # says that it serves
-        address = "league://grsim?" + "&".join(f"{name}={port}" for name, port in ports.items())
+        # What is served are the scenario's robots, not those of grSim itself.
+        address = "league://grsim?physics=default&" + "&".join(
+            f"{name}={port}" for name, port in ports.items()
+        )
         run = robobt.run_trials(robobt.load_scenario("striker_vs_goalie"), trials, world=address)
     finally:
         server.terminate()

@@ -42,16 +42,23 @@ def sim_world(scenario: Scenario) -> World:
     )
 
 
-def scenario_settings(scenario: Scenario) -> SimSettings:
+def scenario_settings(scenario: Scenario, preset: str | None = None) -> SimSettings:
     """Return the settings of a scenario's simulator.
+
+    Args:
+        scenario: whose ``simulator`` is read.
+        preset: what its changes are made to; None for its own preset.
 
     Raises:
         ScenarioError: they are wrong.
     """
+    simulator = scenario.simulator
+    if preset is not None:
+        simulator = {**simulator, "preset": preset}
     try:
-        return settings_from(scenario.simulator)
+        return settings_from(simulator)
     except ValidationError as error:
-        field, problem = first_problem(error, SimSettings, scenario.simulator)
+        field, problem = first_problem(error, SimSettings, simulator)
         raise scenario.error(problem, f"simulator.{field}") from error
     except (KeyError, TypeError, ValueError) as error:
         raise scenario.error(message_of(error), "simulator") from error

@@ -19,6 +19,9 @@ from robobt.sim.settings import PRESETS, SimSettings
 SCHEME = "league://"
 
 _OPTIONS = [name for name in Connection.model_fields if name not in ("simulator", "endpoints")]
+_PHYSICS = {"grsim": "grsim"}
+"""Presets of simulators that are one program: what robots there can do, whatever the scenario's can."""
+
 _KNOWN = [*_OPTIONS, "physics", *Endpoints.model_fields]
 
 
@@ -66,14 +69,16 @@ class LeagueFactory:
 
     Args:
         address: see :func:`parse_address`.
-        settings: returns the settings of a scenario's simulator, for addresses that name no physics.
+        settings: returns the settings of a scenario's simulator, with the preset of the physics there
+            in place of its own if one is given.
 
     Raises:
         AddressError: the address is wrong.
     """
 
-    def __init__(self, address: str, settings: Callable[[Scenario], SimSettings]) -> None:
-        self._connection, self._physics = parse_address(address)
+    def __init__(self, address: str, settings: Callable[[Scenario, str | None], SimSettings]) -> None:
+        self._connection, physics = parse_address(address)
+        self._physics = physics or _PHYSICS.get(self._connection.simulator)
         self._settings = settings
         self._known = KnownField(self._connection.speed)
         self._world: LeagueWorld | None = None
@@ -85,7 +90,7 @@ class LeagueFactory:
             ScenarioError: the simulator's settings in the scenario are wrong.
         """
         self.close()
-        settings = self._settings(scenario) if self._physics is None else PRESETS[self._physics]
+        settings = self._settings(scenario, self._physics)
         robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
         self._world = LeagueWorld(
             scenario.field, robots, settings, scenario.period, self._connection, known=self._known

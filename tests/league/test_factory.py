@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.league.factory import AddressError, parse_address
+from robobt.league.factory import AddressError, LeagueFactory, parse_address
+from robobt.match import Scenario, load_scenario
+from robobt.sim import SimSettings, preset
 from robobt.world.game import Team
-from robobt.worlds import sim_world, world_from
+from robobt.worlds import scenario_settings, sim_world, world_from
 
 
 def test_the_simulator_is_a_world_by_its_name() -> None:
@@ -53,3 +55,32 @@ def test_an_address_says_all_of_a_connection() -> None:
     )
     assert (str(connection.endpoints.vision), connection.endpoints.control) == ("224.5.23.2:10006", 1)
     assert physics == "erforce"
+
+
+@pytest.mark.parametrize(
+    ("address", "name"),
+    [
+        ("league://grsim", "grsim"),
+        ("league://grsim?physics=erforce", "erforce"),
+        ("league://protocol", "default"),
+        ("league://protocol?physics=erforce", "erforce"),
+    ],
+)
+def test_the_physics_to_expect_is_that_of_the_simulator_there(address: str, name: str) -> None:
+    class AskedError(Exception):
+        pass
+
+    def settings(scenario: Scenario, physics: str | None) -> SimSettings:
+        raise AskedError(scenario_settings(scenario, physics))
+
+    scenario = load_scenario("striker_vs_goalie")
+    with pytest.raises(AskedError) as asked:
+        LeagueFactory(address, settings)(scenario)
+    assert asked.value.args == (preset(name),)
+
+
+def test_another_physics_keeps_what_the_scenario_changes() -> None:
+    scenario = load_scenario("table4_trial1_ddpg")
+    settings = scenario_settings(scenario, "erforce")
+    assert settings.limits == preset("erforce").limits
+    assert settings.kicker.max_speed == 7.5
