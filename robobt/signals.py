@@ -35,11 +35,7 @@ TERMINATE: tuple[int, ...] = tuple(
 
 
 class Terminated(SystemExit):
-    """The process was told to end; uncaught, it gives the exit status that the signal itself would.
-
-    Attributes:
-        signal: which signal told it.
-    """
+    """The process was told to end; uncaught, it gives the exit status that the signal itself would."""
 
     def __init__(self, number: int) -> None:
         super().__init__(_BASE + number)
@@ -47,11 +43,7 @@ class Terminated(SystemExit):
 
 
 class _Uninterrupted:
-    """A block at whose end a signal takes effect that arrived inside; blocks may be nested.
-
-    Attributes:
-        depth: how many blocks the main thread is in.
-    """
+    """A block at whose end a signal takes effect that arrived inside; blocks may be nested."""
 
     def __init__(self) -> None:
         self.depth = 0
@@ -112,9 +104,6 @@ def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[N
     SIGINT works even where the shell had it ignored, as for a command in the background of a
     script. SIGHUP stays ignored where it is, as ``nohup`` wants it; otherwise what is printed
     to the closed terminal from then on is dropped.
-
-    Args:
-        numbers: the signals.
     """
     if threading.get_ident() != _MAIN:
         yield
@@ -150,13 +139,10 @@ def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[N
 
 @contextmanager
 def at_the_latest_after(seconds: float) -> Iterator[None]:
-    """Force the end of the process where a signal has not ended the block after some time.
+    """Force the end of the process where a signal has not ended the block within ``seconds`` of it [s].
 
     That takes what runs on and on whatever is raised in it, such as a skill with a bare
     ``except`` in an endless loop. What is registered with ``atexit`` is still done.
-
-    Args:
-        seconds: from the signal on [s].
     """
     _told.patience = seconds
     try:

@@ -29,10 +29,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
     Unlike the textbook normal interval it stays inside [0, 1] and keeps its
     coverage when every trial succeeds or none does.
 
-    Args:
-        successes: number of trials that succeeded.
-        trials: number of trials; none at all gives (0, 1): nothing is known.
-        confidence: coverage, between 0 and 1.
+    No trials at all give (0, 1): nothing is known.
 
     Raises:
         ValueError: counts or confidence out of range.

@@ -163,10 +163,6 @@ def world_of(address: str, publish: bool = False) -> Iterator[WorldFactory]:
 
     At the end of the block, also by a signal that some skill ignores, robots of the league are
     stopped and ports released.
-
-    Args:
-        address: as in ``--world``.
-        publish: whether matches are published on this machine.
     """
     from robobt.worlds import world_from
 

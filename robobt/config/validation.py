@@ -14,10 +14,7 @@ from robobt.config.errors import FieldError, message_of, one_line, short_repr
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
     """Return the field and the message of the first problem, with the number of further ones.
 
-    Args:
-        error: what pydantic raised.
-        model: the model that the data was validated as.
-        data: the plain data; needed to name fields inside unions.
+    ``data``, the plain data, is needed to name fields inside unions.
     """
     problems = error.errors(include_url=False)
     problem = _most_telling(problems)

@@ -44,13 +44,7 @@ Plain: TypeAlias = "Scalar | list[Plain] | dict[str, Plain]"
 
 @dataclass(slots=True)
 class Marked:
-    """A value and its position.
-
-    Attributes:
-        value: a scalar, or a list or dict of :class:`Marked`.
-        line: line where it begins, counted from 1.
-        column: column where it begins, counted from 1.
-    """
+    """A value, with the line and column where it begins, counted from 1."""
 
     value: Scalar | list[Marked] | dict[str, Marked]
     line: int
@@ -66,10 +60,6 @@ class Marked:
 def read_yaml(path: Path, error: type[ConfigError] = ConfigError) -> dict[str, Any]:
     """Return the plain data of a file that holds one mapping of fields.
 
-    Args:
-        path: the file.
-        error: type of the error to raise.
-
     Raises:
         ConfigError: the file cannot be read, is not plain YAML or not a mapping; it names the line.
     """
@@ -81,11 +71,6 @@ def read_yaml(path: Path, error: type[ConfigError] = ConfigError) -> dict[str, A
 
 def read_limited(path: Path, limit: int, error: type[ConfigError] = ConfigError) -> bytes:
     """Return the content of a file of at most ``limit`` bytes.
-
-    Args:
-        path: the file.
-        limit: its largest size [bytes].
-        error: type of the error to raise.
 
     Raises:
         ConfigError: the file cannot be read or is larger.
@@ -103,11 +88,6 @@ def read_limited(path: Path, limit: int, error: type[ConfigError] = ConfigError)
 
 def parse_marked(content: bytes | str, file: str, error: type[ConfigError] = ConfigError) -> Marked:
     """Return the data of one YAML document with its positions.
-
-    Args:
-        content: the text.
-        file: name of the text for messages.
-        error: type of the error to raise.
 
     Raises:
         ConfigError: the text is not plain YAML; it names the line.

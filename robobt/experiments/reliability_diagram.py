@@ -10,12 +10,7 @@ from robobt.statistics import ReliabilityBin
 
 
 def draw_reliability(models: Mapping[str, Sequence[ReliabilityBin]], title: str, path: Path) -> None:
-    """Draw the bins of several models; a dot's area shows its trials.
-
-    Args:
-        models: bins by model.
-        title: of the diagram.
-        path: the ending decides the format (.png, .svg, .pdf).
+    """Draw the bins of several models, in the format of the path's ending; a dot's area shows its trials.
 
     Raises:
         ValueError: an ending that matplotlib does not know.

@@ -95,17 +95,11 @@ class Table2:
 def table2(
     sets: ShotSets, replications: int = 10, seed: int = 0, progress: Callable[[], object] = lambda: None
 ) -> Table2:
-    """Replicate the table: folds, hold-outs and seeds are drawn anew each time.
+    """Replicate the table; folds, hold-outs and seeds are drawn anew each time, from ``seed`` on.
 
     The training shots alone are used. Beside the paper's regression, which
     liblinear regularises unevenly on raw millimetres and radians, stands the same
     on standardised inputs.
-
-    Args:
-        sets: the shots.
-        replications: how often.
-        seed: of the first; the next ones count up.
-        progress: called after every replication of a hold-out.
     """
     inputs, labels = shot_inputs(sets.train), goals(sets.train)
     found: dict[str, HoldOut] = {}

@@ -16,14 +16,10 @@ _PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
 
 
 def draw_table4(result: Table4, path: Path) -> None:
-    """Draw the times of every row, one panel a trial.
+    """Draw the times of every row, one panel a trial; the path's ending decides the format.
 
     Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
     rows, whose approach and pick-up are one figure, are hatched.
-
-    Args:
-        result: result of :func:`~robobt.experiments.table4.table4`.
-        path: file to write; the ending decides the format (.png, .svg, .pdf).
 
     Raises:
         ValueError: an ending that matplotlib does not know.

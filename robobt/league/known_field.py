@@ -21,10 +21,6 @@ class KnownField:
 
     Args:
         speed: rate that its clock is expected to have [s of the field per s].
-
-    Attributes:
-        clock: the field's clock.
-        field: the dimensions that the vision reported, None before it has.
     """
 
     def __init__(self, speed: float = 1.0) -> None:
@@ -35,12 +31,7 @@ class KnownField:
         self._since: tuple[float, float] | None = None
 
     def tell(self, what: str, message: str) -> None:
-        """Warn the user of something, once.
-
-        Args:
-            what: what it is about; it is told once.
-            message: the warning, one line.
-        """
+        """Warn the user of something, once."""
         if what not in self._told:
             self._told.add(what)
             _log.warning(message)

@@ -41,11 +41,7 @@ def bench_match(
     Once as people play it, recorded; once without recording; once with every
     tree ticked by py_trees' own generators. All three are the same match.
 
-    Args:
-        scenario: the scenario to play.
-        world_factory: makes the worlds.
-        seconds: simulated time [s].
-        seed: seed of the match; the scenario's by default.
+    ``seconds`` are simulated [s]; the seed is the scenario's by default.
     """
     seed = scenario.seed if seed is None else seed
     with tempfile.TemporaryDirectory() as folder:

@@ -39,9 +39,6 @@ class Lineup:
 
         The robot that it names as the goalkeeper exchanges trees with the one that was. Of too
         many robots those with the highest numbers leave, the goalkeeper last.
-
-        Args:
-            view: the frame, seen from this team's side.
         """
         status = view.game.status(view.team)
         if status.keeper is not None and status.keeper != self._keeper and self._keeper is not None:
@@ -83,12 +80,7 @@ class Lineup:
 
 
 def leave(view: Frame, me: RobotState) -> RobotCommand:
-    """Drive off the field: behind the own goal line, where a game controller does not count robots.
-
-    Args:
-        view: the frame, seen from the own team's side.
-        me: the robot.
-    """
+    """Drive off the field: behind the own goal line, where a game controller does not count robots."""
     field = view.field
     behind = -field.outer[0]
     y = copysign(field.defense_width / 2 + _ASIDE, me.y)

@@ -35,10 +35,6 @@ class Player:
     def decide(self, view: Frame, me: RobotState) -> RobotCommand | None:
         """Tick the tree once and return its command, or None where the tree failed.
 
-        Args:
-            view: the frame, seen from the own team's side.
-            me: the robot in it.
-
         Raises:
             TreeError: the tree failed, and ``on_error`` is "raise"; robot and node are named.
         """
@@ -63,12 +59,7 @@ class Player:
 
 
 def make_players(scenario: Scenario, start: Frame) -> list[Player]:
-    """Build every robot's tree and store, in the order of teams and scenario.
-
-    Args:
-        scenario: the scenario to play.
-        start: the first frame.
-    """
+    """Build every robot's tree and store, in the order of teams and scenario."""
     teams = {team: TeamStore() for team in Team}
     players = []
     for robot, setup in scenario.robots:

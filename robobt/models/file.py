@@ -118,9 +118,6 @@ def read_model_file(path: str | Path) -> ModelFile:
 def find_model(name_or_path: str | Path) -> Path:
     """Return the file of a model.
 
-    Args:
-        name_or_path: name of a shipped model, or a path.
-
     Raises:
         UnknownModelError: no shipped model has that name.
     """
@@ -183,9 +180,7 @@ def payload_of(members: Mapping[str, bytes]) -> str:
 def pack_archive(members: Mapping[str, bytes], card: str | None = None) -> bytes:
     """Pack an archive as torch reads it, the same bytes for the same members.
 
-    Args:
-        members: contents by name.
-        card: makes it a model file: the card is put in and the whole is sealed.
+    A card makes it a model file: it is put in, and the whole is sealed.
     """
     buffer = BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:

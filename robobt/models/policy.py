@@ -52,14 +52,7 @@ class Network(Protocol):
 
 
 class Policy:
-    """A loaded model: a function of arrays, and the card that describes them.
-
-    Attributes:
-        card: the model's card.
-        path: the file it was loaded from.
-        sha256: checksum of that file.
-        network: the network that runs.
-    """
+    """A loaded model: a function of arrays, and the card that describes them."""
 
     def __init__(self, file: ModelFile, network: Network) -> None:
         self.card = file.card

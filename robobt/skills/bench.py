@@ -30,11 +30,6 @@ def bench_policy(
     cases take turns, so that whatever else the machine does meets them all; each
     figure is the median of its CPU times.
 
-    Args:
-        model: name or file of a TorchScript policy.
-        rounds: how often each case is measured.
-        calls: calls in each measurement.
-
     Returns:
         ``leaf_to_module_ratio``, a tick of :class:`LearnedSkill` over a call of the bare
         frozen module; ``skill_to_module_ratio``, the same of the model's own skill

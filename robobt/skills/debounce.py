@@ -17,9 +17,6 @@ class Debounce:
         rise: how long yes must outweigh no to turn on [s].
         fall: longest gap it survives [s].
         on: the answer at the start.
-
-    Attributes:
-        on: the steady answer.
     """
 
     __slots__ = ("_balance", "_first", "_last", "fall", "on", "rise")

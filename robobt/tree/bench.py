@@ -32,10 +32,6 @@ def bench_tree(rounds: int = 15, ticks: int = 300) -> dict[str, float]:
     The cases take turns, so that whatever else the machine does meets them all. A
     case's figure is the median of its CPU times; the ratios are of these.
 
-    Args:
-        rounds: how often each case is measured.
-        ticks: ticks in each measurement.
-
     Returns:
         ``speedup_vs_py_trees``, stock ``BehaviourTree.tick`` over ``TreeRunner.tick``;
         ``ratio_to_plain_classes``, ``TreeRunner.tick`` over a hand-written tree of plain

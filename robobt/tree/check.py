@@ -42,10 +42,7 @@ def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> Non
       that does not need it itself, or is given. In which order they are ticked is
       not looked at.
 
-    Args:
-        root: the tree.
-        store: the class of the store it will be bound to.
-        given: entries that are filled in from outside the tree.
+    Entries that are ``given`` are filled in from outside the tree.
 
     Raises:
         WiringError: with everything that is wrong.

@@ -124,12 +124,7 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
 def check_parameters(
     what: str, builder: Callable[..., object], given: Mapping[str, object]
 ) -> dict[str, Any]:
-    """Convert the given parameters to the types of the builder's signature.
-
-    Args:
-        what: what the builder is called, for messages.
-        builder: a play or a skill's class.
-        given: plain data by parameter name.
+    """Convert plain data, given by name, to the types of a signature; ``what`` names its owner in messages.
 
     Raises:
         ParameterError: an unknown parameter, one missing, or one of the wrong type.

@@ -71,9 +71,6 @@ class TreeWatch:
 
     Looking is quick and can be done at every tick; :meth:`change` makes sense of what was
     found, at any later time but in the same order.
-
-    Args:
-        runner: whose tree.
     """
 
     def __init__(self, runner: TreeRunner) -> None:
@@ -203,9 +200,6 @@ def node_ids(nodes: Sequence[Behaviour]) -> list[tuple[int, str]]:
 
     The id is the names from the root down to the node, joined by slashes. No two are the
     same: of two that would be, the later one ends in ``#2``, and so on.
-
-    Args:
-        nodes: all nodes of the tree.
     """
     found: dict[int, tuple[int, str]] = {}
     taken: set[str] = set()

@@ -13,10 +13,7 @@ from robobt.world.state import RobotId
 def check_placement(placement: Placement, field: FieldGeometry, robots: Collection[RobotId] | None) -> None:
     """Check that a placement fits the field and the robots that play.
 
-    Args:
-        placement: where everything is to be put.
-        field: dimensions.
-        robots: all robots that play; None when any robot may.
+    ``robots`` are all that play; None when any robot may.
 
     Raises:
         ValueError: a robot lacks a pose or is not part of the world, or a coordinate

@@ -35,9 +35,6 @@ class LogWorld(World):
         field: dimensions until the log reports others.
         period: from one frame to the next [s].
 
-    Attributes:
-        counts: what happened to the packets.
-
     Raises:
         LogError: the file is not a log.
         OSError: it cannot be read.
@@ -147,10 +144,7 @@ def log_factory(path: str | Path) -> Callable[[Scenario], LogWorld]:
 def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path:
     """Convert a log to a recording, which ``robobt replay`` turns into a page.
 
-    Args:
-        log: the log.
-        out: file to write, named as recordings are.
-        period: from one frame of the recording to the next [s].
+    ``period`` is the time from one frame of the recording to the next [s].
 
     Returns:
         The path of the recording.

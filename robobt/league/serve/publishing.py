@@ -28,13 +28,7 @@ GEOMETRY_INTERVAL = 30
 
 
 class PublishedWorld(World):
-    """Another world, played in real time and published over the loopback.
-
-    Args:
-        world: where the match is played.
-        keepers: numbers of the goalkeepers.
-        endpoints: where the packets go.
-    """
+    """Another world, played in real time and published over the loopback."""
 
     def __init__(
         self, world: World, keepers: Mapping[Team, int] | None = None, endpoints: Endpoints | None = None

@@ -13,11 +13,7 @@ _REPEAT = 6
 
 
 class ServedReferee:
-    """Referees a served field and puts the ball down for restarts.
-
-    Attributes:
-        referee: the match's referee.
-    """
+    """Referees a served field and puts the ball down for restarts."""
 
     def __init__(self, field: ServedField, settings: RefereeSettings) -> None:
         self.referee = Referee(field.field, settings)

@@ -55,11 +55,7 @@ class BallTeleport:
 class Request:
     """What a packet asks of a simulator.
 
-    Attributes:
-        commands: of robots.
-        teleports: of robots.
-        ball: teleport of the ball, if any.
-        errors: code and message of what is not supported.
+    ``errors`` holds code and message of what is not supported.
     """
 
     commands: dict[RobotId, RobotCommand] = field(default_factory=dict)

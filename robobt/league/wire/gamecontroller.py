@@ -79,10 +79,7 @@ class RefereeFollower:
         Of several senders the first is followed until it falls silent; each of the others is
         reported once.
 
-        Args:
-            data: the packet.
-            sender: address and port it came from.
-            time: when it arrived; grows from call to call [s].
+        ``time`` is when it arrived, on a clock that grows from call to call [s].
         """
         if sender != self._sender and self._sender is not None and time - self._heard <= _SILENCE:
             if sender not in self._ignored:
@@ -203,11 +200,7 @@ def _command(number: int) -> RefereeCommand:
 
 
 class RefereePublisher:
-    """Encodes game states as the game controller's messages.
-
-    Args:
-        keepers: numbers of the goalkeepers.
-    """
+    """Encodes game states as the game controller's messages."""
 
     def __init__(self, keepers: Mapping[Team, int] | None = None) -> None:
         self._keepers = keepers or {}

@@ -84,12 +84,6 @@ class GrSimLink(_SimulatorLink):
     grSim stops the blue robots after every frame unless something arrives on its
     yellow control port every second, and the yellow robots likewise; commands on
     its own port do not count.
-
-    Args:
-        host: where grSim runs.
-        endpoints: its ports.
-        interface: own address of the interface to listen on.
-        teams: whose robots are commanded.
     """
 
     def __init__(

@@ -69,11 +69,7 @@ def decode(kind: type[_M], data: bytes, counts: PacketCounts) -> _M | None:
 def read(kind: type[_M], data: bytes, counts: PacketCounts, convert: Callable[[_M], _T | None]) -> _T | None:
     """Decode a packet, convert its message and count the outcome.
 
-    Args:
-        kind: class of the message.
-        data: the packet.
-        counts: updated with the outcome.
-        convert: turns the message into a result, or into None when it is implausible.
+    ``convert`` turns the message into a result, or into None when it is implausible.
 
     Returns:
         The converted message, or None when the packet was dropped.

@@ -91,11 +91,7 @@ def read_control(
 ) -> Request | None:
     """Return the commands of a control packet.
 
-    Args:
-        data: the packet.
-        team: whose port it came to.
-        headings: of the team's robots, to convert velocities given in field coordinates [rad].
-        counts: updated with the outcome.
+    ``headings``, those of the team's robots, convert velocities given in field coordinates [rad].
 
     Returns:
         The request, or None (counted) when the packet is malformed or implausible.

@@ -90,10 +90,6 @@ class Receiver(_UdpSocket):
             that arrive elsewhere are dropped. By default all packets from other machines are
             dropped, and those of this machine accepted on any interface.
 
-    Attributes:
-        port: the bound port.
-        counts: what happened to the packets.
-
     Raises:
         OSError: the port is taken, or no interface has the address.
         ValueError: ``address`` is not an IPv4 address.

@@ -55,10 +55,7 @@ def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tup
     The frame has the packet's timestamp and the first of several balls; without
     any, a ball at rest in the centre.
 
-    Args:
-        data: the packet.
-        field: dimensions, which a tracker packet does not hold.
-        counts: updated with the outcome.
+    ``field`` has the dimensions, which a tracker packet does not hold.
 
     Returns:
         None (counted) for a packet that is malformed or implausible.

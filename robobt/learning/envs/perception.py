@@ -17,15 +17,7 @@ Observe = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 class Perception:
-    """How the state of ``n`` arenas is observed.
-
-    Args:
-        settings: of the environment.
-        observe: computes observations from states.
-        size: length of an observation.
-        n: number of arenas.
-        rng: of the noise.
-    """
+    """How the state of ``n`` arenas is observed."""
 
     def __init__(
         self, settings: TaskSettings, observe: Observe, size: int, n: int, rng: np.random.Generator

@@ -41,13 +41,7 @@ class CheckpointError(RobobtError, ValueError):
 
 
 def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], state: RunState) -> None:
-    """Write a checkpoint; the one before it is kept beside it as ``*.previous``.
-
-    Args:
-        path: the file.
-        arrays: by name.
-        state: what JSON holds.
-    """
+    """Write a checkpoint; the one before it is kept beside it as ``*.previous``."""
     text = np.frombuffer(json.dumps(dict(state)).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **{_STATE: text}, **arrays)

@@ -24,9 +24,7 @@ def variants(task: str, changes: Mapping[str, object] | None = None) -> dict[str
     They have the fast preset's budget of steps and stop when its bar is met, but
     for the paper's, which has its own.
 
-    Args:
-        task: what is learned.
-        changes: to all of them, by dotted name.
+    ``changes`` apply to all of them, by dotted name.
 
     Raises:
         SettingsError: no such task, or the changes are wrong.

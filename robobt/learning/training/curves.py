@@ -14,13 +14,7 @@ from robobt.learning.training.results import Validation
 
 
 def draw_curves(runs: Mapping[str, Sequence[Validation]], title: str, path: str | Path) -> None:
-    """Write a PNG: success and time of every run over environment steps and over CPU time.
-
-    Args:
-        runs: evaluations on the validation starts by the run's name.
-        title: above the picture.
-        path: the file.
-    """
+    """Write a PNG: success and time of every run over environment steps and over CPU time."""
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 2, sharey="row", sharex="col")

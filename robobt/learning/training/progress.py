@@ -41,14 +41,7 @@ OnProgress = Callable[[Progress], None]
 
 
 class Reporter:
-    """Reports the progress of a run.
-
-    Args:
-        settings: of the run.
-        on_progress: called with every report.
-        clock: of the run.
-        selection: of the run.
-    """
+    """Reports the progress of a run."""
 
     def __init__(
         self, settings: TrainSettings, on_progress: OnProgress | None, clock: RunClock, selection: Selection

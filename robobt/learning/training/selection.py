@@ -16,9 +16,6 @@ from robobt.learning.training.settings import EvaluationSettings
 class Selection:
     """The evaluations of a run and the weights of its best actor.
 
-    Args:
-        settings: when a run stops early.
-
     Attributes:
         validations: every evaluation so far.
         best: the best of them; None before the first.

@@ -86,12 +86,7 @@ class TurnAndKick:
 
 
 class SkillTeacher:
-    """A hand-written skill in every arena, ticked on the true state of the field.
-
-    Args:
-        task: whose arenas.
-        make: a new skill for an episode.
-    """
+    """A hand-written skill in every arena, ticked on the true state of the field."""
 
     def __init__(self, task: ArenaTask, make: Callable[[], Skill]) -> None:
         self._task = task

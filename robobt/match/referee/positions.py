@@ -58,14 +58,7 @@ def crowding(frame: Frame, settings: RefereeSettings, kicking: Team | None) -> I
 
 
 def ready(frame: Frame, field: FieldGeometry, settings: RefereeSettings, restart: Resumption) -> bool:
-    """Return whether everybody stands where the rules demand it at a kick-off or penalty.
-
-    Args:
-        frame: what really is on the field.
-        field: dimensions.
-        settings: name the goalkeepers.
-        restart: which restart, whose and where.
-    """
+    """Return whether everybody stands where the rules demand it at a kick-off or penalty."""
     team = restart.team
     if team is None:
         return True

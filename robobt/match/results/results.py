@@ -202,10 +202,6 @@ class GoalCount:
 def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
     """Summarise trials of one scenario, in the order of their numbers.
 
-    Args:
-        results: the trials.
-        seed: seed of the run.
-
     Raises:
         ValueError: there is no trial.
     """

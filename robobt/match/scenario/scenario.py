@@ -229,10 +229,6 @@ def load_scenario(source: str | Path) -> Scenario:
 def scenario_from(data: object, source: str) -> Scenario:
     """Make a scenario of plain data, as a YAML or JSON file holds it.
 
-    Args:
-        data: the data.
-        source: name for messages.
-
     Raises:
         ScenarioError: the data is no scenario; the message names the source and the field.
     """

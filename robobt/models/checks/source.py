@@ -22,10 +22,7 @@ _TEXT = re.compile(r"[ -~\n]*")
 
 
 def read_sources(members: Mapping[str, bytes]) -> Sources:
-    """Read an archive's code and check that it is a network's.
-
-    Args:
-        members: the code by the members' names, ``code/….py``.
+    """Read an archive's code (its members ``code/….py``) and check that it is a network's.
 
     Raises:
         ModelError: it holds something that no network needs, or is damaged.

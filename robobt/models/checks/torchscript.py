@@ -15,9 +15,6 @@ def checked_members(members: Mapping[str, bytes]) -> dict[str, bytes]:
     Loading it then runs nothing: its code has functions and modules of plain operations, and
     its pickles make modules, tensors and plain values, as its code describes them.
 
-    Args:
-        members: the archive's content by name, as :func:`~robobt.models.file.unpack_archive` returns it.
-
     Raises:
         ModelError: it holds something that no network needs, or is damaged.
     """

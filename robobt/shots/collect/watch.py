@@ -31,10 +31,6 @@ _OUTCOMES = {
 class WatchedWorld(World):
     """Passes everything on to a world and keeps the last shot of one blue robot.
 
-    Args:
-        world: where it is played.
-        shooter: whose shots.
-
     Attributes:
         store: the shooter's store; it knows the target.
         shot: the last shot so far, columns by name, None before the first.

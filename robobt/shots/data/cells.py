@@ -31,9 +31,7 @@ class Cells:
     def convert(self, title: str, parse: Callable[[str], T]) -> list[T]:
         """Return the values of a column.
 
-        Args:
-            title: of the column.
-            parse: makes a value of a cell; a ValueError says what is wrong with it.
+        ``parse`` makes a value of a cell; a ValueError says what is wrong with it.
 
         Raises:
             ShotDataError: a cell is wrong.

@@ -75,9 +75,6 @@ class RobobullsKick:
         kick_speed: speed at which the ball is to leave [m/s].
         limits: how to drive.
         goalkeeper: whether it may drive in its own defence area.
-
-    Attributes:
-        stage: what it is busy with.
     """
 
     tolerance: float = radians(1.0)
@@ -97,12 +94,7 @@ class RobobullsKick:
         self._locked = False
 
     def tick(self, store: Store, target: Point) -> Status:
-        """Set the command of one control period; SUCCESS once the ball has been kicked.
-
-        Args:
-            store: the robot's store.
-            target: where the ball is to go [m].
-        """
+        """Set the command of one control period; SUCCESS once the ball has been kicked."""
         frame, me, ball = store.frame, store.me, store.frame.ball
         period = frame.period
         heading = direction(ball.position, target)

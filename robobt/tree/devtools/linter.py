@@ -19,13 +19,7 @@ FOR_EVER = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something in a tree that is worth a second look.
-
-    Attributes:
-        path: path of the node.
-        rule: name of the rule that found it.
-        message: what happens there, in a sentence.
-    """
+    """Something in a tree that is worth a second look."""
 
     path: str
     rule: str

@@ -33,10 +33,7 @@ MAX_NODES = 10_000
 def build_tree(file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value] | None = None) -> Behaviour:
     """Build a new main tree of a file.
 
-    Args:
-        file: the trees; :func:`~robobt.tree.interop.verify.verify` has found nothing wrong with them.
-        vocabulary: the nodes and plays they name.
-        given: values of the tree's parameters, plain data.
+    The file has been verified; ``given`` are values of the tree's parameters, plain data.
 
     Raises:
         TreeFileError: a value does not fit, or a node cannot be made.

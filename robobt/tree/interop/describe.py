@@ -14,11 +14,6 @@ from robobt.tree.runner import node_path
 def describe_tree(root: Behaviour, vocabulary: Vocabulary, name: str) -> TreeFile:
     """Return a file that builds this tree; the nodes' parameters at their defaults are left out.
 
-    Args:
-        root: the tree.
-        vocabulary: what files may name.
-        name: what the tree will be called.
-
     Raises:
         ValueError: files cannot say it; the message names the node's path.
     """

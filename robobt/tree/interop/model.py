@@ -45,12 +45,7 @@ Value: TypeAlias = object
 
 @dataclass(slots=True, kw_only=True)
 class _Placed:
-    """Something in a file.
-
-    Attributes:
-        line: line where it begins.
-        lines: lines of its parameters.
-    """
+    """Something in a file."""
 
     line: int = field(default=0, compare=False)
     lines: dict[str, int] = field(default_factory=dict, compare=False)
@@ -111,15 +106,7 @@ Spec: TypeAlias = "Node | SubTree"
 
 @dataclass(slots=True)
 class Definition:
-    """One tree of a file.
-
-    Attributes:
-        name: how sub-trees refer to it.
-        root: its root.
-        parameters: what it can be given.
-        description: text for people.
-        line: line where it begins.
-    """
+    """One tree of a file."""
 
     name: str
     root: Spec

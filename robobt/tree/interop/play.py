@@ -24,9 +24,6 @@ class FilePlay:
 
     Its signature is that of the main tree's parameters, so that it can be listed,
     checked and called as a play that is written in Python.
-
-    Attributes:
-        file: content of the file.
     """
 
     def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:

@@ -153,10 +153,7 @@ class _Verifier:
 def unknown_type(name: str, vocabulary: Vocabulary, tags: Iterable[str] = ()) -> str:
     """Return the problem with a type that does not exist, or that another package failed to bring.
 
-    Args:
-        name: the type.
-        vocabulary: the types there are.
-        tags: what else could have been meant.
+    ``tags`` are what else could have been meant.
     """
     if isinstance(vocabulary.leaves, Registry) and (problem := vocabulary.leaves.problem_with(name)):
         return problem

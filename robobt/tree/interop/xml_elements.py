@@ -22,15 +22,7 @@ MAX_DEPTH = 100
 
 @dataclass(slots=True)
 class Element:
-    """One element.
-
-    Attributes:
-        tag: its name.
-        attributes: in the order they are written.
-        line: where it begins, counted from 1.
-        children: the elements in it.
-        text: the text in it, outside of its children.
-    """
+    """One element."""
 
     tag: str
     attributes: dict[str, str]
@@ -41,10 +33,6 @@ class Element:
 
 def read_element(content: bytes | str, source: str) -> Element:
     """Return the outermost element of a document.
-
-    Args:
-        content: the text.
-        source: name of the text for messages.
 
     Raises:
         TreeFileError: the text is not well-formed XML, or has what is not allowed.
@@ -111,11 +99,7 @@ class _Reader:
 
 
 class ElementChecker:
-    """Checks elements of one document.
-
-    Args:
-        source: name of the document for messages.
-    """
+    """Checks elements of one document."""
 
     def __init__(self, source: str) -> None:
         self.source = source

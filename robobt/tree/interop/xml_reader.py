@@ -32,11 +32,6 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
     The main tree is what ``main_tree_to_execute`` names, else the only tree, else
     the one that is not a sub-tree of another.
 
-    Args:
-        text: the text.
-        vocabulary: what it may name.
-        source: name of the text for messages.
-
     Raises:
         TreeFileError: the first thing that is wrong.
     """

@@ -27,11 +27,6 @@ from robobt.tree.parameters import Parameter, ParameterError
 def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
     """Return the trees of a YAML text.
 
-    Args:
-        text: the text.
-        vocabulary: what it may name.
-        source: name of the text for messages.
-
     Raises:
         TreeFileError: the first thing that is wrong.
     """

@@ -82,13 +82,7 @@ class GoToBallEnv(SingleEnv):
 
 
 class GoToBallVectorEnv(ManyEnv):
-    """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended.
-
-    Args:
-        num_envs: number of arenas.
-        settings: as there.
-        render_mode: as there.
-    """
+    """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended."""
 
     def __init__(
         self,

@@ -26,13 +26,7 @@ _WEIGHTS = numbers_dtype(GoToBallReward)
 
 
 class GoToBallTask(ArenaTask):
-    """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification.
-
-    Args:
-        settings: of the environment.
-        n: number of arenas.
-        seed: of everything drawn; None for another each time.
-    """
+    """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
 
     observation: ClassVar[ObservationSpec] = GO_TO_BALL
     settings: GoToBallSettings

@@ -87,13 +87,7 @@ class ShootTowardsGoalEnv(SingleEnv):
 
 
 class ShootTowardsGoalVectorEnv(ManyEnv):
-    """Many arenas of :class:`ShootTowardsGoalEnv`, which says what is observed, rewarded and ended.
-
-    Args:
-        num_envs: number of arenas.
-        settings: as there.
-        render_mode: as there.
-    """
+    """Many arenas of :class:`ShootTowardsGoalEnv`, which says what is observed, rewarded and ended."""
 
     def __init__(
         self,

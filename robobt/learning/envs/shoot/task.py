@@ -26,13 +26,7 @@ _ROBOT_BACK_LIMIT = -0.2
 
 
 class ShootTask(ArenaTask):
-    """Turn and kick the ball into the goal; :class:`~robobt.learning.envs.ShootTowardsGoalEnv` specifies it.
-
-    Args:
-        settings: of the environment.
-        n: number of arenas.
-        seed: of everything drawn; None for another each time.
-    """
+    """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
 
     observation: ClassVar[ObservationSpec] = SHOOT
     settings: ShootSettings
