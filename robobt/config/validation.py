@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from robobt.config.errors import FieldError, message_of, one_line, short_repr
+
+
+class Settings(BaseModel):
+    """A group of settings or other data from outside: read-only, no unknown fields, finite numbers."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from ipaddress import IPv4Address
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from robobt.config.errors import RobobtError
+from robobt.config.validation import Settings
 from robobt.league.wire.endpoints import Endpoints, HostAddress
 from robobt.league.wire.links import GrSimLink, Link, ProtocolLink
 from robobt.league.wire.sockets import LOOPBACK
@@ -18,10 +19,8 @@ class LeagueError(RobobtError, RuntimeError):
     """The field does not respond as it should; the message is one line."""
 
 
-class Connection(BaseModel):
+class Connection(Settings):
     """How a field of the league is reached. Nothing leaves this machine unless a host is named."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     simulator: Literal["grsim", "protocol", "observer"] = Field(
         "grsim", description="grSim's packets, the simulation protocol, or no commands at all"

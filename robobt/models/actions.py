@@ -14,8 +14,9 @@ from collections.abc import Iterable
 from math import hypot, isfinite
 from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
+from robobt.config.validation import Settings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.compiled import compiled, numbers_dtype
 from robobt.world.geometry import FloatArray
@@ -27,7 +28,7 @@ ACTION_ENTRIES: dict[str, tuple[str, ...]] = {
 """Entries of an action vector by the kind of action."""
 
 
-class ActionScaling(BaseModel):
+class ActionScaling(Settings):
     """How an action in [-1, 1] becomes a command, SI units.
 
     ``drive`` actions are (vx, vy, omega) in the robot's frame: the velocity is
@@ -35,8 +36,6 @@ class ActionScaling(BaseModel):
     not faster. ``turn_and_kick`` actions are (omega, kick): the robot stays
     where it is, turns, and kicks at once where ``kick`` is above 0.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     kind: Literal["drive", "turn_and_kick"]
     max_speed: float = Field(0.0, ge=0, le=10, description="speed of a full drive action [m/s]")

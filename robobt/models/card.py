@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
 from robobt.config.errors import ConfigError
-from robobt.config.validation import first_problem
+from robobt.config.validation import Settings, first_problem
 from robobt.models.actions import ActionScaling
 from robobt.world.features import OBSERVATIONS, ObservationSpec
 from robobt.world.limits import RobotLimits
@@ -26,11 +26,7 @@ class ModelCardError(ConfigError):
     """A model card that cannot be read."""
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class ObservationCard(_Part):
+class ObservationCard(Settings):
     """What the model's input means.
 
     Either one of :data:`robobt.world.features.OBSERVATIONS`, with the version it
@@ -74,7 +70,7 @@ class ObservationCard(_Part):
         return None
 
 
-class OutputEntry(_Part):
+class OutputEntry(Settings):
     """One entry of the model's output."""
 
     name: str = Field(min_length=1, max_length=64)
@@ -82,7 +78,7 @@ class OutputEntry(_Part):
     scale: float = Field(1.0, description="what an output of 1 stands for, in that unit")
 
 
-class Measured(_Part):
+class Measured(Settings):
     """A figure with its interval, as measured on data or starts that training never saw."""
 
     value: float
@@ -93,7 +89,7 @@ class Measured(_Part):
     interval: str = Field("", max_length=64, description='what the interval is ("95 % Wilson")')
 
 
-class ModelCard(_Part):
+class ModelCard(Settings):
     """The card inside every model file.
 
     A *policy* maps an observation to an action in [-1, 1], which ``action``

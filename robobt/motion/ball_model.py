@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from robobt.config.validation import Settings
 
 
-class BallModel(BaseModel):
+class BallModel(Settings):
     """A ball that slides, then rolls: what skills assume about the ball.
 
     A kicked ball slides with one deceleration down to ``switch_share`` of the
@@ -15,8 +17,6 @@ class BallModel(BaseModel):
     The defaults are those of the default simulator; parameters and names follow
     the two-phase model of the league's vision packet (straight_two_phase).
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     slide_deceleration: float = Field(3.0, gt=0, le=50, description="while it slides [m/s^2]")
     switch_share: float = Field(0.66, gt=0.05, lt=1, description="share of the kick speed where it rolls")

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from robobt.config.validation import Settings
 from robobt.world.state import ROBOT_RADIUS
-
-
-class Settings(BaseModel):
-    """Base of all settings of the simulator: read-only, without unknown fields."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class BodySettings(Settings):

@@ -12,11 +12,11 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
+from robobt.config.validation import Settings
 from robobt.sim.robot_settings import (
     BodySettings,
     DribblerSettings,
     KickerSettings,
-    Settings,
     ShellSettings,
     WheelSettings,
 )

@@ -5,13 +5,15 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from robobt.config.validation import Settings
 
 _PENALTY_SHARE = 2.0 / 3.0
 """Penalty mark to attacked goal as a share of the field's length: 6 of 9 m, 8 of 12 m. Source: SSL rules."""
 
 
-class FieldGeometry(BaseModel):
+class FieldGeometry(Settings):
     """Dimensions of a field in metres, lines included in the areas they bound.
 
     Tournament fields may differ by 10 % from the rules' sizes, so nothing in
@@ -19,8 +21,6 @@ class FieldGeometry(BaseModel):
 
     Source of the presets: RoboCup SSL rules, chapter "Playing Environment".
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     length: float = Field(gt=0.5, le=50, description="goal line to goal line [m]")
     width: float = Field(gt=0.5, le=50, description="touch line to touch line [m]")

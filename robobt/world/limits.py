@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from robobt.config.validation import Settings
 
 
-class RobotLimits(BaseModel):
+class RobotLimits(Settings):
     """Limits of one robot's motion, SI units.
 
     ``side_acceleration`` and ``side_braking`` default to the forward values,
@@ -13,8 +15,6 @@ class RobotLimits(BaseModel):
     robot of the simulators' presets: 3 m/s, 3 m/s^2, braking at 6 m/s^2, and a
     dribbler that pulls at the ball with 4 m/s^2.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
     acceleration: float = Field(3.0, gt=0, le=50, description="speeding up along the heading [m/s^2]")

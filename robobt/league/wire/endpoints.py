@@ -5,7 +5,9 @@ from __future__ import annotations
 from ipaddress import IPv4Address
 from typing import Annotated, NamedTuple
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from robobt.config.validation import Settings
 
 VISION_GROUP = "224.5.23.2"
 REFEREE_GROUP = "224.5.23.1"
@@ -57,14 +59,12 @@ _Address = Annotated[Endpoint, BeforeValidator(_endpoint)]
 _Port = Annotated[int, Field(ge=0, le=65535)]
 
 
-class Endpoints(BaseModel):
+class Endpoints(Settings):
     """Addresses and ports of a field's programs. The defaults are those of the league's simulators.
 
     Multicast addresses may be given as text, "224.5.23.2:10006". The ports of grSim
     and the simulation protocol belong to one host; a server picks a free port for 0.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     vision: _Address = Field(Endpoint(VISION_GROUP, 10020), description="SSL-Vision; 10006 on a real field")
     tracker: _Address = Field(Endpoint(VISION_GROUP, 10010), description="tracked frames")

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from robobt.config.validation import Settings
 from robobt.models.actions import ActionScaling
 from robobt.sim.settings import SimSettings, preset, settings_from
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
@@ -24,10 +25,8 @@ TRAINING_FIELDS: dict[str, FieldGeometry] = {**FIELDS, "hardware_challenge": HAR
 """Fields that settings may call by name."""
 
 
-class Settings(BaseModel):
-    """Base of all settings: read-only, without unknown fields, ranges in order."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+class OrderedSettings(Settings):
+    """Settings whose ranges have to be in order."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -77,7 +76,7 @@ class NoiseSettings(Settings):
     turn_rate: float = Field(0.0, ge=0, le=5, description="of omega, on top of a true one [rad/s]")
 
 
-class RandomisationSettings(Settings):
+class RandomisationSettings(OrderedSettings):
     """What differs from episode to episode: each is drawn evenly from its range at the start.
 
     All but the delay are factors on the simulator's own value.
@@ -104,7 +103,7 @@ class RandomisationSettings(Settings):
         return self
 
 
-class TaskSettings(Settings):
+class TaskSettings(OrderedSettings):
     """What all environments have in common; a task has its own defaults, reward, starts and ends."""
 
     action: ActionScaling

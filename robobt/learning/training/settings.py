@@ -9,9 +9,9 @@ from typing import Any, Self, TypeVar
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from robobt.config.errors import ConfigError
-from robobt.config.validation import first_problem
+from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
-from robobt.learning.agents.settings import AgentSettings, Settings
+from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import GoToBallSettings, ShootSettings, TaskSettings
 
 _PRESETS = Path(__file__).parent / "presets"

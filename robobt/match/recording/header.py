@@ -7,10 +7,11 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
+from pydantic import Field, FiniteFloat, model_validator
 
 from robobt import __version__
 from robobt.config.errors import RobobtError, one_line
+from robobt.config.validation import Settings
 from robobt.tree.drawing import NodeKind
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -51,11 +52,7 @@ class RobotFlag(IntFlag):
     """It was sent a command."""
 
 
-class _HeaderPart(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class RecordedNode(_HeaderPart):
+class RecordedNode(Settings):
     """One node of a recorded tree; a tree is the list of its nodes, parents before children."""
 
     name: str
@@ -67,7 +64,7 @@ class RecordedNode(_HeaderPart):
     detail: str = Field("", description="memory or reactive, a policy, or parameters")
 
 
-class RecordedRobot(_HeaderPart):
+class RecordedRobot(Settings):
     """One robot of a recording."""
 
     team: Team
@@ -92,7 +89,7 @@ class RecordedRobot(_HeaderPart):
         return self
 
 
-class RecordingHeader(_HeaderPart):
+class RecordingHeader(Settings):
     """What stays the same during a recording."""
 
     scenario: str = Field("", description="name of the scenario")

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from robobt.config.validation import Settings
 from robobt.world.game import Team
 from robobt.world.rules import CARRY_DISTANCE, IN_PLAY_DISTANCE, STOP_DISTANCE, STOP_SPEED
 from robobt.world.state import RobotId
 
 
-class RefereeSettings(BaseModel):
+class RefereeSettings(Settings):
     """What the referee checks and how long things take, in simulated seconds.
 
     The distances and speeds are the rules' own; the pauses are short, because
     nobody has to carry the ball. A check whose value is None or false is off.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     opening: Literal["kickoff", "force_start"] = Field("kickoff", description="how the match begins")
     stop_time: float = Field(0.3, ge=0, le=60, description="shortest STOP before a restart [s]")

@@ -10,16 +10,17 @@ from math import cos, hypot, pi, sin, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
+from robobt.config.validation import Settings
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point, direction
 
 
-class Part(BaseModel):
+class Part(Settings):
     """A part of a scenario: unchangeable, strict about types, no unknown keys, finite numbers."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(strict=True)
 
 
 def _ordered(bounds: tuple[float, float]) -> tuple[float, float]:

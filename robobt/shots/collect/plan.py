@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from robobt.config.validation import Settings
 from robobt.match.scenario.scenario import MAX_SEED, Scenario
 
 MID_RANGE, CLOSE_RANGE = 3.5, 2.5
@@ -24,10 +25,8 @@ Section = tuple[tuple[float, float], tuple[float, float]]
 """A part of the field: x and y, each from and to [m]."""
 
 
-class CollectionSettings(BaseModel):
+class CollectionSettings(Settings):
     """What a collection is made of: the same settings give the same shots."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     scenario: Literal["motion", "still", "both"] = Field(
         "both", description="how the attacker comes to shoot"

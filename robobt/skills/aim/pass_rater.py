@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from math import exp, hypot, inf
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import Field, field_validator
 
+from robobt.config.validation import Settings
 from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.skills.aim.raters import RATERS, OpenAngle, ShotRater, make_rater
 from robobt.skills.aim.raters.goal_line import lane_clearances, obstacles
@@ -20,7 +21,7 @@ _BODY = ROBOT_RADIUS + BALL_RADIUS
 _LANE_SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
 
 
-class PassRater(BaseModel):
+class PassRater(Settings):
     """Rates a straight pass to every team-mate.
 
     A mate is aimed at where it comes to rest if it brakes now. It does not count
@@ -39,8 +40,6 @@ class PassRater(BaseModel):
     Thunderbots' pass cost (product of soft terms, receive speed) and Sumatra's
     interception rating.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     shot_rater: ShotRater = Field(OpenAngle(), description="judges the receiver's shot")
     shot_weight: float = Field(0.6, ge=0, le=1, description="of the receiver's shot against progress")

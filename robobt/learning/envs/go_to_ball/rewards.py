@@ -9,7 +9,7 @@ from math import atan2, exp, hypot, pi, sqrt
 
 from pydantic import Field
 
-from robobt.learning.envs.settings import Settings
+from robobt.config.validation import Settings
 from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle

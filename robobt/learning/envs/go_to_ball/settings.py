@@ -8,11 +8,11 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward
-from robobt.learning.envs.settings import Settings, Span, TaskSettings
+from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
 from robobt.models.actions import GO_TO_BALL_ACTION, ActionScaling
 
 
-class ContactRule(Settings):
+class ContactRule(OrderedSettings):
     """When the robot has reached the ball.
 
     ``distance``: its centre is within ``distance`` of the ball's (the paper's
@@ -30,7 +30,7 @@ class ContactRule(Settings):
     )
 
 
-class GoToBallStarts(Settings):
+class GoToBallStarts(OrderedSettings):
     """Where episodes start; None for a range takes the field inside its lines less ``inset``."""
 
     inset: float = Field(0.1, ge=0, le=2, description="distance kept from the lines [m]")

@@ -10,8 +10,8 @@ from typing import Literal
 
 from pydantic import Field
 
+from robobt.config.validation import Settings
 from robobt.learning.envs.progress import Progress
-from robobt.learning.envs.settings import Settings
 from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle

@@ -7,12 +7,12 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from robobt.learning.envs.settings import Settings, Span, TaskSettings, by_name
+from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings, by_name
 from robobt.learning.envs.shoot.rewards import SHOOT_REWARDS, ShootReward
 from robobt.models.actions import SHOOT_ACTION, ActionScaling
 
 
-class ShootStarts(Settings):
+class ShootStarts(OrderedSettings):
     """Where episodes start: the robot stands with the ball in its mouth."""
 
     robot_x: Span | None = Field(None, description="None: 0.3 m to 0.3 m before the defence area [m]")

@@ -6,8 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TypeAlias
 
-from pydantic import BaseModel, ConfigDict
-
+from robobt.config.validation import Settings
 from robobt.skills.store import Shot
 from robobt.tree import Registry
 from robobt.world.geometry import FloatArray, Point, direction, wrap_angle
@@ -17,7 +16,7 @@ Chances: TypeAlias = tuple[FloatArray, FloatArray]
 """Target points (T, 2) along the goal line, from right to left [m], and the chance of a goal at each (T,)."""
 
 
-class ShotRater(BaseModel, ABC):
+class ShotRater(Settings, ABC):
     """Judges shots at the opponent's goal.
 
     A rater is a small read-only object whose fields are its settings; everything
@@ -28,8 +27,6 @@ class ShotRater(BaseModel, ABC):
     * mirroring the scene in the x axis mirrors the shots;
     * one robot more never raises the best score.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     @abstractmethod
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
