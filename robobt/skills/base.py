@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeVar, dataclass_transform
 
+from robobt.motion.path_planner import travel
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
+from robobt.world.geometry import Point, direction
+from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, Frame, RobotState
 
 
@@ -38,6 +41,32 @@ class Skill(Leaf[Store]):
     def ball(self) -> BallState:
         """The ball."""
         return self.store.frame.ball
+
+    @property
+    def drive_limits(self) -> RobotLimits:
+        """The limits to drive with now."""
+        return self.store.me.limits
+
+    def drive_to(
+        self,
+        target: Point,
+        facing: Point,
+        *,
+        avoid_robots: bool = True,
+        avoid_ball: bool = False,
+        goalkeeper: bool = False,
+    ) -> None:
+        """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`."""
+        self.store.command = travel(
+            self.frame,
+            self.me,
+            target,
+            direction(self.me.position, facing),
+            self.drive_limits,
+            avoid_robots=avoid_robots,
+            avoid_ball=avoid_ball,
+            goalkeeper=goalkeeper,
+        )
 
 
 SKILLS: Registry[type[Skill]] = Registry(

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
-from robobt.world.geometry import direction
 from robobt.world.rules import owner
 from robobt.world.state import ROBOT_RADIUS
 
@@ -28,13 +26,11 @@ class ChallengeBall(Skill):
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
-        frame, me, ball = self.frame, self.me, self.ball
+        frame, ball = self.frame, self.ball
         who = owner(frame)
         if who is None or who.team is frame.team:
             return self.fail("no opponent has the ball")
         holder = next(robot for robot in frame.opponents if robot.id == who.number)
         target = (ball.x + self.gap * cos(holder.heading), ball.y + self.gap * sin(holder.heading))
-        self.store.command = travel(
-            frame, me, target, direction(me.position, ball.position), me.limits, avoid_ball=True
-        )
+        self.drive_to(target, ball.position, avoid_ball=True)
         return self.run(f"before {holder.id}")

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from math import hypot
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
-from robobt.world.geometry import direction
 from robobt.world.rules import in_own_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -48,12 +46,9 @@ class CoverAngle(DrivingSkill):
         x = max(line + out * dx / gap, line + ROBOT_RADIUS)
         most_y = field.defense_width / 2 - ROBOT_RADIUS
         y = min(most_y, max(-most_y, foot + out * dy / gap))
-        self.store.command = travel(
-            self.frame,
-            me,
+        self.drive_to(
             (min(x, line + field.defense_depth - ROBOT_RADIUS), y),
-            direction(me.position, ball.position),
-            self.drive_limits,
+            ball.position,
             # Inside nobody else may stand; a new goalkeeper from outside goes round its own wall.
             avoid_robots=not in_own_defense_area(field, me.x, me.y, ROBOT_RADIUS),
             goalkeeper=True,

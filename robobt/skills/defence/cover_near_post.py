@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
-from robobt.world.geometry import closest_point_on_segment, direction
+from robobt.world.geometry import closest_point_on_segment
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -29,23 +28,15 @@ class CoverNearPost(DrivingSkill):
 
     def on_running(self) -> Status:
         """Drive to the line for one tick."""
-        field, me, ball = self.frame.field, self.me, self.ball.position
+        field, ball = self.frame.field, self.ball.position
         if ball[0] < self.before_goal - field.half_length:
             return self.fail("the ball is beside the goal")
         half_goal = field.goal_width / 2
         nearest = (-field.half_length, min(half_goal, max(-half_goal, ball[1])))
-        place = closest_point_on_segment(me.position, ball, nearest)
+        place = closest_point_on_segment(self.me.position, ball, nearest)
         if place[0] > field.defense_depth - field.half_length - ROBOT_RADIUS or (
             abs(place[1]) > field.defense_width / 2
         ):
             return self.fail("too far out")
-        self.store.command = travel(
-            self.frame,
-            me,
-            place,
-            direction(me.position, ball),
-            self.drive_limits,
-            avoid_robots=False,
-            goalkeeper=True,
-        )
+        self.drive_to(place, ball, avoid_robots=False, goalkeeper=True)
         return self.run("covering the near post")

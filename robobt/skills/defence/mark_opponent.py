@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import marked
 from robobt.tree import Status
-from robobt.world.geometry import direction
 
 
 @skill
@@ -41,7 +39,5 @@ class MarkOpponent(Skill):
         dx, dy = ball.x - opponent.x, ball.y - opponent.y
         share = self.gap / max(self.gap, (dx * dx + dy * dy) ** 0.5)
         target = (opponent.x + dx * share, opponent.y + dy * share)
-        self.store.command = travel(
-            frame, me, target, direction(me.position, ball.position), me.limits, avoid_ball=True
-        )
+        self.drive_to(target, ball.position, avoid_ball=True)
         return self.run(f"marking {opponent.id}")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from math import inf
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import Point, direction
+from robobt.world.geometry import Point
 from robobt.world.state import ROBOT_RADIUS
 
 _AREA_GAP = 0.03
@@ -39,7 +38,7 @@ class Wall(Skill):
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
-        frame, me = self.frame, self.me
+        frame = self.frame
         edge = DefenseEdge(frame.field, ROBOT_RADIUS + _AREA_GAP)
         width = 2.0 * ROBOT_RADIUS + _MATE_GAP
         offset = (self.place - 0.5 * (self.size - 1)) * width
@@ -47,9 +46,7 @@ class Wall(Skill):
         middle = edge.towards(frame.ball.position)
         middle = min(edge.length - spread, max(spread, middle))
         target = edge.point(middle + offset)
-        self.store.command = travel(
-            frame, me, target, direction(me.position, frame.ball.position), me.limits, avoid_ball=True
-        )
+        self.drive_to(target, frame.ball.position, avoid_ball=True)
         return self.run("in the wall")
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
-from robobt.world.geometry import direction
 from robobt.world.state import ROBOT_RADIUS
 
 _ROOM = 0.1
@@ -36,5 +34,5 @@ class GoToKickoffPosition(Skill):
         share = (line.index(me.id) + 0.5) / len(line) - 0.5
         x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)
         target = (x, -share * self.spread * field.width)
-        self.store.command = travel(frame, me, target, direction(me.position, (0.0, 0.0)), me.limits)
+        self.drive_to(target, (0.0, 0.0))
         return self.run("lining up")

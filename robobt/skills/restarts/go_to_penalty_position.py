@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
-from robobt.world.geometry import direction
 from robobt.world.state import ROBOT_RADIUS
 
 _BEHIND = 1.0 + 2.0 * ROBOT_RADIUS
@@ -38,13 +36,5 @@ class GoToPenaltyPosition(Skill):
             y = (number + 0.5) / len(frame.own) * field.half_width
             x = spot[0] - _BEHIND if ours else spot[0] + _BEHIND
             target = (x, y)
-        self.store.command = travel(
-            frame,
-            me,
-            target,
-            direction(me.position, spot),
-            me.limits,
-            avoid_ball=True,
-            goalkeeper=self.goalkeeper,
-        )
+        self.drive_to(target, spot, avoid_ball=True, goalkeeper=self.goalkeeper)
         return self.run("taking position")

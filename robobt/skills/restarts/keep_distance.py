@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from robobt.motion.path_planner import allowed_target, travel
+from robobt.motion.path_planner import allowed_target
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.game import Restart
@@ -47,9 +47,7 @@ class KeepDistance(Skill):
             return self.succeed("far enough")
         # Aimed farther than needed, so that the robot does not creep up to the limit.
         target = way_out(frame, me, near[0], keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
-        self.store.command = travel(
-            frame, me, target, direction(me.position, near[0]), me.limits, goalkeeper=self.goalkeeper
-        )
+        self.drive_to(target, near[0], goalkeeper=self.goalkeeper)
         return self.run("clearing the ball")
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from math import hypot
 
-from robobt.motion.path_planner import travel
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
-from robobt.world.geometry import Point, direction
+from robobt.world.geometry import Point
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS
 
@@ -33,7 +32,7 @@ class PrepareRestart(Skill):
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
-        frame, me, game = self.frame, self.me, self.frame.game
+        frame, game = self.frame, self.frame.game
         if game.restart is None or game.restart_team is not frame.team:
             return self.fail("no restart of ours")
         if game.may_touch and not game.stopped:
@@ -42,9 +41,7 @@ class PrepareRestart(Skill):
         x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
         if game.stopped and not frame.field.contains(x, y):
             x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
-        self.store.command = travel(
-            frame, me, (x, y), direction(me.position, spot), me.limits, avoid_ball=True
-        )
+        self.drive_to((x, y), spot, avoid_ball=True)
         return self.run("waiting for the whistle")
 
     def _aim(self) -> Point:
