@@ -1,33 +1,24 @@
 """What is on a field: geometry, states, commands, the state of the game, observations."""
 
-from robobt.world.command import KickTrigger, RobotCommand
-from robobt.world.field import DIVISION_A, DIVISION_B, FIELDS, FieldGeometry
-from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand, Restart, Stage, Team
-from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
-from robobt.world.protocol import Placement, World
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
-
-__all__ = [
-    "BALL_RADIUS",
-    "DEFAULT_LIMITS",
-    "DIVISION_A",
-    "DIVISION_B",
-    "FIELDS",
-    "OPEN_PLAY",
-    "ROBOT_RADIUS",
-    "BallState",
-    "FieldGeometry",
-    "Frame",
-    "GameState",
-    "KickTrigger",
-    "Placement",
-    "RefereeCommand",
-    "Restart",
-    "RobotCommand",
-    "RobotId",
-    "RobotLimits",
-    "RobotState",
-    "Stage",
-    "Team",
-    "World",
-]
+from robobt.world.command import KickTrigger as KickTrigger
+from robobt.world.command import RobotCommand as RobotCommand
+from robobt.world.field import DIVISION_A as DIVISION_A
+from robobt.world.field import DIVISION_B as DIVISION_B
+from robobt.world.field import FIELDS as FIELDS
+from robobt.world.field import FieldGeometry as FieldGeometry
+from robobt.world.game import OPEN_PLAY as OPEN_PLAY
+from robobt.world.game import GameState as GameState
+from robobt.world.game import RefereeCommand as RefereeCommand
+from robobt.world.game import Restart as Restart
+from robobt.world.game import Stage as Stage
+from robobt.world.game import Team as Team
+from robobt.world.limits import DEFAULT_LIMITS as DEFAULT_LIMITS
+from robobt.world.limits import RobotLimits as RobotLimits
+from robobt.world.protocol import Placement as Placement
+from robobt.world.protocol import World as World
+from robobt.world.state import BALL_RADIUS as BALL_RADIUS
+from robobt.world.state import ROBOT_RADIUS as ROBOT_RADIUS
+from robobt.world.state import BallState as BallState
+from robobt.world.state import Frame as Frame
+from robobt.world.state import RobotId as RobotId
+from robobt.world.state import RobotState as RobotState

@@ -15,28 +15,19 @@ What differs: the attribute ``iterator`` of a node is not renewed, and nothing
 is logged at debug level.
 """
 
-from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit, not_a_status, own_method
-from robobt.tree.engine.dispatch import compile_node, compile_tree
-from robobt.tree.engine.fast_tree import LEAVING, FastTree, abandon
-from robobt.tree.engine.plan import Plan, composite_stop, replan
-from robobt.tree.engine.reach import stops_children, ticked_children
-
-__all__ = [
-    "LEAVING",
-    "BringsClosures",
-    "FastTree",
-    "Marks",
-    "Plan",
-    "Stop",
-    "Tick",
-    "Visit",
-    "abandon",
-    "compile_node",
-    "compile_tree",
-    "composite_stop",
-    "not_a_status",
-    "own_method",
-    "replan",
-    "stops_children",
-    "ticked_children",
-]
+from robobt.tree.engine.closures import BringsClosures as BringsClosures
+from robobt.tree.engine.closures import Marks as Marks
+from robobt.tree.engine.closures import Stop as Stop
+from robobt.tree.engine.closures import Tick as Tick
+from robobt.tree.engine.closures import Visit as Visit
+from robobt.tree.engine.closures import not_a_status as not_a_status
+from robobt.tree.engine.closures import own_method as own_method
+from robobt.tree.engine.dispatch import compile_node as compile_node
+from robobt.tree.engine.dispatch import compile_tree as compile_tree
+from robobt.tree.engine.fast_tree import LEAVING as LEAVING
+from robobt.tree.engine.fast_tree import FastTree as FastTree
+from robobt.tree.engine.fast_tree import abandon as abandon
+from robobt.tree.engine.plan import Plan as Plan
+from robobt.tree.engine.plan import composite_stop as composite_stop
+from robobt.tree.engine.plan import replan as replan
+from robobt.tree.engine.reach import ticked_children as ticked_children

@@ -108,11 +108,6 @@ def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     return cast(BringsClosures, node).closures(visit)
 
 
-def is_known(node: Behaviour) -> bool:
-    """Return whether the node is ticked by closures for a class of py_trees."""
-    return known_as(node) in _KNOWN
-
-
 _KNOWN: list[Known] = []
 AS_IT_IS = Known(None, None, _as_it_is, lambda _: False)
 _AS_IT_BRINGS = Known(None, None, _as_it_brings, lambda _: False)

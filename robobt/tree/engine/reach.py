@@ -7,7 +7,7 @@ from typing import Literal
 from py_trees.behaviour import Behaviour
 
 from robobt.tree.engine.composites import selector_closures, sequence_closures
-from robobt.tree.engine.dispatch import AS_IT_IS, is_known, known_as
+from robobt.tree.engine.dispatch import AS_IT_IS, known_as
 from robobt.tree.engine.leaves import decorator_closures
 
 
@@ -26,8 +26,3 @@ def ticked_children(node: Behaviour) -> Literal["all", "first", "some"]:
     if make is selector_closures and not node.memory:  # type: ignore[attr-defined]
         return "first"
     return "some"
-
-
-def stops_children(node: Behaviour) -> bool:
-    """Return whether a node that has no status has stopped its children as well, so that they have none."""
-    return is_known(node) or type(node).__module__.startswith("robobt.tree.nodes.")

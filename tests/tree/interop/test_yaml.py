@@ -405,8 +405,7 @@ def test_a_leaf_whose_parameters_have_no_names_cannot_be_named() -> None:
 
 def test_every_control_node_can_be_named() -> None:
     bases = {"Gate", "Switch"}
-    for name in nodes.__all__:
-        thing = getattr(nodes, name)
+    for name, thing in vars(nodes).items():
         if isinstance(thing, type) and issubclass(thing, Behaviour) and name not in bases:
             assert CONTROL[name].cls is thing
 
