@@ -5,6 +5,10 @@ root of the distance left, the heading's own profile beside it, and the
 velocity's direction corrected for the turn made meanwhile. Here the profile is
 solved for the speed at the *end* of a control period, so that the robot brakes
 neither a period too late, which overshoots, nor too early, which creeps.
+
+A robot that reacts late (``reaction`` of its limits) is driven as if at a longer
+control period: what is commanded now stands until the next command takes effect.
+Planned for the control period alone, it would swing about its target.
 """
 
 from __future__ import annotations
@@ -58,6 +62,7 @@ def drive(
     dx, dy = target[0] - me.x, target[1] - me.y
     distance = hypot(dx, dy)
     vx = vy = 0.0
+    stands = period + me.limits.reaction
     if distance > 0.0:
         ux, uy = dx / distance, dy / distance
         bearing = atan2(uy, ux) - me.heading
@@ -65,13 +70,13 @@ def drive(
         braking = along(limits.braking, limits.lateral_braking, bearing)
         ahead, across = ux * me.vx + uy * me.vy, ux * me.vy - uy * me.vx
         distance += final_speed * final_speed / (2.0 * braking)
-        if abs(across) < _STRAIGHT * braking * period:
-            ahead = approach_speed(distance, ahead, limits.max_speed, acceleration, braking, period)
+        if abs(across) < _STRAIGHT * braking * stands:
+            ahead = approach_speed(distance, ahead, limits.max_speed, acceleration, braking, stands)
             across = 0.0
         else:
             sideways = along(limits.braking, limits.lateral_braking, bearing + 0.5 * pi)
             ahead, across = _turning_in(
-                distance, ahead, across, limits, acceleration, braking, sideways, period
+                distance, ahead, across, limits, acceleration, braking, sideways, stands
             )
         vx, vy = ux * ahead - uy * across, uy * ahead + ux * across
     return command(me, vx, vy, turn_rate(me, heading, limits, period), limits, period)
@@ -114,10 +119,10 @@ def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float
         limits.max_turn,
         limits.turn_acceleration,
         limits.angular_braking,
-        period,
+        period + me.limits.reaction,
     )
     if limits.turn_acceleration < me.limits.turn_acceleration:
-        step = limits.turn_acceleration * period
+        step = limits.turn_acceleration * (period + me.limits.reaction)
         rate = min(me.omega + step, max(me.omega - step, rate))
     return rate
 
@@ -231,7 +236,8 @@ def _gentle(me: RobotState, vx: float, vy: float, limits: RobotLimits, period: f
         rate = inf
     if vx * vx + vy * vy < me.vx * me.vx + me.vy * me.vy:
         rate = max(rate, along(limits.braking, limits.lateral_braking, bearing))
-    if change <= rate * period:
+    most = rate * (period + own.reaction)
+    if change <= most:
         return (vx, vy)
-    share = rate * period / change
+    share = most / change
     return (me.vx + dx * share, me.vy + dy * share)

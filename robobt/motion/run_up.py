@@ -45,6 +45,7 @@ def run_up(
     ahead, leftward = vx * ux + vy * uy, vy * ux - vx * uy
     side = 1.0 if left >= 0.0 else -1.0
     aside, closing = side * left, side * leftward
+    stands = period + me.limits.reaction
     acceleration = min(limits.acceleration, limits.lateral_acceleration)
     braking = min(limits.braking, limits.lateral_braking)
     until_on_line = travel_time(max(0.0, aside - _ON_LINE), closing, limits)
@@ -57,12 +58,12 @@ def run_up(
         limits.max_speed,
         acceleration * rest,
         braking * rest,
-        period,
+        stands,
     )
     if aside > _ON_LINE or abs(closing) > _STEADY:
         speed = min(speed, back / max(until_on_line / across, period))
     sideways = side * approach_speed(
-        aside, closing, limits.max_speed, acceleration * across, braking * across, period
+        aside, closing, limits.max_speed, acceleration * across, braking * across, stands
     )
     vx = ball.vx + ux * speed - uy * sideways
     vy = ball.vy + uy * speed + ux * sideways

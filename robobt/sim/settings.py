@@ -135,6 +135,7 @@ _GRSIM = SimSettings(
         turn_acceleration=50.0,
         catch_speed=0.6,
         hold_acceleration=50.0,
+        reaction=2 / 60,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6),
@@ -202,7 +203,7 @@ PRESETS: dict[str, SimSettings] = {
     "robobulls": SimSettings(
         ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
         body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
-        limits=_GRSIM.limits.model_copy(update={"braking": 4.6, "catch_speed": 4.0}),
+        limits=_GRSIM.limits.model_copy(update={"braking": 4.6, "catch_speed": 4.0, "reaction": 0.0}),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
         kicker=KickerSettings(max_speed=7.5, damping=0.2),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),

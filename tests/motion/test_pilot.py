@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from itertools import pairwise
 from math import cos, hypot, inf, pi, sin
 
@@ -19,7 +20,7 @@ from robobt.motion.pilot import (
     turn_rate,
 )
 from robobt.skills import GoToPose
-from robobt.world import RobotLimits, RobotState
+from robobt.world import RobotCommand, RobotLimits, RobotState
 from robobt.world.geometry import Point, wrap_angle
 from tests.simulation import Trial, blue, eventually
 from tests.skills.fixed_world import moved, robot
@@ -203,3 +204,37 @@ def test_travel_time_counts_turning_back() -> None:
 def test_a_limit_between_forward_and_sideways_lies_on_the_ellipse(bearing: float) -> None:
     most = along(6.0, 3.0, bearing)
     assert (most * cos(bearing) / 6.0) ** 2 + (most * sin(bearing) / 3.0) ** 2 == pytest.approx(1.0)
+
+
+def driven_late(reaction: float, delay: int, seconds: float = 2.0) -> list[RobotState]:
+    """States of a robot that is told to turn by 2 rad and to drive 1 m, and obeys ``delay`` periods late."""
+    period = 1 / 60
+    me = robot(0.0, limits=RobotLimits(turn_acceleration=50.0, reaction=reaction))
+    on_the_way = deque([RobotCommand()] * delay)
+    states = []
+    for _ in range(round(seconds / period)):
+        on_the_way.append(drive(me, (1.0, 0.0), 2.0, me.limits, period))
+        me = moved(me, on_the_way.popleft(), period)
+        states.append(me)
+    return states
+
+
+def reverses(states: list[RobotState]) -> int:
+    """How often the robot turns back."""
+    turning = [state.omega for state in states if abs(state.omega) > 0.2]
+    return sum(before * after < 0.0 for before, after in pairwise(turning))
+
+
+@pytest.mark.parametrize("delay", [1, 2])
+def test_a_robot_that_reacts_late_and_says_so_settles_without_swinging(delay: int) -> None:
+    states = driven_late(delay / 60, delay)
+    assert reverses(states) <= 1
+    end = states[-1]
+    assert hypot(end.x - 1.0, end.y) < 0.005
+    assert abs(wrap_angle(end.heading - 2.0)) < 0.01
+    assert end.speed < 0.01
+    assert abs(end.omega) < 0.05
+
+
+def test_one_that_does_not_say_so_swings() -> None:
+    assert reverses(driven_late(0.0, 2)) > 10
