@@ -7,6 +7,9 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
+# Without bytecode, every process that a test starts compiles robobt anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: match test test-fast install lint clean
 
 match: $(INSTALLED)
@@ -15,11 +18,11 @@ match: $(INSTALLED)
 	@echo "Open out/match.html in a browser to watch the first trial."
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 # Everything but the slowest tests, under a minute.
 test-fast: $(INSTALLED)
-	$(BIN)/python -m pytest -n 2 -m "not slow and not integration"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not integration"
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
