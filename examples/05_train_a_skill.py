@@ -19,7 +19,8 @@ from robobt.learning.training.train import train
 
 def main(steps: int = 160_000) -> None:
     shutil.rmtree("runs/example", ignore_errors=True)
-    result = train(load_settings("go_to_ball", "fast", {"steps": steps}), "runs/example")
+    settings = load_settings("go_to_ball", "fast", {"steps": steps, "evaluation.held_out": 200})
+    result = train(settings, "runs/example")
     held_out = result.figures["held_out"]
     print(f"held out: {held_out['successes']} of {held_out['starts']} balls reached")
     (model,) = export_run(Path("runs/example"), "example", Path("out/models"))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
 import pytest
+
+from robobt.plays import PLAYS
+from robobt.skills import SKILLS
+from tests.registries import temporarily
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -26,15 +30,14 @@ def test_every_example_is_tested() -> None:
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_an_example_runs(name: str, tmp_path: Path) -> None:
+def test_an_example_runs(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     arguments, words = EXPECTED[name]
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLES / name), *arguments],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [name, *arguments])
+    with temporarily(PLAYS), temporarily(SKILLS):
+        runpy.run_path(str(EXAMPLES / name), run_name="__main__")
+    printed = capsys.readouterr().out
     for word in words:
-        assert word in done.stdout
+        assert word in printed
