@@ -6,11 +6,12 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.shots.data.files import write_shots
-from tests.shots.made_up import made_up_table
+from tests.shots.made_up import made_up_table, train_quickly
 
 
 @pytest.fixture
-def shots(tmp_path: Path) -> str:
+def shots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    train_quickly(monkeypatch)
     write_shots(made_up_table(160, split=True), tmp_path / "shots.parquet")
     return str(tmp_path / "shots.parquet")
 

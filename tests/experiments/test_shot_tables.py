@@ -13,7 +13,7 @@ from robobt.experiments.table3 import table3
 from robobt.shots.data.files import write_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.statistics import ReliabilityBin
-from tests.shots.made_up import made_up_table
+from tests.shots.made_up import made_up_table, train_quickly
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 
@@ -65,7 +65,8 @@ def test_shots_to_test_on_only_are_refused(tmp_path: Path):
         load_shot_sets(tmp_path / "a.csv")
 
 
-def test_table_3_judges_every_model_on_the_test_shots(folder: Path):
+def test_table_3_judges_every_model_on_the_test_shots(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    train_quickly(monkeypatch)
     told: list[int] = []
     models = ["table_one", "logistic", "best"]
     result = table3(
@@ -107,6 +108,7 @@ def test_table_3_refuses_data_with_too_few_goals(tmp_path: Path):
 
 
 def test_table_2_compares_the_network_with_both_regressions(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    train_quickly(monkeypatch)
     monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)
     monkeypatch.setattr("robobt.experiments.table2.HOLD_OUTS", (0.33,))
     result = table2(load_shot_sets(folder), replications=1)

@@ -4,8 +4,17 @@ from functools import cache
 
 import numpy as np
 import pyarrow as pa
+import pytest
 
 from robobt.shots.data.schema import SCHEMA, complete_row
+from robobt.shots.predict.batched import Recipe
+
+QUICK = Recipe(warm_up=5, epochs=10, patience=3)
+
+
+def train_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let networks learn for less time than the paper's recipe gives them."""
+    monkeypatch.setattr("robobt.shots.predict.network_classifier.Recipe", lambda: QUICK)
 
 
 @cache

@@ -12,10 +12,8 @@ from robobt.shots.predict.networks import KIKS
 from robobt.shots.predict.predictors import table_one
 from robobt.shots.predict.validation import accuracies, judge_repeats, predict_folds, stratified_folds
 from robobt.world.features import SCENE_HEAD
-from tests.shots.made_up import made_up_table
+from tests.shots.made_up import QUICK, made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
-
-QUICK = Recipe(warm_up=5, epochs=10, patience=3)
 
 
 def _quick(predictor: Pipeline) -> Pipeline:
@@ -119,10 +117,18 @@ def test_the_layers_of_a_network_are_those_of_its_recipe():
 
 
 @needs_real_shots
-def test_the_best_predictor_reaches_its_figures_in_cross_validation_of_the_real_shots():
+@pytest.mark.parametrize(
+    ("repeats", "accuracy", "log_loss"),
+    # A single repeat is up to a hundredth off the mean of ten.
+    [(1, 0.895, 0.235), pytest.param(10, 0.905, 0.225, marks=pytest.mark.slow)],
+    ids=["once", "ten times"],
+)
+def test_the_best_predictor_reaches_its_figures_in_cross_validation_of_the_real_shots(
+    repeats: int, accuracy: float, log_loss: float
+):
     train = read_shots(REAL_SHOTS / "train.csv")
     x, y = shot_inputs(train), goals(train)
-    folds = stratified_folds(y, 10)
+    folds = stratified_folds(y, repeats)
     judged = judge_repeats(predict_folds(best_predictor(), x, y, folds), y, folds)
-    assert np.mean([one.accuracy for one in judged]) >= 0.905
-    assert np.mean([one.log_loss for one in judged]) <= 0.225
+    assert np.mean([one.accuracy for one in judged]) >= accuracy
+    assert np.mean([one.log_loss for one in judged]) <= log_loss

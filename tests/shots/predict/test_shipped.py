@@ -14,11 +14,14 @@ from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.scene_network import SceneNetwork
 from robobt.shots.predict.shipped import train_shipped
 from robobt.world.features import SCENE_HEAD
-from tests.shots.made_up import made_up_table
+from tests.shots.made_up import made_up_table, train_quickly
 
 
 @pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
-def test_a_predictor_ships_with_a_card_that_says_how_good_it_is(name: str, tmp_path: Path):
+def test_a_predictor_ships_with_a_card_that_says_how_good_it_is(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    train_quickly(monkeypatch)
     file, figures = train_shipped(name, made_up_table(600), tmp_path, epochs=8)
     card = load_policy(file).card
     assert card.kind == "shot_predictor"
