@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.learning.training.demonstrations import read_demonstrations
 from robobt.learning.training.run_folder import load_run
+from tests.learning.tiny import draw_no_curves
 from tests.learning.training.test_seeds import SHORT
 
 OPTIONS = [part for name, value in SHORT.items() for part in ("--set", f"{name}={json.dumps(value)}")]
@@ -32,7 +33,8 @@ def test_a_run_is_trained_resumed_and_told(tmp_path):
     assert "holds a run already" in refused.output
 
 
-def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_path):
+def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_path, monkeypatch):
+    draw_no_curves(monkeypatch)
     own = run("train", "go_to_ball", *OPTIONS, "--set", "seed=7", "--out", tmp_path / "own", "--json")
     assert json.loads(own.stdout)["together"]["seeds"] == [7]
     asked = run(

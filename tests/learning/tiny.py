@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import torch
 
 from robobt.learning.agents.ddpg import DDPG
@@ -105,6 +106,12 @@ def slide_settings(**changes) -> TrainSettings:
         group, _, key = name.rpartition("__")
         (data[group] if group else data)[key] = value
     return TrainSettings.model_validate(data)
+
+
+def draw_no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the picture of a run, which takes longer than a tiny training."""
+    for module in ("run_folder", "seeds"):
+        monkeypatch.setattr(f"robobt.learning.training.{module}.draw_curves", lambda *_: None)
 
 
 def small_agent(observation: int, actions: int, seed: int = 0, **settings) -> DDPG:

@@ -42,7 +42,7 @@ def test_the_first_evaluation_at_the_bar_is_found():
 
 
 @pytest.mark.slow
-def test_seeds_side_by_side_come_to_what_they_come_to_one_after_the_other(tmp_path):
+def test_seeds_side_by_side_come_to_what_they_come_to_one_after_the_other(tmp_path, curves):
     settings = load_settings("go_to_ball", changes=SHORT)
     shown = []
     beside = train_seeds(settings, [0, 1], tmp_path / "two", workers=2, on_progress=shown.append)

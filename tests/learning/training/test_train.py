@@ -210,7 +210,7 @@ def test_a_run_that_has_ended_is_read_not_repeated(tmp_path):
     assert again.validations == first.validations
 
 
-def test_what_a_run_leaves_behind(tmp_path):
+def test_what_a_run_leaves_behind(tmp_path, curves):
     result = train(slide_settings(steps=480, tensorboard=True), tmp_path, problem=SLIDE)
     there = {path.name for path in tmp_path.iterdir()}
     assert there == {"settings.yaml", "log.jsonl", "actor.pt", "result.json", "curves.png", "tensorboard"}
