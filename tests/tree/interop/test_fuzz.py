@@ -296,11 +296,11 @@ def run(kind: str, seed: int, count: int) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("kind", ["yaml", "xml"])
-def test_a_thousand_mutated_files_are_trees_or_clear_errors(kind: str) -> None:
-    trees, errors = run(kind, 1, 1000)
+def test_mutated_files_are_trees_or_clear_errors(kind: str) -> None:
+    trees, errors = run(kind, 1, 200)
     # Neither all the one nor all the other, or nothing would have been looked at.
-    assert trees > 20
-    assert errors > 200
+    assert trees > 4
+    assert errors > 40
 
 
 @pytest.mark.slow
