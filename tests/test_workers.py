@@ -1,4 +1,5 @@
 import os
+import threading
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -58,6 +59,14 @@ def test_the_traceback_of_a_worker_comes_with_its_exception():
 def test_a_worker_that_dies_is_named_with_the_task_it_died_in():
     with pytest.raises(SquareError, match=r"^square of 99: its worker process died \(exit code 7\)$"):
         list(run_tasks(SQUARES, [99, 1], 2, ahead=2))
+
+
+def test_workers_are_started_outside_the_main_thread_too():
+    results: list[int] = []
+    thread = threading.Thread(target=lambda: results.extend(run_tasks(SQUARES, range(3), 2)))
+    thread.start()
+    thread.join()
+    assert sorted(results) == [0, 1, 4]
 
 
 @pytest.mark.parametrize("workers", [1, 2])

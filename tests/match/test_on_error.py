@@ -40,12 +40,11 @@ def test_what_the_node_raised_is_the_cause() -> None:
     assert isinstance(raised.value.__cause__, RuntimeError)
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_run_ends_with_file_trial_robot_and_node(workers: int) -> None:
+def test_a_run_ends_with_file_trial_robot_and_node() -> None:
     with pytest.raises(
         RunError, match=r"^mine\.yaml: trial \d: TreeError: blue 0: Scripted: RuntimeError: brok"
     ):
-        run_trials(breaking("raise", on_error="raise"), PlainWorld, 2, workers)
+        run_trials(breaking("raise", on_error="raise"), PlainWorld, 2)
 
 
 def test_the_recording_is_kept(tmp_path: Path) -> None:

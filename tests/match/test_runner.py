@@ -1,7 +1,6 @@
 import os
 import signal
 import sys
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -37,11 +36,6 @@ class RaisingWorld(PlainWorld):
         raise RuntimeError("the field is on fire")
 
 
-class DyingWorld(PlainWorld):
-    def act(self, commands: Any) -> None:
-        os._exit(3)
-
-
 def test_trials_have_seeds_of_their_own():
     seeds = {trial_seed(run, trial) for run in range(20) for trial in range(20)}
     assert len(seeds) == 400
@@ -61,10 +55,16 @@ def test_a_trial_does_not_depend_on_the_others():
 
 
 @pytest.mark.integration
-def test_a_run_over_worker_processes_is_the_same_run():
-    """Determinism over processes, in the real simulator: traces and figures are identical."""
-    alone = run_trials(scenario(), sim_world, 5)
-    assert figures(run_trials(scenario(), sim_world, 5, workers=2)) == figures(alone)
+def test_a_run_over_worker_processes_is_the_same_run(tmp_path: Path):
+    """Determinism over processes, in the real simulator: traces, figures and recordings are identical."""
+    paths = [tmp_path / f"{workers}.robobt.arrows" for workers in (1, 2)]
+    alone, shared = (
+        run_trials(scenario(), sim_world, 5, workers, record={3: path})
+        for workers, path in zip((1, 2), paths, strict=True)
+    )
+    assert figures(shared) == figures(alone)
+    assert load_recording(paths[0]).header.trial == 3
+    assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
 def test_every_result_is_reported_as_it_finishes():
@@ -135,16 +135,6 @@ class TestFailures:
             ScenarioError, match=r"test\.yaml: simulator: no simulator preset is called 'nothing'"
         ):
             run_trials(wrong, sim_world, 2, workers)
-
-    def test_trials_are_recorded_whoever_plays_them(self, workers: int, tmp_path: Path):
-        path = tmp_path / "second.robobt.arrows"
-        run_trials(scenario(), PlainWorld, 2, workers, record={1: path})
-        assert load_recording(path).header.trial == 1
-
-
-def test_a_worker_that_dies_is_named_with_its_trial():
-    with pytest.raises(RunError, match=r"test\.yaml: trial \d: its worker process died \(exit code 3\)"):
-        run_trials(scenario(), DyingWorld, 2, workers=2)
 
 
 _SLEEPY_RUN = """
@@ -225,14 +215,6 @@ def test_an_interrupt_keeps_what_is_finished(workers: int):
         signal.signal(signal.SIGINT, before)
     assert run.interrupted
     assert len(run.results) == 2
-
-
-def test_a_run_works_outside_the_main_thread():
-    runs: list[Run] = []
-    thread = threading.Thread(target=lambda: runs.append(run_trials(scenario(), PlainWorld, 2, workers=2)))
-    thread.start()
-    thread.join()
-    assert figures(runs[0]) == figures(run_trials(scenario(), PlainWorld, 2))
 
 
 @pytest.mark.parametrize(
