@@ -9,22 +9,6 @@ from numpy.typing import NDArray
 
 from robobt.learning.envs.task import FloatArray
 
-PROGRESS = np.dtype(
-    [
-        (name, np.float64)
-        for name in (
-            "ticks",
-            "ticks_held",
-            "kick_tick",
-            "kick_rewarded",
-            "total_reward",
-            "ball_x",
-            "ball_y",
-        )
-    ]
-)
-"""How an episode has gone so far; see :class:`Progress`."""
-
 
 class Progress(Protocol):
     """An episode so far, all in numbers: a row of :data:`PROGRESS`.
@@ -45,6 +29,10 @@ class Progress(Protocol):
     total_reward: float
     ball_x: float
     ball_y: float
+
+
+PROGRESS = np.dtype([(name, np.float64) for name in Progress.__annotations__])
+"""How an episode has gone so far; see :class:`Progress`."""
 
 
 def progress_at(starts: FloatArray) -> NDArray[np.void]:

@@ -7,12 +7,14 @@ import numpy as np
 from robobt.learning.envs.task import FloatArray
 from robobt.models.actions import SHOOT_ACTION, ActionScaling
 
-_TURN_GAIN = 8.0
-_GENTLE_TURN = 4.0
-"""Turning rate at which dribblers keep the ball [rad/s]."""
+AIM_GAIN = 6.0
+"""Turning rate for each radian off the aim [1/s]."""
 
-_AIM = 0.25
-"""Share of the goal's width as an angle by which a kick may be off its middle."""
+_GENTLE_PULL = 1.5
+"""What most dribblers hold a ball with, and more [m/s^2]."""
+
+_INSIDE = 0.6
+"""Share of the goal mouth, around its middle, at which the script kicks."""
 
 
 def straight_drive(observation: FloatArray) -> FloatArray:
@@ -30,21 +32,28 @@ def straight_drive(observation: FloatArray) -> FloatArray:
     return actions
 
 
-def turn_and_kick(observation: FloatArray, scaling: ActionScaling = SHOOT_ACTION) -> FloatArray:
-    """Turn gently to the middle between the posts, then kick.
+def turn_and_kick(
+    observation: FloatArray, scaling: ActionScaling = SHOOT_ACTION, pull: float = _GENTLE_PULL
+) -> FloatArray:
+    """Turn to the middle of the goal and kick when the ball will leave well between the posts.
 
     Args:
         observation: (n, 10).
         scaling: of the actions.
+        pull: what the dribbler is relied on to hold the ball with [m/s^2].
 
     Returns:
         (n, 2) actions.
     """
-    left = np.arctan2(observation[:, 6], observation[:, 7])
-    right = np.arctan2(observation[:, 8], observation[:, 9])
-    middle = np.arctan2(np.sin(left) + np.sin(right), np.cos(left) + np.cos(right))
-    turn = np.clip(_TURN_GAIN * middle, -_GENTLE_TURN, _GENTLE_TURN)
-    # A turning robot's ball leaves to the side in which it turns.
-    aside = observation[:, 4] * observation[:, 0] / scaling.kick_speed
-    aims = np.abs(middle - aside) < _AIM * np.abs(np.arcsin(np.sin(left - right)))
-    return np.column_stack((turn / scaling.max_turn, np.where(aims, 1.0, -1.0)))
+    ball_x, ball_y, _, sideways = observation[:, :4].T
+    upper = np.arctan2(observation[:, 6], observation[:, 7])
+    lower = np.arctan2(observation[:, 8], observation[:, 9])
+    half = (np.mod(upper - lower + np.pi, 2 * np.pi) - np.pi) / 2
+    middle = np.arctan2(np.sin(lower + half), np.cos(lower + half))
+    leaving = np.arctan2(sideways, scaling.kick_speed)
+    off = np.arctan2(np.sin(middle - leaving), np.cos(middle - leaving))
+    # A ball at distance L that is turned with at w needs a pull of w^2 L to stay.
+    most = np.minimum(scaling.max_turn, np.sqrt(pull / np.hypot(ball_x, ball_y)))
+    omega = np.clip(AIM_GAIN * off, -most, most)
+    kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
+    return np.column_stack((omega / scaling.max_turn, kick))

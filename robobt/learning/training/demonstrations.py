@@ -42,6 +42,9 @@ FORMAT = "robobt-demonstrations-1"
 _ARENAS = 16
 """Side by side while recording."""
 
+_STEP = ("observation", "action", "reward", "next_observation", "terminated", "truncated", "success")
+"""The columns of a step."""
+
 _MEANINGS = ("action", "period", "reward", "contact")
 """Settings that define what an action and a reward are; with others the critic would learn a wrong value."""
 
@@ -88,16 +91,9 @@ class Demonstrations:
     def transitions(self, horizons: Sequence[int], gamma: float) -> Iterator[tuple[Transitions, ...]]:
         """Yield what a replay takes, as :class:`~robobt.learning.agents.nstep.NStep` makes it."""
         returns = NStep(horizons, gamma, 1, self.observation.shape[1], self.action.shape[1])
+        columns = [getattr(self, name) for name in _STEP if name != "success"]
         for i in range(len(self)):
-            row = slice(i, i + 1)
-            yield from returns.add(
-                self.observation[row],
-                self.action[row],
-                self.reward[row],
-                self.next_observation[row],
-                self.terminated[row],
-                self.truncated[row],
-            )
+            yield from returns.add(*[column[i : i + 1] for column in columns])
 
     def write(self, path: str | Path) -> None:
         """Write the file; one that is there is replaced once the new one is whole."""
@@ -107,13 +103,7 @@ class Demonstrations:
         columns = {
             "episode": pa.array(self.episode.astype(np.int32)),
             "tick": pa.array(ticks.astype(np.int32)),
-            "observation": _lists(self.observation),
-            "action": _lists(self.action),
-            "reward": pa.array(self.reward),
-            "next_observation": _lists(self.next_observation),
-            "terminated": pa.array(self.terminated),
-            "truncated": pa.array(self.truncated),
-            "success": pa.array(self.success),
+            **{name: _column(getattr(self, name)) for name in _STEP},
         }
         table = pa.table(columns).replace_schema_metadata({"robobt": json.dumps(self.about)})
         with replacing(path) as temporary, naming(path):
@@ -134,17 +124,8 @@ def read_demonstrations(path: str | Path) -> Demonstrations:
     if not isinstance(about, dict) or about.get("format") != FORMAT:
         raise DemonstrationsError(f"{path}: not a file of demonstrations")
     try:
-        return Demonstrations(
-            table["episode"].to_numpy().astype(np.int64),
-            _matrix(table["observation"]),
-            _matrix(table["action"]),
-            table["reward"].to_numpy(),
-            _matrix(table["next_observation"]),
-            table["terminated"].to_numpy(),
-            table["truncated"].to_numpy(),
-            table["success"].to_numpy(),
-            about,
-        )
+        episode = table["episode"].to_numpy().astype(np.int64)
+        return Demonstrations(episode, *[_array(table[name]) for name in _STEP], about)
     except (KeyError, ValueError) as error:
         raise DemonstrationsError(f"{path}: {_reason(error)}") from error
 
@@ -183,18 +164,12 @@ def record(
         # A direction of length 1 may have been rounded past it.
         action = np.clip(teaching.act(observation), -1.0, 1.0)
         step = task.step(action)
+        columns = (
+            *(observation, action, step.reward, step.final_observation),
+            *(step.terminated, step.truncated, step.success),
+        )
         for arena in range(task.n):
-            running[arena].append(
-                (
-                    observation[arena],
-                    action[arena],
-                    step.reward[arena],
-                    step.final_observation[arena],
-                    step.terminated[arena],
-                    step.truncated[arena],
-                    step.success[arena],
-                )
-            )
+            running[arena].append(tuple([column[arena] for column in columns]))
         which = np.flatnonzero(step.terminated | step.truncated)
         if task.ended is not None:
             for arena, start in zip(which.tolist(), task.ended.start.tolist(), strict=True):
@@ -207,7 +182,6 @@ def record(
         observation = step.observation
     flat = [row for start in range(episodes) for row in ended[start]]
     numbers = [start for start in range(episodes) for _ in ended[start]]
-    columns = [np.array(column) for column in zip(*flat, strict=True)]
     about = {
         "format": FORMAT,
         "task": task.observation.name,
@@ -217,18 +191,7 @@ def record(
         "seed": seed,
         "robobt": __version__,
     }
-    observations, actions, rewards, next_observation, terminated, truncated, success = columns
-    return Demonstrations(
-        np.array(numbers),
-        observations,
-        actions,
-        rewards,
-        next_observation,
-        terminated,
-        truncated,
-        success,
-        about,
-    )
+    return Demonstrations(np.array(numbers), *map(np.array, zip(*flat, strict=True)), about)
 
 
 def demonstrations_for(
@@ -261,14 +224,17 @@ def _named(task: ArenaTask) -> dict[str, object]:
     return {"name": task.observation.name, "version": task.observation.version}
 
 
-def _lists(rows: FloatArray) -> pa.Array:
-    return pa.FixedSizeListArray.from_arrays(pa.array(rows.ravel()), rows.shape[1])
+def _column(values: NDArray[Any]) -> pa.Array:
+    if values.ndim == 1:
+        return pa.array(values)
+    return pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
 
 
-def _matrix(column: pa.ChunkedArray) -> FloatArray:
-    flat = column.combine_chunks()
-    values: FloatArray = flat.flatten().to_numpy(zero_copy_only=False).astype(np.float64)
-    return values.reshape(len(column), -1)
+def _array(column: pa.ChunkedArray) -> NDArray[Any]:
+    if not pa.types.is_nested(column.type):
+        return column.to_numpy()
+    values = column.combine_chunks().flatten().to_numpy(zero_copy_only=False)
+    return values.astype(np.float64).reshape(len(column), -1)
 
 
 def _reason(error: Exception) -> str:

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from robobt.learning.envs import ArenaTask, GoToBallTask, ShootTask
+from robobt.learning.envs.scripted import AIM_GAIN, straight_drive, turn_and_kick
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.models.actions import ActionScaling
 from robobt.skills import GoToBall, KickToTarget
@@ -21,12 +22,6 @@ from robobt.tree.runner import TreeRunner
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, Frame, RobotState
-
-_AIM_GAIN = 6.0
-"""Turning rate for each radian off the aim [1/s]."""
-
-_INSIDE = 0.6
-"""Share of the goal mouth, around its middle, at which the script kicks."""
 
 _CAREFUL = 0.9
 """Share of what the dribbler can hold that a script turns with."""
@@ -42,47 +37,14 @@ class Teacher(Protocol):
         """Map (n, observation) to (n, action) in [-1, 1]."""
 
 
-class StraightDrive:
-    """Drives straight at the ball at full speed and turns to it: the shortest time there is."""
+class _Script:
+    """A script in every arena; it has no memory."""
 
-    def __init__(self, task: ArenaTask) -> None:
-        self._turn = _AIM_GAIN / task.action.max_turn
-
-    def begin(self, which: IntArray) -> None:
-        """Do nothing: the script has no memory."""
-
-    def act(self, observation: FloatArray) -> FloatArray:
-        """See :class:`Teacher`."""
-        sin, cos = observation[:, 0], observation[:, 1]
-        turn = np.clip(self._turn * np.arctan2(sin, cos), -1.0, 1.0)
-        return np.column_stack((cos, sin, turn))
-
-
-class TurnAndKick:
-    """Turns to the middle of the goal and kicks when the ball will leave well between the posts."""
-
-    def __init__(self, task: ShootTask) -> None:
-        self._scaling = task.action
-        dribbler = task.settings.simulator.dribbler
-        # A ball at distance L that is turned with at w needs a pull of w^2 L to stay.
-        self._pull = np.inf if dribbler.kind == "glue" else _CAREFUL * dribbler.pull
+    def __init__(self, act: Callable[[FloatArray], FloatArray]) -> None:
+        self.act = act
 
     def begin(self, which: IntArray) -> None:
-        """Do nothing: the script has no memory."""
-
-    def act(self, observation: FloatArray) -> FloatArray:
-        """See :class:`Teacher`."""
-        ball_x, ball_y, _, sideways = observation[:, :4].T
-        upper = np.arctan2(observation[:, 6], observation[:, 7])
-        lower = np.arctan2(observation[:, 8], observation[:, 9])
-        half = (np.mod(upper - lower + np.pi, 2 * np.pi) - np.pi) / 2
-        middle = np.arctan2(np.sin(lower + half), np.cos(lower + half))
-        leaving = np.arctan2(sideways, self._scaling.kick_speed)
-        off = np.arctan2(np.sin(middle - leaving), np.cos(middle - leaving))
-        most = np.minimum(self._scaling.max_turn, np.sqrt(self._pull / np.hypot(ball_x, ball_y)))
-        omega = np.clip(_AIM_GAIN * off, -most, most)
-        kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
-        return np.column_stack((omega / self._scaling.max_turn, kick))
+        """Do nothing."""
 
 
 class SkillTeacher:
@@ -127,7 +89,18 @@ class SkillTeacher:
 
 def script(task: ArenaTask) -> Teacher:
     """Return the script that does this task."""
-    return TurnAndKick(task) if isinstance(task, ShootTask) else StraightDrive(task)
+    if isinstance(task, ShootTask):
+        dribbler = task.settings.simulator.dribbler
+        pull = np.inf if dribbler.kind == "glue" else _CAREFUL * dribbler.pull
+        return _Script(lambda observation: turn_and_kick(observation, task.action, pull))
+    return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
+
+
+def _drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
+    """Drive straight at the ball at full speed and turn to it."""
+    actions = straight_drive(observation)
+    actions[:, 2] = np.clip(AIM_GAIN / max_turn * np.arctan2(observation[:, 0], observation[:, 1]), -1.0, 1.0)
+    return actions
 
 
 def skill(task: ArenaTask) -> Teacher:

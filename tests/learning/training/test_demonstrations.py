@@ -16,7 +16,7 @@ from robobt.learning.training.demonstrations import (
 )
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.settings import load_settings
-from robobt.learning.training.teachers import StraightDrive, TurnAndKick, action_of
+from robobt.learning.training.teachers import action_of, script
 from robobt.learning.training.train import train
 from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION, command_of
 from robobt.world.command import KickTrigger, RobotCommand
@@ -30,7 +30,7 @@ def recorded():
 def test_the_straight_drive_reaches_every_start_in_the_shortest_time():
     settings = GoToBallSettings()
     task = GoToBallTask(settings)
-    figures = problem_of(settings).evaluate(StraightDrive(task).act, "validation", 200)
+    figures = problem_of(settings).evaluate(script(task).act, "validation", 200)
     assert figures.rate == 1.0
     assert (figures.times <= figures.optimum + 2 * settings.period + 1e-9).all()
     assert figures.time_ratio is not None
@@ -40,7 +40,7 @@ def test_the_straight_drive_reaches_every_start_in_the_shortest_time():
 @pytest.mark.parametrize("simulator", ["default", "robobulls", "erforce"])
 def test_the_scripted_shooter_hardly_ever_misses(simulator):
     settings = ShootSettings(simulator=simulator)
-    figures = problem_of(settings).evaluate(TurnAndKick(ShootTask(settings)).act, "validation", 200)
+    figures = problem_of(settings).evaluate(script(ShootTask(settings)).act, "validation", 200)
     assert figures.rate >= 0.99
 
 
