@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.render import Picture, Renderer
+from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.task import BoolArray, FloatArray
 from robobt.world.geometry import Point
 
@@ -25,34 +27,68 @@ Info = dict[str, Any]
 
 _TRAIL = 400
 
+_INFO = {"is_success": "success", "time": "time", "optimum": "optimum", "kick_time": "kick_time"}
+"""What the infos say of an episode that has ended, and where :class:`Episodes` has it."""
 
-class SingleEnv(gymnasium.Env[Observation, Action]):
-    """One arena behind Gymnasium's interface.
 
-    Args:
-        task: with that one arena.
-        observation_space: of it.
-        render_mode: None or "rgb_array".
-        reach: distance at which the ball counts as reached, for the picture [m].
+@dataclass(frozen=True)
+class EnvKind:
+    """What Gymnasium has to know of a task.
+
+    Attributes:
+        task: makes so many arenas with given settings; None for the task's defaults.
+        settings: their class.
+        space: the observations of an arena with such settings.
+        reach: distance at which the ball counts as reached, for pictures [m]; None for none.
     """
+
+    task: Callable[[Any, int], ArenaTask]
+    settings: type[TaskSettings]
+    space: Callable[[Any], Box[np.float32]]
+    reach: Callable[[Any], float | None] = lambda _: None
+
+
+class _OverArenas:
+    """What both interfaces do with the arenas of a task."""
+
+    kind: ClassVar[EnvKind]
+
+    def _set_up(
+        self, settings: TaskSettings | Mapping[str, object] | None, n: int, render_mode: str | None
+    ) -> Box[np.float32]:
+        """Make the arenas and return the space of one of them's observations."""
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
+        given = None if settings is None else self.kind.settings.model_validate(settings)
+        self.render_mode = render_mode
+        self.task = self.kind.task(given, n)
+        self._reach = self.kind.reach(self.task.settings)
+        self._begun = False
+        self._renderer: Renderer | None = None
+        return self.kind.space(self.task.settings)
+
+    def _need_reset(self, what: str) -> None:
+        if not self._begun:
+            raise gymnasium.error.ResetNeeded(f"call reset before {what}")
+
+    def _pen(self) -> Renderer:
+        self._need_reset("render")
+        if self._renderer is None:
+            settings = self.task.settings
+            self._renderer = Renderer(settings.field, settings.simulator.body.face)
+        return self._renderer
+
+
+class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
+    """One arena behind Gymnasium's interface; arguments as in the environments themselves."""
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 33}  # noqa: RUF012
 
     def __init__(
-        self,
-        task: ArenaTask,
-        observation_space: Box[np.float32],
-        render_mode: str | None,
-        reach: float | None = None,
+        self, settings: TaskSettings | Mapping[str, object] | None = None, render_mode: str | None = None
     ) -> None:
-        _check_render_mode(render_mode)
-        self.render_mode = render_mode
-        self.task = task
-        self.observation_space = observation_space
-        self.action_space = _action_space(task)
-        self._reach = reach
-        self._begun = False
-        self._renderer: Renderer | None = None
+        self.observation_space = self._set_up(settings, 1, render_mode)
+        self.action_space = _action_space(self.task)
         self._robot_trail: deque[Point] = deque(maxlen=_TRAIL)
         self._ball_trail: deque[Point] = deque(maxlen=_TRAIL)
 
@@ -89,29 +125,25 @@ class SingleEnv(gymnasium.Env[Observation, Action]):
         Its keys: ``is_success``, ``time`` [s], ``optimum`` (the straight line's
         time [s], nan without one), ``kick_time`` (nan without a kick [s]).
         """
-        if not self._begun:
-            raise gymnasium.error.ResetNeeded("call reset before step")
+        self._need_reset("step")
         result = self.task.advance(np.asarray(action, dtype=np.float64).reshape(1, -1))
         if self.render_mode is not None:
             self._leave_trail()
+        ended = self.task.ended
         return (
             result.observation[0].astype(np.float32),
             float(result.reward[0]),
             bool(result.terminated[0]),
             bool(result.truncated[0]),
-            {} if self.task.ended is None else _episode_info(self.task.ended),
+            {} if ended is None else {key: getattr(ended, name)[0].item() for key, name in _INFO.items()},
         )
 
     def render(self) -> Picture | None:
         """Draw the field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
-        if not self._begun:
-            raise gymnasium.error.ResetNeeded("call reset before render")
-        if self._renderer is None:
-            self._renderer = _renderer(self.task)
-        arenas = self.task.arenas
-        return self._renderer.draw(
+        pen, arenas = self._pen(), self.task.arenas
+        return pen.draw(
             arenas.robots[0, 0], arenas.balls[0], self._reach, self._robot_trail, self._ball_trail
         )
 
@@ -121,15 +153,8 @@ class SingleEnv(gymnasium.Env[Observation, Action]):
         self._ball_trail.append((float(arenas.balls[0, 0]), float(arenas.balls[0, 1])))
 
 
-class ManyEnv(VectorEnv[Observation, Action, Any]):
-    """Many arenas in one simulator behind Gymnasium's vector interface.
-
-    Args:
-        task: with these arenas.
-        observation_space: of one of them.
-        render_mode: None or "rgb_array".
-        reach: distance at which the ball counts as reached, for the pictures [m].
-    """
+class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
+    """Many arenas in one simulator behind Gymnasium's vector interface."""
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium declares it so
         "render_modes": ["rgb_array"],
@@ -139,22 +164,15 @@ class ManyEnv(VectorEnv[Observation, Action, Any]):
 
     def __init__(
         self,
-        task: ArenaTask,
-        observation_space: Box[np.float32],
-        render_mode: str | None,
-        reach: float | None = None,
+        num_envs: int = 1,
+        settings: TaskSettings | Mapping[str, object] | None = None,
+        render_mode: str | None = None,
     ) -> None:
-        _check_render_mode(render_mode)
-        self.render_mode = render_mode
-        self.task = task
-        self.num_envs = task.n
-        self.single_observation_space = observation_space
-        self.single_action_space = _action_space(task)
-        self._reach = reach
-        self.observation_space = batch_space(self.single_observation_space, task.n)
-        self.action_space = batch_space(self.single_action_space, task.n)
-        self._begun = False
-        self._renderer: Renderer | None = None
+        self.single_observation_space = self._set_up(settings, num_envs, render_mode)
+        self.single_action_space = _action_space(self.task)
+        self.num_envs = num_envs
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -181,8 +199,7 @@ class ManyEnv(VectorEnv[Observation, Action, Any]):
         with the single environment's keys as arrays (n,), and which of them count
         in ``_final_obs`` and ``_final_info`` (n,).
         """
-        if not self._begun:
-            raise gymnasium.error.ResetNeeded("call reset before step")
+        self._need_reset("step")
         result = self.task.step(np.asarray(actions, dtype=np.float64))
         infos: Info = {}
         if self.task.ended is not None:
@@ -205,24 +222,15 @@ class ManyEnv(VectorEnv[Observation, Action, Any]):
         """Draw one picture an arena in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
-        if not self._begun:
-            raise gymnasium.error.ResetNeeded("call reset before render")
-        if self._renderer is None:
-            self._renderer = _renderer(self.task)
-        arenas = self.task.arenas
+        pen, arenas = self._pen(), self.task.arenas
         return tuple(
-            self._renderer.draw(robots[0], ball, self._reach)
+            pen.draw(robots[0], ball, self._reach)
             for robots, ball in zip(arenas.robots, arenas.balls, strict=True)
         )
 
 
 def _action_space(task: ArenaTask) -> Box[np.float32]:
     return Box(-1.0, 1.0, (task.action_size,), np.float32)
-
-
-def _check_render_mode(mode: str | None) -> None:
-    if mode not in (None, "rgb_array"):
-        raise ValueError(f"render_mode must be None or 'rgb_array', not {mode!r}")
 
 
 def _start_of(options: Mapping[str, Any] | None) -> ArrayLike | None:
@@ -232,29 +240,12 @@ def _start_of(options: Mapping[str, Any] | None) -> ArrayLike | None:
     return (options or {}).get("start")
 
 
-def _episode_info(ended: Episodes) -> Info:
-    return {
-        "is_success": bool(ended.success[0]),
-        "time": float(ended.time[0]),
-        "optimum": float(ended.optimum[0]),
-        "kick_time": float(ended.kick_time[0]),
-    }
-
-
 def _spread(episodes: Episodes, ended: BoolArray) -> Info:
     info: Info = {}
-    for key, values in (
-        ("is_success", episodes.success),
-        ("time", episodes.time),
-        ("optimum", episodes.optimum),
-        ("kick_time", episodes.kick_time),
-    ):
+    for key, name in _INFO.items():
+        values = getattr(episodes, name)
         whole = np.zeros(len(ended), dtype=values.dtype)
         whole[ended] = values
         info[key] = whole
         info[f"_{key}"] = ended.copy()
     return info
-
-
-def _renderer(task: ArenaTask) -> Renderer:
-    return Renderer(task.settings.field, task.settings.simulator.body.face)

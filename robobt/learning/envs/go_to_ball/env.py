@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from gymnasium.spaces import Box
 
 from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
-from robobt.learning.envs.gymnasium_base import ManyEnv, SingleEnv
+from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
 from robobt.world.state import ROBOT_RADIUS
+
+
+def _space(settings: GoToBallSettings) -> Box[np.float32]:
+    """Return bounds that follow from walls, limits and noise."""
+    limits, starts = settings.robot_limits, settings.starts
+    speed = max(min(limits.max_speed, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+    speed += max(0.0, starts.ball_speed[1])
+    turn = max(
+        min(limits.max_turn, settings.action.max_turn), abs(starts.robot_turn[0]), abs(starts.robot_turn[1])
+    )
+    # Sliding along a wall turns a robot, at most until it rolls along it.
+    turn += speed / ROBOT_RADIUS
+    seen = seen_speed(settings, speed, settings.noise.robot_position)
+    high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
+    return bounded(high, distances=(2,))
+
+
+def _reach(settings: GoToBallSettings) -> float | None:
+    return settings.contact.distance if settings.contact.rule.startswith("distance") else None
+
+
+_KIND = EnvKind(GoToBallTask, GoToBallSettings, _space, _reach)
 
 
 class GoToBallEnv(SingleEnv):
@@ -74,44 +94,10 @@ class GoToBallEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """
 
-    def __init__(
-        self, settings: GoToBallSettings | Mapping[str, object] | None = None, render_mode: str | None = None
-    ) -> None:
-        task = GoToBallTask(_validated(settings))
-        super().__init__(task, _space(task.settings), render_mode, _reach(task.settings))
+    kind = _KIND
 
 
 class GoToBallVectorEnv(ManyEnv):
     """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended."""
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        settings: GoToBallSettings | Mapping[str, object] | None = None,
-        render_mode: str | None = None,
-    ) -> None:
-        task = GoToBallTask(_validated(settings), num_envs)
-        super().__init__(task, _space(task.settings), render_mode, _reach(task.settings))
-
-
-def _validated(given: GoToBallSettings | Mapping[str, object] | None) -> GoToBallSettings | None:
-    return None if given is None else GoToBallSettings.model_validate(given)
-
-
-def _space(settings: GoToBallSettings) -> Box[np.float32]:
-    """Return bounds that follow from walls, limits and noise."""
-    limits, starts = settings.robot_limits, settings.starts
-    speed = max(min(limits.max_speed, settings.action.max_speed), starts.robot_speed[1]) + BUMP
-    speed += max(0.0, starts.ball_speed[1])
-    turn = max(
-        min(limits.max_turn, settings.action.max_turn), abs(starts.robot_turn[0]), abs(starts.robot_turn[1])
-    )
-    # Sliding along a wall turns a robot, at most until it rolls along it.
-    turn += speed / ROBOT_RADIUS
-    seen = seen_speed(settings, speed, settings.noise.robot_position)
-    high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
-    return bounded(high, distances=(2,))
-
-
-def _reach(settings: GoToBallSettings) -> float | None:
-    return settings.contact.distance if settings.contact.rule.startswith("distance") else None
+    kind = _KIND

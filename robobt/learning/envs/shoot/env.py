@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from gymnasium.spaces import Box
 
 from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
-from robobt.learning.envs.gymnasium_base import ManyEnv, SingleEnv
+from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.task import ShootTask
 from robobt.world.state import ROBOT_RADIUS
+
+
+def _space(settings: ShootSettings) -> Box[np.float32]:
+    """Return bounds that follow from walls, limits, kicker and noise."""
+    starts = settings.starts
+    most = farthest(settings)
+    most_turn = max(settings.action.max_turn, abs(starts.robot_turn[0]), abs(starts.robot_turn[1]))
+    speed = settings.simulator.kicker.max_speed + most_turn * ROBOT_RADIUS * 2.0 + BUMP
+    seen = seen_speed(settings, speed, settings.noise.ball_position)
+    turn = seen_turn(settings, most_turn + BUMP / ROBOT_RADIUS)
+    high = [most, most, seen, seen, turn, most, 1.0, 1.0, 1.0, 1.0]
+    return bounded(high, distances=(5,))
+
+
+_KIND = EnvKind(ShootTask, ShootSettings, _space)
 
 
 class ShootTowardsGoalEnv(SingleEnv):
@@ -79,37 +92,10 @@ class ShootTowardsGoalEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """
 
-    def __init__(
-        self, settings: ShootSettings | Mapping[str, object] | None = None, render_mode: str | None = None
-    ) -> None:
-        task = ShootTask(_validated(settings))
-        super().__init__(task, _space(task.settings), render_mode)
+    kind = _KIND
 
 
 class ShootTowardsGoalVectorEnv(ManyEnv):
     """Many arenas of :class:`ShootTowardsGoalEnv`, which says what is observed, rewarded and ended."""
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        settings: ShootSettings | Mapping[str, object] | None = None,
-        render_mode: str | None = None,
-    ) -> None:
-        task = ShootTask(_validated(settings), num_envs)
-        super().__init__(task, _space(task.settings), render_mode)
-
-
-def _validated(given: ShootSettings | Mapping[str, object] | None) -> ShootSettings | None:
-    return None if given is None else ShootSettings.model_validate(given)
-
-
-def _space(settings: ShootSettings) -> Box[np.float32]:
-    """Return bounds that follow from walls, limits, kicker and noise."""
-    starts = settings.starts
-    most = farthest(settings)
-    most_turn = max(settings.action.max_turn, abs(starts.robot_turn[0]), abs(starts.robot_turn[1]))
-    speed = settings.simulator.kicker.max_speed + most_turn * ROBOT_RADIUS * 2.0 + BUMP
-    seen = seen_speed(settings, speed, settings.noise.ball_position)
-    turn = seen_turn(settings, most_turn + BUMP / ROBOT_RADIUS)
-    high = [most, most, seen, seen, turn, most, 1.0, 1.0, 1.0, 1.0]
-    return bounded(high, distances=(5,))
+    kind = _KIND
