@@ -1,40 +1,77 @@
 """The command ``robobt``: thin over the rest, and where worlds, plays and matches are wired together.
 
-Each module here holds a group of commands and enters them with
-``add_to(app)``; what they share is in ``common``. Measurements (``robobt bench
-...``) are one module each in ``bench``. Everything heavy is imported by the
-command that needs it, so that ``robobt --help`` is quick.
+The functions are in the modules here; what they share is in ``common``. Everything heavy
+is imported by the command that needs it, so that ``robobt --help`` is quick.
 """
 
 from __future__ import annotations
 
 import logging
 import sys
+from collections.abc import Mapping
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Annotated
 
 import typer
 
-from robobt.cli.common import console, log
+from robobt.cli.common import console, log, one_line_errors
 from robobt.signals import leave_after_signal
 
-_GROUPS = (
-    "match",
-    "replay",
-    "record",
-    "scenarios",
-    "lists",
-    "tree",
-    "train",
-    "export",
-    "league",
-    "collect",
-    "shots",
-    "paper",
-    "bench",
-)
-"""The modules that hold the commands, in the order of ``robobt --help``."""
+_COMMANDS = {
+    "match": "match:match",
+    "replay": "replay:replay",
+    "scenarios": "scenarios:scenarios",
+    "plays": "lists:plays",
+    "skills": "lists:skills",
+    "raters": "lists:raters",
+    "policies": "lists:policies",
+    "tree": "tree:tree",
+    "train": "train:train",
+    "demonstrations": "train:demonstrations",
+    "export": "export:export",
+    "models": "export:models",
+    "serve": "league:serve",
+    "log": "league:log_packets",
+}
+"""The commands by name, each a function of a module here, in the order of ``robobt --help``."""
+
+_GROUPS = {
+    "record": (
+        "Use recordings elsewhere: in other tools and in tests.",
+        {"export": "record:export", "case": "record:case"},
+    ),
+    "collect": ("Collect data from simulated play.", {"shots": "collect:shots"}),
+    "shots": (
+        "Predictors of shots: train them, draw their map.",
+        {"train": "shots:train", "map": "shots:draw"},
+    ),
+    "paper": (
+        "The tables of the paper, its figures beside ours.",
+        {
+            "table2": "paper:table2",
+            "table3": "paper:table3",
+            "table4": "table4:table4",
+            "deployed": "deployed:deployed",
+        },
+    ),
+    "bench": (
+        "Measure how fast things are, on one core.",
+        {
+            "sim": "bench.parts:bench_sim",
+            "tree": "bench.parts:bench_tree",
+            "policy": "bench.parts:bench_policy",
+            "env": "bench.parts:bench_env",
+            "match": "bench.match:bench_match",
+            "shots": "bench.shots:bench_shots",
+            "train": "bench.train:bench_train",
+            "filter": "bench.league:bench_filter",
+            "clock": "bench.league:bench_clock",
+            "league": "bench.league:bench_league",
+        },
+    ),
+}
+"""The groups of commands, likewise, each with its help."""
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -66,8 +103,20 @@ def _main(
             stream.reconfigure(errors="replace")
 
 
-for _group in _GROUPS:
-    import_module(f"robobt.cli.{_group}").add_to(app)
+def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
+    for name, place in commands.items():
+        module, _, function = place.partition(":")
+        command = getattr(import_module(f"robobt.cli.{module}"), function)
+        group.command(name)(one_line_errors(command))
+
+
+_enter(app, _COMMANDS)
+for _name, (_help, _commands) in _GROUPS.items():
+    _group = typer.Typer(no_args_is_help=True, help=_help)
+    # A group of its own even with a single command.
+    _group.callback()(lambda: None)
+    _enter(_group, _commands)
+    app.add_typer(_group, name=_name)
 
 
 def main() -> None:

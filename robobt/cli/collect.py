@@ -15,7 +15,6 @@ from robobt.cli.common import (
     Workers,
     cores,
     errors,
-    one_line_errors,
     print_json,
     say,
 )
@@ -36,16 +35,6 @@ class Protocol(StrEnum):
     PAPER = "paper"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group and its command."""
-    collect = typer.Typer(no_args_is_help=True, help="Collect data from simulated play.")
-    collect.command()(shots)
-    # A group of its own even with a single command.
-    collect.callback()(lambda: None)
-    app.add_typer(collect, name="collect")
-
-
-@one_line_errors
 def shots(
     count: Annotated[
         int | None,

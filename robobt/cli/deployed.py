@@ -16,7 +16,6 @@ from robobt.cli.common import (
     Workers,
     console,
     cores,
-    one_line_errors,
     print_json,
     say,
     table,
@@ -34,7 +33,6 @@ class Style(StrEnum):
     ROBOBULLS = "robobulls"
 
 
-@one_line_errors
 def deployed(
     shots: Annotated[
         int, typer.Option("--shots", "-n", min=1, max=100_000, help="Trials of every play and speed.")

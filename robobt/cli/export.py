@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Json, console, errors, one_line_errors, print_json, say, table, warn
+from robobt.cli.common import Json, console, errors, print_json, say, table, warn
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,13 +16,6 @@ if TYPE_CHECKING:
     from robobt.models.file import ModelFile
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    for command in (export, models):
-        app.command()(command)
-
-
-@one_line_errors
 def export(
     run: Annotated[Path, typer.Argument(help="What 'robobt train' wrote: its folder, or that of one seed.")],
     name: Annotated[
@@ -58,7 +51,6 @@ def export(
     _print_held_out(read[0])
 
 
-@one_line_errors
 def models(
     name: Annotated[
         str | None, typer.Argument(help="One model by its name or file, with its whole card.")

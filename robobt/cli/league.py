@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, one_line_errors, print_json, say, warn
+from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
@@ -25,12 +25,6 @@ class Clock(StrEnum):
     UNIX = "unix"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Add the commands to the application."""
-    app.command()(serve)
-    app.command("log")(log_packets)
-
-
 def _port(name: str, what: str) -> typer.models.OptionInfo:
     option: typer.models.OptionInfo = typer.Option(
         f"--{name}-port", min=0, max=65535, help=what, show_default=True
@@ -38,7 +32,6 @@ def _port(name: str, what: str) -> typer.models.OptionInfo:
     return option
 
 
-@one_line_errors
 def serve(
     scenario: Annotated[
         str | None,
@@ -204,7 +197,6 @@ def _announce(server: SimServer) -> None:
     )
 
 
-@one_line_errors
 def log_packets(
     out: Annotated[Path, typer.Argument(help="The log to write (*.log, *.log.gz).")],
     seconds: Annotated[

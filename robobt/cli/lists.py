@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Imports, Json, console, import_files, one_line_errors, print_json, unknown, warn
+from robobt.cli.common import Imports, Json, console, import_files, print_json, unknown, warn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,13 +23,6 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    for command in (plays, skills, raters, policies):
-        app.command()(command)
-
-
-@one_line_errors
 def plays(
     name: Annotated[str | None, typer.Argument(help="One play, with its whole description.")] = None,
     imports: Imports = None,
@@ -49,7 +42,6 @@ def plays(
     _list("plays", PLAYS, name, as_json, lambda play: _Listed(_doc(play), parameters_of(play)))
 
 
-@one_line_errors
 def skills(
     name: Annotated[str | None, typer.Argument(help="One skill, with its whole description.")] = None,
     imports: Imports = None,
@@ -74,7 +66,6 @@ def skills(
     _list("skills", SKILLS, name, as_json, listed)
 
 
-@one_line_errors
 def raters(
     name: Annotated[str | None, typer.Argument(help="One rater, with its whole description.")] = None,
     imports: Imports = None,
@@ -105,7 +96,6 @@ def raters(
     _list("raters", RATERS, name, as_json, listed)
 
 
-@one_line_errors
 def policies(
     name: Annotated[str | None, typer.Argument(help="One policy, with its whole description.")] = None,
     imports: Imports = None,

@@ -24,7 +24,6 @@ from robobt.cli.common import (
     cores,
     errors,
     import_files,
-    one_line_errors,
     parse_assignments,
     print_json,
     say,
@@ -44,12 +43,6 @@ class OnError(StrEnum):
     RAISE = "raise"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    app.command()(match)
-
-
-@one_line_errors
 def match(
     scenario: Annotated[
         str, typer.Argument(help="A scenario file, or the name of a bundled one (see 'robobt scenarios').")

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import Json, Progress, console, one_line_errors, print_json, say, table
-from robobt.cli.deployed import deployed
-from robobt.cli.table4 import table4
+from robobt.cli.common import Json, Progress, console, print_json, say, table
 
 if TYPE_CHECKING:
     from robobt.experiments.table3 import Table3
@@ -25,15 +23,6 @@ _Data = Annotated[
 ]
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group and its commands."""
-    paper = typer.Typer(no_args_is_help=True, help="The tables of the paper, its figures beside ours.")
-    for command in (table2, table3, table4, deployed):
-        paper.command()(command)
-    app.add_typer(paper, name="paper")
-
-
-@one_line_errors
 def table2(
     data: _Data = None,
     replications: Annotated[
@@ -92,7 +81,6 @@ def table2(
         console.print(listed)
 
 
-@one_line_errors
 def table3(
     data: _Data = None,
     seeds: Annotated[

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import RECORDING, Imports, import_files, one_line_errors, say
+from robobt.cli.common import RECORDING, Imports, import_files, say
 
 if TYPE_CHECKING:
     from robobt.match.recording import Recording
@@ -20,15 +20,6 @@ _Robot = Annotated[
 ]
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    record = typer.Typer(no_args_is_help=True, help="Use recordings elsewhere: in other tools and in tests.")
-    record.command()(export)
-    record.command()(case)
-    app.add_typer(record, name="record")
-
-
-@one_line_errors
 def export(
     recording: _File,
     btlog: Annotated[
@@ -54,7 +45,6 @@ def export(
     say(f"Log: {write_btlog(loaded, who, target)}")
 
 
-@one_line_errors
 def case(
     recording: _File,
     tick: Annotated[int, typer.Option("--tick", min=0, help="Which tick, from 0.")],

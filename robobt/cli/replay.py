@@ -8,15 +8,9 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import PAGE, RECORDING, one_line_errors, say
+from robobt.cli.common import PAGE, RECORDING, say
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    app.command()(replay)
-
-
-@one_line_errors
 def replay(
     recording: Annotated[
         Path,

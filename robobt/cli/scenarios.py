@@ -7,18 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Imports, Json, console, import_files, one_line_errors, print_json, say, table
+from robobt.cli.common import Imports, Json, console, import_files, print_json, say, table
 
 if TYPE_CHECKING:
     from robobt.match import Scenario
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    app.command()(scenarios)
-
-
-@one_line_errors
 def scenarios(
     name: Annotated[
         str | None, typer.Argument(help="One scenario, bundled or a file, with all of it.")

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, Progress, one_line_errors, print_json, say
+from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say
 
 
 class Model(StrEnum):
@@ -19,15 +19,6 @@ class Model(StrEnum):
     EXPECTED = "shot_expected"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group and its commands."""
-    shots = typer.Typer(no_args_is_help=True, help="Predictors of shots: train them, draw their map.")
-    shots.command()(train)
-    shots.command("map")(draw)
-    app.add_typer(shots, name="shots")
-
-
-@one_line_errors
 def train(
     data: Annotated[
         list[Path], typer.Option("--data", help="Shots of 'robobt collect shots'; may be given again.")
@@ -73,7 +64,6 @@ def train(
     )
 
 
-@one_line_errors
 def draw(
     picture: Annotated[Path, typer.Option("--picture", "-o", help="The picture to write (.png).")] = Path(
         "goal_map.png"

@@ -13,7 +13,6 @@ from robobt.cli.common import (
     Seed,
     Where,
     console,
-    one_line_errors,
     print_json,
     say,
     table,
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from robobt.experiments.table4_rows import Spread, Trial
 
 
-@one_line_errors
 def table4(
     runs: Annotated[
         int, typer.Option("--runs", "-n", min=1, max=100_000, help="Runs of each trial and combination.")

@@ -16,7 +16,6 @@ from robobt.cli.common import (
     console,
     cores,
     errors,
-    one_line_errors,
     parse_assignments,
     print_json,
     say,
@@ -37,13 +36,6 @@ Changes = Annotated[
 ]
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the commands."""
-    app.command()(train)
-    app.command()(demonstrations)
-
-
-@one_line_errors
 def train(
     task: Task,
     preset: Annotated[
@@ -102,7 +94,6 @@ def train(
     say(f"In {folder}.")
 
 
-@one_line_errors
 def demonstrations(
     task: Task,
     out: Annotated[Path, typer.Option("--out", "-o", help="The Parquet file to write.")],

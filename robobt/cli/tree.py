@@ -16,7 +16,6 @@ from robobt.cli.common import (
     Seed,
     errors,
     import_files,
-    one_line_errors,
     parse_assignments,
     print_json,
     say,
@@ -28,12 +27,6 @@ if TYPE_CHECKING:
     from robobt.tree import Behaviour
 
 
-def add_to(app: typer.Typer) -> None:
-    """Enter the group's commands."""
-    app.command()(tree)
-
-
-@one_line_errors
 def tree(
     play: Annotated[
         str, typer.Argument(help="Name of a play (see 'robobt plays'), or a tree file (.yaml, .xml).")

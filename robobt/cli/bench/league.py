@@ -13,21 +13,12 @@ from robobt.cli.common import (
     Json,
     console,
     errors,
-    one_line_errors,
     print_json,
     say,
     table,
 )
 
 
-def add_to(bench: typer.Typer) -> None:
-    """Add the commands to the application."""
-    bench.command("filter")(bench_filter)
-    bench.command("clock")(bench_clock)
-    bench.command("league")(bench_league)
-
-
-@one_line_errors
 def bench_filter(
     scenario: Annotated[
         str, typer.Argument(help="The match: a scenario file or the name of a bundled one.")
@@ -89,7 +80,6 @@ def _row(rms: dict[str, float]) -> list[str]:
     ]
 
 
-@one_line_errors
 def bench_clock(
     seconds: Annotated[
         float, typer.Option("--seconds", min=5, max=3600, help="How long each is followed.")
@@ -130,7 +120,6 @@ def bench_clock(
     console.print(shown)
 
 
-@one_line_errors
 def bench_league(
     scenario: Bundled = "six_v_six",
     seconds: Annotated[float, typer.Option("--seconds", min=4, max=3600, help="How long to play.")] = 30.0,

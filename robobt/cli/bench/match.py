@@ -14,18 +14,11 @@ from robobt.cli.common import (
     Seed,
     errors,
     import_files,
-    one_line_errors,
     print_json,
     say,
 )
 
 
-def add_to(bench: typer.Typer) -> None:
-    """Enter the command."""
-    bench.command("match")(bench_match)
-
-
-@one_line_errors
 def bench_match(
     scenario: Bundled = "six_v_six",
     seconds: Annotated[

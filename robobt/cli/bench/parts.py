@@ -7,18 +7,9 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import Json, console, errors, one_line_errors, print_json, say, table
+from robobt.cli.common import Json, console, errors, print_json, say, table
 
 
-def add_to(bench: typer.Typer) -> None:
-    """Enter the commands."""
-    bench.command("sim")(bench_sim)
-    bench.command("tree")(bench_tree)
-    bench.command("policy")(bench_policy)
-    bench.command("env")(bench_env)
-
-
-@one_line_errors
 def bench_sim(
     seconds: Annotated[
         float, typer.Option("--seconds", min=0.1, max=60, help="How long to measure each case.")
@@ -50,7 +41,6 @@ def bench_sim(
     console.print(listed)
 
 
-@one_line_errors
 def bench_tree(as_json: Json = False) -> None:
     """Measure the trees: a tick of 30 nodes beside py_trees and beside plain classes.
 
@@ -67,7 +57,6 @@ def bench_tree(as_json: Json = False) -> None:
     _print(figures, as_json)
 
 
-@one_line_errors
 def bench_policy(
     model: Annotated[
         str, typer.Option("--model", help="Name or file of a TorchScript policy.")
@@ -91,7 +80,6 @@ def bench_policy(
     _print(figures, as_json)
 
 
-@one_line_errors
 def bench_env(
     seconds: Annotated[
         float, typer.Option("--seconds", min=0.1, max=60, help="How long to measure each figure.")

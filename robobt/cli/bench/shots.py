@@ -7,15 +7,9 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import Json, Progress, one_line_errors, print_json, say
+from robobt.cli.common import Json, Progress, print_json, say
 
 
-def add_to(bench: typer.Typer) -> None:
-    """Enter the command."""
-    bench.command("shots")(bench_shots)
-
-
-@one_line_errors
 def bench_shots(
     data: Annotated[
         Path | None,

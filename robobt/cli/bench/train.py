@@ -8,15 +8,9 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Json, console, errors, one_line_errors, parse_assignments, print_json, table
+from robobt.cli.common import Json, console, errors, parse_assignments, print_json, table
 
 
-def add_to(bench: typer.Typer) -> None:
-    """Enter the command."""
-    bench.command("train")(bench_train)
-
-
-@one_line_errors
 def bench_train(
     task: Annotated[str, typer.Argument(help="What is learned: go_to_ball or shoot.")],
     seeds: Annotated[int, typer.Option("--seeds", "-n", min=1, max=100, help="Seeds of each setting.")] = 5,
