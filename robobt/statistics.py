@@ -152,9 +152,7 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
 
     The test is exact: the binomial test on the trials in which they differ.
 
-    Args:
-        first: (n,) whether the first was right on each trial.
-        second: likewise.
+    ``first`` and ``second`` (n,) tell whether each was right on each trial.
 
     Raises:
         ValueError: lists of different length.
@@ -187,10 +185,7 @@ class ReliabilityBin:
 def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
     """Compare what was predicted with what came true, in bins of equal width; empty bins are left out.
 
-    Args:
-        probabilities: (n,) predicted.
-        outcomes: (n,) of 0 and 1.
-        bins: how many.
+    ``probabilities`` (n,) were predicted; ``outcomes`` (n,) are 0 or 1.
 
     Raises:
         ValueError: lists of different length or none, no bin, or values outside [0, 1].

@@ -37,9 +37,7 @@ class GoalMap:
 def goal_map(model: str = "shot_expected", spacing: float = 0.1) -> GoalMap:
     """Return the best shot's probability from every place, past a goalkeeper at rest that covers the angle.
 
-    Args:
-        model: predictor of the ``expected_goal`` rater.
-        spacing: between places [m].
+    Judged by the predictor ``model`` of the ``expected_goal`` rater, at places ``spacing`` apart [m].
 
     Raises:
         ModelError: the model cannot be used.

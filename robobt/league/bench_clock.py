@@ -109,12 +109,7 @@ class PeerClock:
 class PeerWorld(LeagueWorld):
     """A league world under a simulated clock that is handed a peer's frames.
 
-    Args:
-        peer: the field's clock.
-        known: what earlier worlds have found out.
-
-    Attributes:
-        machine_time: this machine's clock [s].
+    ``known`` is what earlier worlds have found out; ``machine_time`` is this machine's clock [s].
     """
 
     def __init__(self, peer: PeerClock, known: KnownField | None = None) -> None:

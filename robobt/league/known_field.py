@@ -19,8 +19,7 @@ _NOTABLE, _SLOW = 0.01, 0.9
 class KnownField:
     """What is known of a field from one match to the next.
 
-    Args:
-        speed: rate that its clock is expected to have [s of the field per s].
+    ``speed`` is the rate that its clock is expected to have [s of the field per s].
     """
 
     def __init__(self, speed: float = 1.0) -> None:

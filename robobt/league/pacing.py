@@ -15,9 +15,7 @@ _WINDOW = 0.45
 class Pace:
     """A beat that follows the frames' phase but not their gaps.
 
-    Args:
-        period: between two acts [s].
-        now: time of the first beat [s].
+    The beats are a ``period`` apart, the first at ``now`` [s].
     """
 
     def __init__(self, period: float, now: float) -> None:
@@ -37,12 +35,7 @@ class Pace:
         return self._beat + self.period * (1.0 + _WINDOW)
 
     def acted(self, now: float, frame: float | None) -> None:
-        """Record an act.
-
-        Args:
-            now: when it happened [s].
-            frame: when the newest frame since the previous act arrived, if any [s].
-        """
+        """Record an act; ``frame`` is when the newest frame since the act before arrived, if one did [s]."""
         due = self._beat + self.period
         if now > due + 4.0 * self.period:
             # This process was held up; catching up would help nobody.

@@ -14,12 +14,7 @@ _WINDOW, _SLOW = 5.0, 0.9
 
 
 class MatchWatch:
-    """Follows a match from act to act.
-
-    Args:
-        feed: what is received.
-        period: control period [s of the field].
-    """
+    """Follows the match that ``feed`` receives, from act to act, a ``period`` of its time apart [s]."""
 
     def __init__(self, feed: Feed, period: float) -> None:
         self._feed, self._period = feed, period

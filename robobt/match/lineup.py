@@ -20,9 +20,8 @@ _ASIDE = 0.4
 class Lineup:
     """One team's robots, each with the tree that moves it.
 
-    Args:
-        players: the team's robots with the trees that the scenario gives them.
-        keeper: number of the scenario's goalkeeper; None without one.
+    ``players`` has the robots with the trees that the scenario gives them; ``keeper`` is the number of its
+    goalkeeper, None without one.
 
     Attributes:
         players: who moves the robot of each number now.

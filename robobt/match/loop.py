@@ -161,11 +161,7 @@ class Match:
         return True
 
     def result(self, wall_time: float = 0.0) -> MatchResult:
-        """Return the figures so far; a match that is not over counts as one that ran out of time.
-
-        Args:
-            wall_time: how long it took, for the real-time factor [s].
-        """
+        """Return the figures so far, after ``wall_time`` [s]; a match that is not over ran out of time."""
         outcome = Outcome.TIME if self.outcome is None else self.outcome
         measures = self.measures
         return MatchResult(

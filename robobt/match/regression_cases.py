@@ -101,13 +101,7 @@ class RegressionCase:
 
 
 def save_regression_case(recording: Recording, robot: RobotId, tick: int, path: str | Path) -> Path:
-    """Save a recorded tick as a regression case, and return where it is.
-
-    Args:
-        recording: its file is read again.
-        robot: whose tree.
-        tick: which one, from 0.
-        path: the file to write.
+    """Save a recorded robot's tick (from 0) as a regression case at ``path``, and return where it is.
 
     Raises:
         RegressionCaseError: there is no such robot or tick, the tree was not ticked then, the

@@ -13,11 +13,7 @@ _frame, _ball, _robot = attrgetter(*_FRAME), attrgetter(*_BALL), attrgetter(*_RO
 
 
 class KeptView:
-    """Notices and undoes what a tree has done to the view that it shares with its team-mates'.
-
-    Args:
-        view: a frame, before any tree has seen it.
-    """
+    """Notices and undoes what a tree has done to the view that it shares with its team-mates'."""
 
     def __init__(self, view: Frame) -> None:
         self._view, self._the_ball = view, view.ball

@@ -61,13 +61,7 @@ class Policy:
         self.network = network
 
     def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
-        """Return the model's outputs.
-
-        Args:
-            inputs: (size,) or (n, size), in SI units.
-
-        Returns:
-            (outputs,) or (n, outputs).
+        """Return the outputs for an observation (size,) or for many (n, size) in SI units, shaped like them.
 
         Raises:
             ValueError: the inputs have the wrong shape.

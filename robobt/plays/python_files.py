@@ -22,14 +22,11 @@ class PythonFileError(ConfigError):
 
 
 def import_file(path: str | Path) -> ModuleType:
-    """Run a Python file, so that the plays, skills, raters and policies it registers are there.
+    """Run a ``.py`` file, so that the plays, skills, raters and policies it registers are there.
 
     A file is run once; asked for again it is the same module. Modules that lie
     beside it can be imported by it. When it raises, nothing of what it has registered stays.
     Worker processes of a match run the same files (:func:`imported_files`).
-
-    Args:
-        path: the file; its name ends in ``.py``.
 
     Raises:
         PythonFileError: it cannot be read, or raises as it runs.

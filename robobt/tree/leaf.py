@@ -16,11 +16,7 @@ Entries: TypeAlias = tuple[str, ...] | Mapping[str, object]
 
 
 class Bound(Generic[StoreT]):
-    """What is given the store of the robot that runs the tree: leaves, and control nodes that need it.
-
-    Attributes:
-        store: the robot's store; set by :func:`bind` before the first tick.
-    """
+    """What :func:`bind` gives the robot's store before the first tick: leaves, and nodes that need it."""
 
     store: StoreT
     _given: tuple[tuple[object, ...], dict[str, object]]

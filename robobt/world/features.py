@@ -189,9 +189,7 @@ def _observe_scene(
 def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
     """Compute the Go-To-Ball states of many arenas.
 
-    Args:
-        robots: (n, 6) x, y, heading, vx, vy, omega in field coordinates.
-        balls: (n, >=2) x, y.
+    ``robots`` (n, 6) are x, y, heading, vx, vy, omega in field coordinates, ``balls`` (n, 2 or more) x, y.
 
     Returns:
         (n, 6): :data:`GO_TO_BALL`.
@@ -228,10 +226,7 @@ def shot_features(shooter: FloatArray, targets: FloatArray, opponents: FloatArra
     The frame has its origin at the shooter and its first axis along shooter ->
     target (not along the robot's heading).
 
-    Args:
-        shooter: (2,) position [m].
-        targets: (T, 2) points [m].
-        opponents: (K, 2) positions [m].
+    Positions in metres: the ``shooter`` (2,), ``targets`` (T, 2) and ``opponents`` (K, 2).
 
     Returns:
         (T, K, 5): :data:`SHOT`.

@@ -96,9 +96,6 @@ class FieldClock:
 
     All times of this machine are on one monotonic clock.
 
-    Args:
-        rate: to assume at first [s of the field per s].
-
     Attributes:
         rate: how fast the field's clock runs [s of the field per s].
         settled: whether the rate is measured.
@@ -132,12 +129,7 @@ class FieldClock:
         return max(self._late, default=0.0)
 
     def update(self, arrived: float, sent: float) -> None:
-        """Learn from a packet.
-
-        Args:
-            arrived: when it arrived, on this machine's clock [s].
-            sent: when it was sent, on the field's clock [s].
-        """
+        """Learn from a packet ``sent`` by the field's clock that ``arrived`` by this machine's [s]."""
         if not self._known:
             self._known, self._at, self._sent = True, arrived, sent
         block = self._block
@@ -245,10 +237,7 @@ class CameraClocks:
     def shift(self, camera: int, arrived: float, sent: float) -> float:
         """Return what to add to a camera's timestamps to convert them to the first camera's clock [s].
 
-        Args:
-            camera: number of the camera.
-            arrived: when its packet arrived, on this machine's clock [s].
-            sent: when it was sent, on the camera's clock [s].
+        The packet in hand was ``sent`` by the camera's own clock and ``arrived`` by this machine's [s].
         """
         offset = arrived - sent
         known = self._offsets.get(camera)

@@ -41,12 +41,7 @@ _SHORTEST, _LONGEST = 0.004, 0.5
 
 @dataclass(slots=True)
 class Kick:
-    """A kick that was seen.
-
-    Attributes:
-        robot: who kicked.
-        time: when the ball was first seen to leave, on the vision's clock [s].
-    """
+    """A kick by ``robot``; ``time`` is when the ball was first seen to leave, on the vision's clock [s]."""
 
     robot: RobotId
     time: float
@@ -72,8 +67,7 @@ class _Leaving:
 class KickWatch:
     """Finds the kicks in where the ball and the robots were seen.
 
-    Args:
-        face: centre of a robot to its flat front [m].
+    ``face`` is the distance from a robot's centre to its flat front [m].
     """
 
     def __init__(self, face: float) -> None:
@@ -95,12 +89,8 @@ class KickWatch:
     ) -> Kick | None:
         """Take in where the ball was seen; return the kick that is thereby known, if any.
 
-        Args:
-            time: timestamp of the capture [s].
-            x: where the ball was seen [m].
-            y: the same.
-            motions: the robots at that time.
-            sent: the commands they were sent, and when these took effect.
+        It was seen at ``x``, ``y`` [m] when the vision's clock showed ``time`` [s], among robots with these
+        ``motions``; ``sent`` are the commands they got, and when these took effect.
         """
         elapsed = time - self._time
         if elapsed < _SHORTEST:

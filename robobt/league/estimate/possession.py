@@ -46,9 +46,6 @@ class Hold:
 class Possession:
     """Decides who has the ball.
 
-    Args:
-        body: shape of the robots.
-
     Attributes:
         hold: who carries the ball, None when nobody does.
         last_touch: who touched it last, None before the first touch.

@@ -58,12 +58,9 @@ class LogRecord(NamedTuple):
 
 
 class LogWriter:
-    """Writes a log. A context manager.
+    """Writes a log in place of one that is there, compressed if its name ends in ``.gz``. A context manager.
 
     If the process dies, the log can be read up to its last moments.
-
-    Args:
-        path: file to write, replaced when it exists; compressed when the name ends in ``.gz``.
 
     Raises:
         OSError: the file cannot be written.

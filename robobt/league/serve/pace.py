@@ -18,9 +18,7 @@ _SLOW = 0.98
 class ServingPace:
     """Simulated time that follows this machine's clock at some speed, through stalls too.
 
-    Args:
-        now: this machine's clock [s].
-        time: simulated time [s].
+    It begins where this machine's clock shows ``now`` and the simulation's ``time`` [s].
 
     Attributes:
         due: simulated time that has to be reached [s].

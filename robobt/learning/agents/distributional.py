@@ -12,13 +12,7 @@ from torch import Tensor
 
 
 class Atoms:
-    """Evenly spaced values that a return may take.
-
-    Args:
-        low: the smallest return; what lies below counts as this.
-        high: the largest return; what lies above counts as this.
-        count: how many atoms, at least 2.
-    """
+    """At least 2 evenly spaced returns from ``low`` to ``high``; what lies beyond counts as these."""
 
     def __init__(self, low: float, high: float, count: int) -> None:
         if count < 2 or not low < high:
@@ -33,13 +27,8 @@ class Atoms:
     def project(self, probabilities: Tensor, reward: Tensor, discount: Tensor) -> Tensor:
         """Project the distribution of reward + discount * Z on the atoms.
 
-        Args:
-            probabilities: (batch, atoms) of Z.
-            reward: (batch,).
-            discount: (batch,).
-
-        Returns:
-            (batch, atoms), each row of mass 1.
+        ``reward`` and ``discount`` are (batch,), ``probabilities``, Z's, and the answer (batch, atoms), each
+        row of which has mass 1.
         """
         width = (self.high - self.low) / (self.count - 1)
         moved = reward[:, None] + discount[:, None] * self.values

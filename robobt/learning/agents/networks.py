@@ -46,12 +46,8 @@ class Actor(nn.Module):
     The observation's scaling is a constant inside, so that whoever runs the
     exported module feeds it what :mod:`robobt.world.features` makes, unchanged.
 
-    Args:
-        scale: (observation,) typical size of each entry, in its SI unit.
-        actions: length of the action.
-        hidden: sizes of the hidden layers.
-        layer_norm: see :func:`mlp`.
-        generator: see :func:`mlp`.
+    ``scale`` (observation,) is the typical size of each entry in its SI unit, ``hidden`` the sizes of the
+    hidden layers; ``layer_norm`` and ``generator`` are as for :func:`mlp`.
 
     Attributes:
         build: the arguments that make an actor of the same shape.
@@ -85,14 +81,8 @@ class Actor(nn.Module):
 class Critic(nn.Module):
     """One or several independent estimates of the return of (observation, action).
 
-    Args:
-        scale: see :class:`Actor`.
-        actions: see :class:`Actor`.
-        hidden: see :class:`Actor`.
-        outputs: 1 for a value, else the logits of a distribution over so many atoms.
-        heads: how many estimates; TD3 takes two.
-        layer_norm: see :func:`mlp`.
-        generator: see :func:`mlp`.
+    It answers one value, or the logits of a distribution over ``outputs`` atoms; ``heads`` says how many
+    estimates, of which TD3 takes two. The rest is as for :class:`Actor`.
     """
 
     inverse_scale: Tensor

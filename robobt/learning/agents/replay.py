@@ -188,9 +188,8 @@ class PrioritisedReplay(Replay):
     def update_priorities(self, rows: NDArray[np.int64], errors: NDArray[np.float64]) -> None:
         """Set the priorities of rows after an update.
 
-        Args:
-            rows: (batch,) indices in the replay.
-            errors: (batch,) squared TD errors, with whatever else raises a priority.
+        ``rows`` (batch,) are indices in the replay; ``errors`` (batch,) squared TD errors, with whatever else
+        raises a priority.
         """
         priority = errors + self._floor + self._bonus * (rows < self.kept)
         self._largest = max(self._largest, float(priority.max()))

@@ -35,11 +35,7 @@ _NO_COMMAND = RobotCommand()
 
 
 class TickNumbers:
-    """Makes the columns of a recording.
-
-    Args:
-        robots: in the order of the columns; all others are left out.
-    """
+    """Makes the columns of a recording, of these robots in this order."""
 
     def __init__(self, robots: Sequence[RobotId]) -> None:
         self._slots = {robot: slot for slot, robot in enumerate(robots)}

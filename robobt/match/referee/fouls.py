@@ -68,10 +68,8 @@ class Fouls:
     def begin(self, frame: Frame, kicker: RobotId | None, spot: Point) -> None:
         """Start watching as the ball comes into play.
 
-        Args:
-            frame: the first with the ball in play.
-            kicker: who took the restart and may not touch the ball twice; None where play is open.
-            spot: where the restart was taken [m].
+        ``frame`` is the first with the ball in play; ``kicker`` took the restart at ``spot`` [m] and may not
+        touch the ball twice; it is None where play is open.
         """
         self._kicker, self._kicker_left, self._kick_spot = kicker, False, spot
         self._crashing.clear()

@@ -71,8 +71,7 @@ class Referee:
     def update(self, frame: Frame) -> Decision:
         """Judge the next frame.
 
-        Args:
-            frame: what really is on the field, seen from blue's side; its time grows from call to call.
+        ``frame`` shows what really is on the field, from blue's side; its time grows from call to call.
 
         Raises:
             ValueError: the frame is seen from yellow's side.

@@ -33,11 +33,6 @@ class ResultsFile:
     A file that exists is continued when it holds the same scenario, seed and
     version; damaged lines are dropped, and their trials played again.
 
-    Args:
-        path: the file, by custom ``*.jsonl``.
-        scenario: what is played.
-        seed: the run's seed.
-
     Attributes:
         done: results the file held already, by trial.
 

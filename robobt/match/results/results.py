@@ -106,11 +106,7 @@ def _adapter() -> TypeAdapter[MatchResult]:
 class Rate:
     """How often something happened.
 
-    Attributes:
-        count: number of trials in which it did.
-        rate: share of the trials.
-        low: lower end of the rate's 95 % Wilson interval.
-        high: upper end of it.
+    It did in ``count`` trials, a share ``rate``, with the Wilson interval of 95 % from ``low`` to ``high``.
     """
 
     count: int

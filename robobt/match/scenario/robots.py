@@ -80,9 +80,6 @@ class RobotSetup(Part):
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
         """Return the setup with other values.
 
-        Args:
-            changes: by name of a field, or of a parameter of the play.
-
         Raises:
             ValidationError: a value does not fit, or the play has no such parameter.
         """

@@ -53,10 +53,8 @@ _ITEM_SIZES = {1: 4, 2: 1, 3: 1, 6: 4, 7: 8, 9: 1, 10: 2, 11: 8}
 def check_onnx(content: bytes, batch: int, size: int) -> None:
     """Check that an ONNX file consists of plain operations, with bounded answers and all weights in it.
 
-    Args:
-        content: the file, without card and seal.
-        batch: number of observations that it will be tried on.
-        size: size of an observation.
+    ``content`` is the file without card and seal; it will be tried on ``batch`` observations of ``size``
+    numbers.
 
     Raises:
         ModelError: it does not, or is damaged.

@@ -12,13 +12,7 @@ from robobt.shots.data.schema import Row, complete_row
 
 
 class Taken(NamedTuple):
-    """What came of one trial.
-
-    Attributes:
-        trial: its number.
-        row: its shot, a row of the table; None without one.
-        time: how long it lasted in the world [s].
-    """
+    """What came of one trial: its shot, None without one, and how long it lasted in the world [s]."""
 
     trial: int
     row: Row | None

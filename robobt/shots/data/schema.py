@@ -164,13 +164,7 @@ def complete_row(recorded: Row) -> Row:
 
 
 def nearest_to_line(origin: ArrayLike, target: ArrayLike, opponents: ArrayLike) -> int:
-    """Return the index of the opponent that is nearest to the segment origin -> target.
-
-    Args:
-        origin: (2,) [m].
-        target: (2,) [m].
-        opponents: (K, 2) [m], at least one.
-    """
+    """Return the index of the one of the (K, 2) opponents that is nearest to the segment origin -> target."""
     start = np.asarray(origin, dtype=np.float64)
     way = np.asarray(target, dtype=np.float64) - start
     offsets = np.asarray(opponents, dtype=np.float64) - start

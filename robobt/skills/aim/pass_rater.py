@@ -78,16 +78,11 @@ class PassRater(Settings):
         return sorted(passes, key=_rank)
 
     def head_starts(self, frame: Frame, targets: Sequence[Point], speeds: Sequence[float]) -> list[float]:
-        """Compute the least time by which the ball of each pass comes before any opponent [s].
+        """Compute the least time by which the ball of each pass, kicked at its speed, beats any opponent [s].
 
         Looked at in five points of the lane; negative where an opponent could be
         there first. An opponent goes on as it moves for its reaction time and then
         accelerates straight to the point, which it passes at any speed.
-
-        Args:
-            frame: what is on the field.
-            targets: ends of the passes [m].
-            speeds: their kick speeds [m/s].
         """
         if not frame.opponents:
             return [inf] * len(targets)

@@ -39,11 +39,7 @@ def earliest_meeting(
     straight line, can stand behind it there in time; if it never can, the point
     where the ball comes to rest or leaves the field.
 
-    Args:
-        frame: what is on the field.
-        me: the robot.
-        limits: how it drives.
-        rolling: speed at which the ball begins to roll [m/s].
+    The ball begins to roll at the speed ``rolling`` [m/s].
     """
     ball = frame.ball
     speed = ball.speed

@@ -54,12 +54,7 @@ class KeepDistance(Skill):
 def way_out(frame: Frame, me: RobotState, place: Point, reach: float, *, goalkeeper: bool = False) -> Point:
     """Return a point straight away from ``place``, or as little aside as robots may stand there.
 
-    Args:
-        frame: what is on the field.
-        me: the robot.
-        place: what to get away from [m].
-        reach: how far [m].
-        goalkeeper: may stay in the own defence area.
+    ``reach`` is how far to go [m]; ``goalkeeper`` says whether the robot may stay in its own defence area.
     """
     away = direction(place, me.position)
     for turn in _TURNS:

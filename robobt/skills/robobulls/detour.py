@@ -29,11 +29,7 @@ _ROBOT_FREE = 2 * RADIUS + 0.05
 def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: bool = False) -> Point:
     """Return where to drive now to get to ``goal`` without touching the ball or a robot [m].
 
-    Args:
-        frame: what is on the field.
-        me: the robot.
-        goal: where to [m].
-        goalkeeper: whether ``me`` may drive in its own defence area.
+    ``me`` may drive in its own defence area if it is the ``goalkeeper``.
     """
     start = me.position
     others = [other.position for other in frame.others(me.id)]

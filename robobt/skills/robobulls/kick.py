@@ -70,11 +70,8 @@ class RobobullsKick:
     than 5 degrees off its heading for 0.48 s is *kick-locked*: it starts again
     from BEHIND and cannot kick before it has been there.
 
-    Args:
-        tolerance: largest angle between heading and target at the kick [rad].
-        kick_speed: speed at which the ball is to leave [m/s].
-        limits: how to drive.
-        goalkeeper: whether it may drive in its own defence area.
+    It kicks at ``kick_speed`` [m/s] where heading and target are at most ``tolerance`` apart [rad]; a
+    ``goalkeeper`` may drive in its own defence area.
     """
 
     tolerance: float = radians(1.0)

@@ -54,9 +54,7 @@ def static_value(grid: PositionGrid, widest: float) -> GridArray:
 
     Made once for a grid and not to be written to.
 
-    Args:
-        grid: the points.
-        widest: angle off the straight way out of the goal that is worth nothing [rad].
+    ``widest`` is the angle off the straight way out of the goal that is worth nothing [rad].
     """
     nearness = 1.0 - grid.goal_distance / (grid.field.length / 3.0)
     straightness = 1.0 - grid.goal_angle / widest

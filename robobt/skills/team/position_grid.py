@@ -103,9 +103,7 @@ class PositionGrid:
         them and the line from the right post past the rightmost, from them back to
         where the lines meet.
 
-        Args:
-            opponents: the robots that may hide it.
-            extra: added to the shadow on either side [m].
+        ``extra`` is added to the shadow of each of the opponents on either side [m].
         """
         goal_x = self.field.half_length
         half = self.field.goal_width / 2.0 + extra

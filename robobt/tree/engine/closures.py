@@ -42,9 +42,6 @@ class Marks:
     leaf returned what it did when it was ticked last has left the tree as it was, but for
     what nodes say.
 
-    Args:
-        nodes: the nodes that are asked for.
-
     Attributes:
         nodes: those.
         seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among

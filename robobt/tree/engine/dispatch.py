@@ -62,10 +62,7 @@ def register(
 ) -> None:
     """Tick nodes that inherit ``tick`` and ``stop`` of a class by closures.
 
-    Args:
-        cls: the class.
-        make: makes the closures of such a node.
-        followed: see :class:`Known`.
+    ``make`` makes the closures of such a node; for ``followed`` see :class:`Known`.
     """
     _KNOWN.append(Known(cls.tick, cls.stop, make, followed))
 

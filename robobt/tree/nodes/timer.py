@@ -22,9 +22,6 @@ class Timer:
     A clock that has gone backwards (a new match on an old tree) ends it, so that
     nothing waits for a time that is long past.
 
-    Args:
-        seconds: how long [s].
-
     Raises:
         ValueError: not a finite number of 0 or more seconds.
     """

@@ -128,10 +128,7 @@ def normal_cdf(values: FloatArray) -> FloatArray:
 def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine | None = None) -> GoalLine:
     """Return the goal line as judged, or ``before`` while it differs too little to be seen.
 
-    Args:
-        points: (T, 2) on the goal line, evenly from right to left [m].
-        chances: (T,) in [0, 1].
-        before: what was thought of it before.
+    ``points`` (T, 2) lie on the goal line, evenly from right to left [m]; ``chances`` (T,) are in [0, 1].
     """
     percent = 100.0 * chances
     if len(percent) > _MOST_POINTS:

@@ -56,15 +56,9 @@ class NNFiltered(ShotRater):
         return shots_at_groups(points, good, self.spacing, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
-        """Compute the least chance that any robot leaves each target point.
+        """Compute the least chance that any robot leaves each of (T, 2) target points, (T,).
 
-        Args:
-            frame: the field, seen from the shooter's side.
-            me: the robot that kicks.
-            points: (T, 2) [m].
-
-        Returns:
-            (T,) in [0, 1]; 1 where nobody is ahead of the shooter.
+        It is 1 where nobody is ahead of the shooter.
         """
         others = obstacles(frame, me)
         ahead = others[others[:, 0] >= me.x]

@@ -16,14 +16,9 @@ _SLIVER = 1e-9
 
 
 def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | None:
-    """Return the directions from ``origin`` to the right and the left post of the opponent's goal [rad].
+    """Return the directions from ``origin`` to the right and left post, either ``inset`` nearer [rad].
 
     None from a point on or behind the goal line.
-
-    Args:
-        field: dimensions.
-        origin: where the ball will be kicked from [m].
-        inset: what either post takes off the goal [m].
     """
     reach = field.half_length - origin[0]
     half = field.goal_width / 2.0 - inset
