@@ -10,11 +10,7 @@ from robobt.statistics import ReliabilityBin
 
 
 def draw_reliability(models: Mapping[str, Sequence[ReliabilityBin]], title: str, path: Path) -> None:
-    """Draw the bins of several models, in the format of the path's ending; a dot's area shows its trials.
-
-    Raises:
-        ValueError: an ending that matplotlib does not know.
-    """
+    """Draw the bins of several models, in the format of the path's ending; a dot's area shows its trials."""
     figure = new_figure(7.0, 6.0)
     axes = figure.add_subplot()
     axes.plot([0, 1], [0, 1], color="0.6", linewidth=1, linestyle="--", label="calibrated")

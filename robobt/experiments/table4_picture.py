@@ -20,9 +20,6 @@ def draw_table4(result: Table4, path: Path) -> None:
 
     Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
     rows, whose approach and pick-up are one figure, are hatched.
-
-    Raises:
-        ValueError: an ending that matplotlib does not know.
     """
     trials = result["trials"]
     figure = new_figure(6.5 * len(trials), 5.5)

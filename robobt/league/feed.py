@@ -209,11 +209,7 @@ class Feed:
         self._cameras[frame.camera] = frame.captured
 
     def _see(self, field: FieldGeometry) -> None:
-        """Play on the field that the vision reports.
-
-        Raises:
-            LeagueError: it is not of the size that is expected.
-        """
+        """Play on the field that the vision reports."""
         if field == self.known.field:
             return
         other = [

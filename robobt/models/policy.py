@@ -16,7 +16,7 @@ from robobt.config.errors import one_line
 from robobt.models.card import ModelCard
 from robobt.models.checks.onnx_file import check_onnx
 from robobt.models.checks.operations import check_frozen, check_loaded
-from robobt.models.checks.torchscript import checked_members
+from robobt.models.checks.source import checked_members
 from robobt.models.file import (
     Format,
     ModelError,

@@ -43,9 +43,6 @@ def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> Non
       not looked at.
 
     Entries that are ``given`` are filled in from outside the tree.
-
-    Raises:
-        WiringError: with everything that is wrong.
     """
     nodes = preorder(root)
     written = set(given)

@@ -62,9 +62,6 @@ class Parameter:
 
         The rules are those of strict JSON: a list fits a tuple and an integer a
         float, but "1.5" is not a number.
-
-        Raises:
-            ParameterError: it does not fit.
         """
         adapter = self._adapter()
         try:
@@ -82,11 +79,7 @@ class Parameter:
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
 
     def plain(self, value: object) -> Any:
-        """Return the plain data that :meth:`convert` makes into an equal value.
-
-        Raises:
-            ParameterError: there is none.
-        """
+        """Return the plain data that :meth:`convert` makes into an equal value."""
         adapter = self._adapter()
         try:
             data = adapter.dump_python(value, mode="json", warnings="error", exclude_defaults=True)
@@ -124,22 +117,14 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
 def check_parameters(
     what: str, builder: Callable[..., object], given: Mapping[str, object]
 ) -> dict[str, Any]:
-    """Convert plain data, given by name, to the types of a signature; ``what`` names its owner in messages.
-
-    Raises:
-        ParameterError: an unknown parameter, one missing, or one of the wrong type.
-    """
+    """Convert plain data by name to the types of a signature; ``what`` names its owner in messages."""
     known = {parameter.name: parameter for parameter in parameters_of(builder)}
     check_names(what, known, given)
     return {name: known[name].convert(value) for name, value in given.items()}
 
 
 def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, object]) -> None:
-    """Check that every given name is known and every parameter without a default is given.
-
-    Raises:
-        ParameterError: one is not.
-    """
+    """Check that every given name is known and every parameter without a default is given."""
     for name in given:
         if name not in known:
             there = f"it has {', '.join(known)}" if known else "it has none"

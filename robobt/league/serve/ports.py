@@ -218,11 +218,7 @@ def _limits(spec: RobotSpecs, base: RobotLimits) -> RobotLimits | None:
 
 
 def _realism(message: RealismConfigErForce, base: RealismSettings) -> RealismSettings:
-    """Return the level with what the message sets replaced.
-
-    Raises:
-        ValueError: a value out of range.
-    """
+    """Return the level with what the message sets replaced."""
     set_fields = [(theirs, ours) for theirs, ours in _REALISM.items() if message.HasField(theirs)]
     changes = {ours: getattr(message, theirs) for theirs, ours in set_fields}
     if message.HasField("vision_delay"):

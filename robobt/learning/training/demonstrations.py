@@ -125,7 +125,8 @@ def read_demonstrations(path: str | Path) -> Demonstrations:
         raise DemonstrationsError(f"{path}: not a file of demonstrations")
     try:
         episode = table["episode"].to_numpy().astype(np.int64)
-        return Demonstrations(episode, *[_array(table[name]) for name in _STEP], about)
+        steps = {name: _array(table[name]) for name in _STEP}
+        return Demonstrations(episode=episode, about=about, **steps)
     except (KeyError, ValueError) as error:
         raise DemonstrationsError(f"{path}: {_reason(error)}") from error
 
@@ -191,7 +192,8 @@ def record(
         "seed": seed,
         "robobt": __version__,
     }
-    return Demonstrations(np.array(numbers), *map(np.array, zip(*flat, strict=True)), about)
+    steps = dict(zip(_STEP, map(np.array, zip(*flat, strict=True)), strict=True))
+    return Demonstrations(episode=np.array(numbers), about=about, **steps)
 
 
 def demonstrations_for(
@@ -231,8 +233,10 @@ def _column(values: NDArray[Any]) -> pa.Array:
 
 
 def _array(column: pa.ChunkedArray) -> NDArray[Any]:
+    values: NDArray[Any]
     if not pa.types.is_nested(column.type):
-        return column.to_numpy()
+        values = column.to_numpy()
+        return values
     values = column.combine_chunks().flatten().to_numpy(zero_copy_only=False)
     return values.astype(np.float64).reshape(len(column), -1)
 

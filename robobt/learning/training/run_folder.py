@@ -194,11 +194,7 @@ class RunFolder:
 
 
 def load_run(folder: str | Path) -> TrainResult:
-    """Load a run that has ended.
-
-    Raises:
-        RunFolderError: something in the folder is missing or damaged.
-    """
+    """Load a run that has ended."""
     path = Path(folder)
     try:
         figures: Figures = json.loads((path / RESULT).read_text(encoding="utf-8"))
@@ -214,11 +210,7 @@ def load_run(folder: str | Path) -> TrainResult:
 
 
 def read_settings(folder: Path) -> TrainSettings:
-    """Read the settings of the run in a folder.
-
-    Raises:
-        RunFolderError: they cannot be read.
-    """
+    """Read the settings of the run in a folder."""
     path = folder / SETTINGS
     try:
         return settings_of(read_yaml(path, SettingsError), str(path))
@@ -234,11 +226,7 @@ def save_actor(actor: Actor, path: Path) -> None:
 
 
 def load_actor(path: str | Path) -> Actor:
-    """Load an actor from its file; nothing in the file is run.
-
-    Raises:
-        RunFolderError: it cannot be read.
-    """
+    """Load an actor from its file; nothing in the file is run."""
     try:
         stored = torch.load(path, weights_only=True)
         actor = Actor(**stored["build"])

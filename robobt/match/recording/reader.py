@@ -38,11 +38,7 @@ def load_recording(path: str | Path) -> Recording:
 
 
 def parse_recording(data: bytes, path: Path) -> Recording:
-    """Read a recording that is in memory; ``path`` is what messages call it.
-
-    Raises:
-        RecordingError: as by :func:`load_recording`.
-    """
+    """Read a recording that is in memory; ``path`` is what messages call it."""
     header, batches = open_stream(data, path)
     reader = _Reader(path, header, _FEW_VALUES + len(data) // _BYTES_PER_VALUE)
     for batch in batches:

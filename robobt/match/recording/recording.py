@@ -43,7 +43,8 @@ class Poses:
 class Recording:
     """A match that was recorded, in world coordinates (blue defends -x).
 
-    T is the number of ticks, K that of robots in the header.
+    T is the number of ticks, K that of robots in the header. What is asked about a robot that is not
+    in the recording raises a :exc:`KeyError`.
 
     Attributes:
         path: the file.
@@ -114,7 +115,6 @@ class Recording:
         """Return what the robot was sent at a tick, None if nothing.
 
         Raises:
-            KeyError: no such robot in this recording.
             IndexError: no such tick.
         """
         slot = self.slot(robot)
@@ -126,45 +126,25 @@ class Recording:
         return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags)
 
     def letters_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree, as in :attr:`letters`.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return one letter a node of the robot's tree, as in :attr:`letters`."""
         return _latest(self.letters[self.slot(robot)], tick, "-" * len(self.nodes(robot)))
 
     def statuses_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree (S, F, R, - without), in the order of its header.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return one letter a node of the robot's tree (S, F, R, - without), in the order of its header."""
         return self.letters_at(robot, tick).upper()
 
     def ticked_path(self, robot: RobotId, tick: int) -> list[str]:
-        """Return the ids of the nodes that were ticked at this tick and had a status then, parents first.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return the ids of the nodes that were ticked at this tick and had a status then, parents first."""
         letters = self.letters_at(robot, tick)
         return [node.path for node, it in zip(self.nodes(robot), letters, strict=True) if it in "SFR"]
 
     def feedback_at(self, robot: RobotId, tick: int) -> dict[int, str]:
-        """Return the last feedback of nodes of the robot's tree while they had a status, by their place.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return the last feedback of nodes of the robot's tree while they had a status, by their place."""
         feedback = _gathered(self.feedback[self.slot(robot)], tick)
         return {place: text for place, text in feedback.items() if text}
 
     def failures_at(self, robot: RobotId, tick: int) -> dict[str, str]:
-        """Return the nodes that failed at this tick by their ids, each with the reason that it gave.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return the nodes that failed at this tick by their ids, each with the reason that it gave."""
         letters, feedback = self.letters_at(robot, tick), self.feedback_at(robot, tick)
         return {
             node.path: feedback.get(place, "")
@@ -173,21 +153,13 @@ class Recording:
         }
 
     def written_at(self, owner: RobotId | Team, tick: int) -> dict[str, JsonValue]:
-        """Return what skills have written into a robot's store, or into what a team shares, by entry.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return what skills have written into a robot's store, or into what a team shares, by entry."""
         if not isinstance(owner, Team):
             self.slot(owner)
         return _gathered(self.written.get(str(owner), []), tick)
 
     def slot(self, robot: RobotId) -> int:
-        """Return the robot's place in the header and in the arrays.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return the robot's place in the header and in the arrays."""
         for slot, entry in enumerate(self.header.robots):
             if entry.id == robot:
                 return slot
@@ -195,11 +167,7 @@ class Recording:
         raise KeyError(f"robot {robot} is not in {self.path}; there are {there}")
 
     def nodes(self, robot: RobotId) -> tuple[RecordedNode, ...]:
-        """Return the nodes of the robot's tree, parents first; none where no tree was recorded.
-
-        Raises:
-            KeyError: no such robot in this recording.
-        """
+        """Return the nodes of the robot's tree, parents first; none where no tree was recorded."""
         return self.header.robots[self.slot(robot)].tree
 
     def _frame(self, tick: int, poses: Poses) -> Frame:

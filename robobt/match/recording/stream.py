@@ -89,11 +89,7 @@ def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ip
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return what is in a file.
-
-    Raises:
-        RecordingError: it cannot be read, or is larger than a recording.
-    """
+    """Return what is in a file."""
     try:
         with path.open("rb") as file:
             # Python makes room for all that it is asked to read.
@@ -174,11 +170,7 @@ def _checked(message: pa.Message, kind: str) -> pa.Message:
 
 
 def _unpacked_size(message: pa.Message) -> int:
-    """Return how many bytes a batch takes once its buffers are unpacked, before Arrow does it unasked.
-
-    Raises:
-        struct.error: the message is damaged.
-    """
+    """Return how many bytes a batch takes once its buffers are unpacked, before Arrow does it unasked."""
 
     # A flatbuffer: tables find their fields by a table of offsets, which stands before them.
     def number(kind: str, at: int, of: pa.Buffer = message.metadata) -> int:

@@ -1,1 +1,1 @@
-"""What a model may consist of, looked over before torch or onnxruntime see it."""
+"""What a model may consist of, seen before torch or onnxruntime see it; anything else is a ModelError."""

@@ -10,7 +10,7 @@ from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
-from robobt.models.checks.limits import MAX_BYTES, MAX_PRODUCTS
+from robobt.models.checks.onnx_file import MAX_BYTES, MAX_PRODUCTS
 from robobt.models.file import ModelError
 
 

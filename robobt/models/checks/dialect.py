@@ -54,11 +54,7 @@ class Sources:
 
 
 def check_type(kind: ast.expr, sources: Sources) -> None:
-    """Check that an expression is a type that networks use.
-
-    Raises:
-        ModelError: it is another.
-    """
+    """Check that an expression is a type that networks use."""
     match kind:
         case ast.Name(id=name) if name in _PLAIN_TYPES:
             return
@@ -113,11 +109,7 @@ def plain(name: str) -> str:
 
 
 def check_variable(name: str) -> None:
-    """Check that a name may be given a value.
-
-    Raises:
-        ModelError: it has a meaning of its own.
-    """
+    """Check that a name may be given a value."""
     if name in TAKEN or name.startswith("__"):
         raise ModelError(f"gives {name} a second meaning")
 

@@ -31,11 +31,7 @@ _WITH_TEXTS = frozenset({"torch.div", "torch.gelu"})
 
 
 def check_functions(sources: Sources) -> None:
-    """Check all methods and functions of an archive, and count its entries in the table of constants.
-
-    Raises:
-        ModelError: one does what no network needs.
-    """
+    """Check all methods and functions of an archive, and count its entries in the table of constants."""
     checker = _Checker(sources)
     for qualified, one in sources.classes.items():
         for method in one.methods.values():

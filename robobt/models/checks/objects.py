@@ -45,11 +45,7 @@ class Object:
 
 
 def check_plain(value: object) -> None:
-    """Check that nothing in a value is nested deep or in itself, and no number too large for torch.
-
-    Raises:
-        ModelError: it is.
-    """
+    """Check that nothing in a value is nested deep or in itself, and no number too large for torch."""
     level = [value]
     total = 0
     for _ in range(_DEEPEST):
@@ -74,11 +70,7 @@ def check_plain(value: object) -> None:
 
 
 def check_objects(value: object, sources: Sources) -> None:
-    """Check that the objects in a value have the attributes that their classes in the code declare.
-
-    Raises:
-        ModelError: they have others.
-    """
+    """Check that the objects in a value have the attributes that their classes in the code declare."""
     if isinstance(value, tuple | list):
         for one in value:
             check_objects(one, sources)

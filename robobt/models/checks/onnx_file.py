@@ -6,12 +6,17 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from robobt.models.checks.limits import MAX_BYTES, MAX_PRODUCTS
 from robobt.models.file import ModelError
 from robobt.models.protobuf import fields
 
 if TYPE_CHECKING:
     import onnx
+
+MAX_BYTES = 64 * 2**20
+"""What all steps of a network may answer together, whatever runs it, for a small batch [bytes]."""
+
+MAX_PRODUCTS = 10**10
+"""How many multiplications all steps of a network may take together, for a small batch."""
 
 _NODES = """
 Abs Add And Atan BatchNormalization Cast Celu Clip Concat Constant ConstantOfShape Cos Div Dropout Elu Equal
@@ -55,9 +60,6 @@ def check_onnx(content: bytes, batch: int, size: int) -> None:
 
     ``content`` is the file without card and seal; it will be tried on ``batch`` observations of ``size``
     numbers.
-
-    Raises:
-        ModelError: it does not, or is damaged.
     """
     import onnx
 

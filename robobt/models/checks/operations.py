@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from robobt.models.file import ModelError
+
+if TYPE_CHECKING:
+    from torch._C import Block, Graph, Node
 
 _ARITHMETIC = """
 abs acos add addcmul addmm amax amin asin atan atan2 batch_norm bmm cat celu chunk clamp clamp_max clamp_min
@@ -48,46 +51,8 @@ _LISTS = frozenset(_MAKE_LISTS.split())
 """Operations that may answer a list or a text; of others two doubled forty times would fill the memory."""
 
 
-class Type(Protocol):
-    """The type of a value in a TorchScript graph."""
-
-    def kind(self) -> str:
-        """Return the type's name."""
-
-
-class Value(Protocol):
-    """A value in a TorchScript graph."""
-
-    def type(self) -> Type:
-        """Return its type."""
-
-
-class Node(Protocol):
-    """A node of a TorchScript graph."""
-
-    def kind(self) -> str:
-        """Return the operation's name."""
-
-    def outputs(self) -> Iterable[Value]:
-        """Return what it answers."""
-
-    def blocks(self) -> Iterable[Graph]:
-        """Return the blocks inside it."""
-
-
-class Graph(Protocol):
-    """A TorchScript graph, or a block of one."""
-
-    def nodes(self) -> Iterable[Node]:
-        """Return its nodes."""
-
-
 def check_loaded(graph: Graph) -> None:
-    """Check a graph as torch has loaded it, with the branches for training in it.
-
-    Raises:
-        ModelError: it holds an operation that no network needs.
-    """
+    """Check a graph as torch has loaded it, with the branches for training in it."""
     _check([node.kind() for node in _nodes(graph)], _AT_LOAD)
     for node in _nodes(graph):
         answers = {value.type().kind() for value in node.outputs()}
@@ -100,9 +65,6 @@ def check_frozen(graph: Graph) -> None:
 
     Of branches, only those may be left that complain of a shape or add an axis to it, so that
     whatever has run once within bounds does so again.
-
-    Raises:
-        ModelError: it does more than that.
     """
     _check([node.kind() for node in graph.nodes()], _PLAIN | {"prim::If"} | _COMPLAINTS)
     inside = [node.kind() for outer in graph.nodes() for block in outer.blocks() for node in _nodes(block)]
@@ -115,7 +77,7 @@ def _check(kinds: Iterable[str], allowed: frozenset[str]) -> None:
         raise ModelError(f"does more than arithmetic: {', '.join(foreign)}")
 
 
-def _nodes(block: Graph) -> Iterator[Node]:
+def _nodes(block: Graph | Block) -> Iterator[Node]:
     for node in block.nodes():
         yield node
         for inner in node.blocks():

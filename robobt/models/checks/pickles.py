@@ -34,11 +34,7 @@ _MARK = object()
 
 
 def check_pickles(members: Mapping[str, bytes], sources: Sources) -> None:
-    """Check ``data.pkl`` and ``constants.pkl`` of an archive, and the weights that they name.
-
-    Raises:
-        ModelError: they hold what no network needs, do not fit the code, or are damaged.
-    """
+    """Check ``data.pkl`` and ``constants.pkl`` of an archive, and the weights that they name."""
     size = 0
     for name in ("constants.pkl", "data.pkl"):
         if name not in members:

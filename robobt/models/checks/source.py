@@ -13,6 +13,7 @@ from collections.abc import Mapping
 
 from robobt.models.checks.dialect import Class, Sources, check_type, is_literal, is_text, plain, refusal
 from robobt.models.checks.functions import check_functions
+from robobt.models.checks.pickles import check_pickles
 from robobt.models.file import ModelError
 
 _LONGEST_SOURCE = 2**20
@@ -21,12 +22,21 @@ _DEEPEST = 40
 _TEXT = re.compile(r"[ -~\n]*")
 
 
-def read_sources(members: Mapping[str, bytes]) -> Sources:
-    """Read an archive's code (its members ``code/….py``) and check that it is a network's.
+def checked_members(members: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Check that an archive holds a network, and return what torch may read of it.
 
-    Raises:
-        ModelError: it holds something that no network needs, or is damaged.
+    Loading it then runs nothing: its code has functions and modules of plain operations, and
+    its pickles make modules, tensors and plain values, as its code describes them.
     """
+    sources = _read_sources({name: content for name, content in members.items() if name.startswith("code/")})
+    check_pickles(members, sources)
+    if members.get("byteorder", b"little") != b"little":
+        raise ModelError("was written by a machine with another order of bytes")
+    return {**members, **sources.texts}
+
+
+def _read_sources(members: Mapping[str, bytes]) -> Sources:
+    """Read an archive's code (its members ``code/….py``) and check that it is a network's."""
     sources = Sources()
     for name, content in members.items():
         tree = _parsed(name, content)

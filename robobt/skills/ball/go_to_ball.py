@@ -184,9 +184,6 @@ class LearnedApproach:
     Attributes:
         reached: distance to the ball [m] and angle off the heading [rad] at which it was
             trained to have reached it; a distance of 0 where it was trained to touch it.
-
-    Raises:
-        ModelError: the model cannot be used.
     """
 
     def __init__(self, model: str) -> None:
@@ -194,11 +191,7 @@ class LearnedApproach:
         self.reached = _reached(self._control.card.environment.get("contact"))
 
     def __call__(self, store: Store, approach: Approach) -> RobotCommand:
-        """Compute the command of one tick.
-
-        Raises:
-            PolicyError: the policy's answer is not a valid action.
-        """
+        """Compute the command of one tick."""
         command, limits = self._control.decide(store.frame, store.me), approach.limits
         speed = hypot(command.vx, command.vy)
         fastest = min(limits.max_speed, _closing_speed(store))

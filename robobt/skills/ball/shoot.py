@@ -111,20 +111,13 @@ class LearnedShot:
 
     Args:
         model: name or file of a model for Shoot.
-
-    Raises:
-        ModelError: the model cannot be used.
     """
 
     def __init__(self, model: str) -> None:
         self._control = LearnedControl(model, skill="Shoot")
 
     def __call__(self, store: Store) -> RobotCommand:
-        """Compute the command of one tick.
-
-        Raises:
-            PolicyError: the policy's answer is not a valid action.
-        """
+        """Compute the command of one tick."""
         decided, me = self._control.decide(store.frame, store.me), store.me
         held = me.limits.hold_acceleration
         # A ball at distance L that is turned with at w needs w^2 L.

@@ -68,9 +68,6 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
         "*/GoToBall": SUCCESS
         "*/kick away/*/KickToTarget": [RUNNING, RUNNING, FAILURE]
         "*/HasBall": {script: [FAILURE, SUCCESS]}
-
-    Raises:
-        TreeFileError: the first thing that is wrong, with file and line.
     """
     source = str(path)
     content = read_limited(Path(path), MAX_BYTES, TreeFileError)
@@ -78,11 +75,7 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
 
 
 def substitutions(rules: Mapping[str, object], source: str = "rules") -> list[Substitution]:
-    """Return the rules of a mapping such as a file holds; statuses may also be :class:`Status`.
-
-    Raises:
-        TreeFileError: the first thing that is wrong, without a line.
-    """
+    """Return the rules of a mapping such as a file holds; statuses may also be :class:`Status`."""
     return _rules(_marked(dict(rules)), source)
 
 

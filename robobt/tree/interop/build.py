@@ -34,9 +34,6 @@ def build_tree(file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value
     """Build a new main tree of a file.
 
     The file has been verified; ``given`` are values of the tree's parameters, plain data.
-
-    Raises:
-        TreeFileError: a value does not fit, or a node cannot be made.
     """
     definition = file.trees[file.main]
     try:

@@ -11,7 +11,7 @@ from robobt.tree.parameters import Parameter
 
 
 class TreeFileError(ConfigError):
-    """A tree file, or a file of substitution rules, that cannot be used."""
+    """What is first wrong with a tree file, or a file of substitution rules."""
 
 
 @dataclass(frozen=True, slots=True)

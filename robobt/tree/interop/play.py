@@ -58,11 +58,7 @@ class FilePlay:
 
 
 def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
-    """Load the trees of a file, YAML or XML by its ending, and build the main tree once as a check.
-
-    Raises:
-        TreeFileError: it cannot be read, or the first thing that is wrong with it.
-    """
+    """Load the trees of a file, YAML or XML by its ending, and build the main tree once as a check."""
     path = Path(path)
     if path.suffix not in FILE_ENDINGS:
         raise TreeFileError(str(path), f"its ending is none of {', '.join(FILE_ENDINGS)}")
@@ -73,11 +69,7 @@ def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
 
 
 def try_build(file: TreeFile, vocabulary: Vocabulary) -> None:
-    """Build a file's main tree with its parameters' defaults, if they all have one.
-
-    Raises:
-        TreeFileError: it cannot be built.
-    """
+    """Build a file's main tree with its parameters' defaults, if they all have one."""
     main = file.trees[file.main]
     if file.language == "xml" or not any(entry.required for entry in main.parameters.values()):
         build_tree(file, vocabulary)

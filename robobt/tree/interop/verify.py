@@ -31,9 +31,6 @@ def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
     Every type, tree and parameter that is named exists, all that is needed is
     given, what is written out fits its type, and no tree contains itself. What
     depends on the tree's parameters shows when it is built.
-
-    Raises:
-        TreeFileError: the first thing that is wrong.
     """
     verifier = _Verifier(file, vocabulary)
     try:

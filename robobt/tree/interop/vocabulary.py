@@ -77,11 +77,7 @@ class Vocabulary:
         return iter(sorted({*self._control, *self.leaves}))
 
     def convert(self, parameter: Parameter, value: object) -> object:
-        """Convert plain data, or an entry, to a parameter's type.
-
-        Raises:
-            ParameterError: it does not fit.
-        """
+        """Convert plain data, or an entry, to a parameter's type."""
         if isinstance(value, Entry):
             if not takes_entry(parameter):
                 raise ParameterError(
@@ -96,11 +92,7 @@ class Vocabulary:
         return parameter.convert(value)
 
     def plain(self, parameter: Parameter, value: object) -> object:
-        """Return the plain data that :meth:`convert` makes into an equal value.
-
-        Raises:
-            ParameterError: there is none.
-        """
+        """Return the plain data that :meth:`convert` makes into an equal value."""
         named = self._named(parameter)
         if named is not None and not isinstance(value, str):
             for name in named:
@@ -115,9 +107,6 @@ class Vocabulary:
         Tried in this order: the text itself; after ``json:``, JSON; JSON without
         that; ``true`` and ``false`` in any case, ``1`` and ``0`` for them; a list
         with semicolons, of texts and then of what they are in JSON.
-
-        Raises:
-            ParameterError: none of them fits the parameter.
         """
         first: ParameterError | None = None
         for value in _readings(text):

@@ -32,11 +32,7 @@ class Element:
 
 
 def read_element(content: bytes | str, source: str) -> Element:
-    """Return the outermost element of a document.
-
-    Raises:
-        TreeFileError: the text is not well-formed XML, or has what is not allowed.
-    """
+    """Return the outermost element of a document."""
     if len(content) > MAX_BYTES:
         raise TreeFileError(source, f"is larger than {MAX_BYTES // 1024} KiB")
     reader = _Reader(source)

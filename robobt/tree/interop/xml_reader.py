@@ -31,9 +31,6 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
 
     The main tree is what ``main_tree_to_execute`` names, else the only tree, else
     the one that is not a sub-tree of another.
-
-    Raises:
-        TreeFileError: the first thing that is wrong.
     """
     try:
         file = _Reader(vocabulary, source).file(read_element(text, source))

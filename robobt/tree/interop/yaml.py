@@ -25,11 +25,7 @@ from robobt.tree.parameters import Parameter, ParameterError
 
 
 def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
-    """Return the trees of a YAML text.
-
-    Raises:
-        TreeFileError: the first thing that is wrong.
-    """
+    """Return the trees of a YAML text."""
     try:
         file = _Reader(vocabulary, source).file(parse_marked(text, source, TreeFileError))
     except RecursionError as error:

@@ -51,11 +51,7 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
 def _drifts(
     settings: ShootSettings, rng: np.random.Generator, rows: FloatArray, x: Span, y: Span
 ) -> FloatArray:
-    """Draw velocities from which the robots come to rest inside the ranges.
-
-    Raises:
-        ValueError: none was found for some of them.
-    """
+    """Draw velocities from which the robots come to rest inside the ranges."""
     limits = settings.robot_limits
     braking = min(limits.braking, limits.lateral_braking)
     drifts = np.zeros((len(rows), 2))
