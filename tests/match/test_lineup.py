@@ -96,7 +96,7 @@ def test_two_robots_leave_and_the_goalkeeper_stays() -> None:
 def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
     controlled = Controlled()
     controlled.match = Match(load_scenario("striker_vs_goalie"), 1, controlled._world)
-    moving = controlled.play(1.0)
+    moving = controlled.play(0.7)
     assert max(robot.speed for robot in (*moving.own, *moving.opponents)) > 0.5
     controlled.game = GameState(RefereeCommand.HALT, may_touch=False)
     halted = controlled.play(1.0)

@@ -29,7 +29,8 @@ BLUE_0 = RobotId(Team.BLUE, 0)
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("match") / "match.robobt.arrows"
-    Match(load_scenario("striker_vs_goalie").lasting(1.5), 3, sim_world, path).play()
+    scenario = load_scenario("striker_vs_goalie").with_robot("blue 0", max_distance=None)
+    Match(scenario.lasting(1.5), 3, sim_world, path).play()
     return path
 
 
@@ -74,7 +75,7 @@ def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytes
     (here / "mine.yaml").write_text(tree_yaml(PLAYS["attack_main"](), "mine"))
     (here / "rules.yaml").write_text('"*/KickToTarget": RUNNING\n')
     scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
-    scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "substitute": "rules.yaml"}
+    scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "params": {}, "substitute": "rules.yaml"}
     (here / "match.yaml").write_text(write_yaml(scenario))
     monkeypatch.chdir(here)
     recorded = there / "match.robobt.arrows"

@@ -15,7 +15,7 @@ from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
 from robobt.tree.devtools import substitute
 from robobt.tree.interop import TreeFileError
-from robobt.tree.parameters import ParameterError, check_parameters
+from robobt.tree.parameters import ParameterError, check_parameters, parameters_of
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
@@ -78,7 +78,7 @@ class RobotSetup(Part):
             raise _SubstitutionError(problem) from error
 
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
-        """Return the setup with other values.
+        """Return the setup with other values; of another play, the parameters that it has too stay.
 
         Raises:
             ValidationError: a value does not fit, or the play has no such parameter.
@@ -86,9 +86,21 @@ class RobotSetup(Part):
         data = {name: getattr(self, name) for name in self.model_fields_set}
         data |= {name: value for name, value in changes.items() if name in RobotSetup.model_fields}
         params = {name: value for name, value in changes.items() if name not in RobotSetup.model_fields}
+        if "params" not in changes:
+            data["params"] = self._params_in(data["play"])
         if params:
-            data["params"] = {**data.get("params", {}), **params}
+            data["params"] = {**data["params"], **params}
         return RobotSetup.model_validate(data)
+
+    def _params_in(self, play: object) -> dict[str, object]:
+        """Return the parameters that another play has too; of none that can be read, all."""
+        if play == self.play or not isinstance(play, str) or not (is_play_file(play) or play in PLAYS):
+            return self.params
+        try:
+            known = {parameter.name for parameter in parameters_of(find_play(play))}
+        except TreeFileError:
+            return self.params
+        return {name: value for name, value in self.params.items() if name in known}
 
     def limits_over(self, base: RobotLimits) -> RobotLimits:
         """Return the robot's limits, with those of ``base`` where the scenario gives none."""

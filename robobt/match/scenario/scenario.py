@@ -147,7 +147,8 @@ class Scenario(Part):
 
         ``scenario.with_robot("blue 0", rater="open_angle")`` gives its play another parameter,
         ``scenario.with_robot("blue 0", play="attack_nn", limits={"max_speed": 2.0})`` changes
-        the robot itself. What is not named stays, the other parameters of the play included.
+        the robot itself. What is not named stays, the other parameters of the play included, and
+        of another play those that it has too.
 
         Args:
             robot: which robot, as "blue 0".

@@ -21,6 +21,13 @@ def test_a_parameter_of_the_play_is_set_beside_those_it_has() -> None:
     assert changed.source == scenario.source
 
 
+def test_another_play_keeps_only_the_parameters_that_it_has() -> None:
+    scenario = load_scenario("deployed_half").with_robot("blue 0", tolerance=0.3, min_score=0.2)
+    changed = scenario.with_robot("blue 0", play="attack_nn")
+    assert changed.robots.blue[0].params == {"max_distance": 3.5, "shot_speed": 7.5, "tolerance": 0.3}
+    assert scenario.with_robot("blue 0", play="goalkeeper").robots.blue[0].params == {}
+
+
 def test_a_field_of_the_setup_is_set() -> None:
     scenario = load_scenario("striker_vs_goalie")
     changed = scenario.with_robot(

@@ -6,7 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TypeAlias
 
-from robobt.config.validation import Settings
+from pydantic import ValidationError
+
+from robobt.config.validation import Settings, first_problem
 from robobt.skills.store import Shot
 from robobt.tree import Registry
 from robobt.world.geometry import FloatArray, Point, direction, wrap_angle
@@ -79,7 +81,12 @@ def make_rater(rater: str | ShotRater, **settings: object) -> ShotRater:
         if given:
             raise ValueError(f"give {', '.join(sorted(given))} to the rater itself")
         return rater
-    return RATERS[rater].model_validate(given)
+    made = RATERS[rater]
+    try:
+        return made.model_validate(given)
+    except ValidationError as error:
+        field, problem = first_problem(error, made)
+        raise ValueError(f"rater {rater}: {field}: {problem}") from error
 
 
 def best_first(shots: Iterable[Shot], origin: Point, heading: float) -> list[Shot]:

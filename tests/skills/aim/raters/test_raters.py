@@ -270,3 +270,8 @@ def test_a_rater_of_ones_own_needs_only_rate_all() -> None:
     field = FieldGeometry(length=6, width=4, goal_width=0.7, defense_width=1.5, defense_depth=0.7)
     me = robot()
     assert Centre().rate(frame(me, field=field), (0, 0), me) == Shot((3.0, 0.0), 0.1, 0.5)
+
+
+def test_a_setting_that_a_rater_lacks_is_named() -> None:
+    with pytest.raises(ValueError, match=r"rater open_angle: tolerance: there is no such field; there are"):
+        make_rater("open_angle", tolerance=0.3)
