@@ -5,6 +5,7 @@ scipy is imported by the functions that need it: matches use this module too and
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 from statistics import NormalDist
@@ -169,6 +170,41 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
     fewer, trials = min(only_first, only_second), only_first + only_second
     p = 1.0 if 2 * fewer == trials else min(1.0, 2.0 * float(bdtr(fewer, trials, 0.5)))
     return McNemar(only_first, only_second, p)
+
+
+def paired_difference_interval(first: ArrayLike, second: ArrayLike, confidence: float = 0.95) -> Interval:
+    """Compute the interval of the difference of two proportions that come from the same trials.
+
+    ``first`` and ``second`` (n,) tell whether each succeeded in each trial; the difference is
+    that of the first less the second.
+
+    Raises:
+        ValueError: lists of different length or none, or confidence out of range.
+
+    Source: Bonett and Price, "Adjusted Wald confidence interval for a difference of
+    binomial proportions based on paired data", 2012.
+    """
+    a, b = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
+    if a.ndim != 1 or a.shape != b.shape or len(a) == 0:
+        raise ValueError("both lists must judge the same trials, and at least one")
+    _check_count(0, len(a), confidence)
+    z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
+    trials = len(a) + 2
+    gained, lost = (int((a & ~b).sum()) + 1) / trials, (int((b & ~a).sum()) + 1) / trials
+    half = z * sqrt((gained + lost - (gained - lost) ** 2) / trials)
+    return Interval(max(-1.0, gained - lost - half), min(1.0, gained - lost + half))
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Return p-values corrected for their number, in their order.
+
+    Source: Holm, "A simple sequentially rejective multiple test procedure", 1979.
+    """
+    corrected, least = [0.0] * len(p_values), 0.0
+    for rank, place in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
+        least = max(least, min(1.0, p_values[place] * (len(p_values) - rank)))
+        corrected[place] = least
+    return corrected
 
 
 @dataclass(frozen=True)

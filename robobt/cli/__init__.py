@@ -20,6 +20,7 @@ from robobt.signals import leave_after_signal
 
 _COMMANDS = {
     "match": "match:match",
+    "compare": "compare:compare",
     "replay": "replay:replay",
     "scenarios": "scenarios:scenarios",
     "plays": "lists:plays",

@@ -30,6 +30,7 @@ from robobt.cli.common import (
     table,
     world_of,
 )
+from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
@@ -99,6 +100,9 @@ def match(
             "'blue:*/KickToTarget=[RUNNING, SUCCESS]'; may be given often.",
         ),
     ] = None,
+    blue: Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = "",
+    yellow: Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = "",
+    settings: Set = None,
     imports: Imports = None,
     world: Where = "sim",
     publish: Annotated[
@@ -133,10 +137,12 @@ def match(
     is equal for equal runs; replay: the file written, or null.
     """
     from robobt.match import load_scenario, run_trials
+    from robobt.match.scenario.changes import changed
     from robobt.worlds import SIM, scenario_settings
 
     import_files(imports)
-    loaded = _changed(load_scenario(scenario), on_error, substitute or [])
+    loaded = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    loaded = _changed(with_teams(loaded, blue, yellow), on_error, substitute or [])
     if no_referee:
         loaded = loaded.without_referee()
     # The simulator's settings are checked before any worker is started.

@@ -1,0 +1,207 @@
+"""``robobt compare``: variants of a scenario, paired by seed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import asdict
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robobt.cli.common import (
+    Imports,
+    Json,
+    Progress,
+    Seed,
+    Workers,
+    console,
+    cores,
+    import_files,
+    parse_assignments,
+    print_json,
+    table,
+    warn,
+    world_of,
+)
+
+if TYPE_CHECKING:
+    from robobt.experiments.compare import Compared, Difference
+    from robobt.match import MatchResult, Scenario
+
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Change the scenario: 'ends.time_limit=10', 'simulator.preset=grsim', "
+        "'blue 0.max_distance=2'; may be given often.",
+    ),
+]
+
+PLAY = "PLAY[:NAME=VALUE,...]"
+TEAM_HELP = "Play of this team's robots but its goalkeeper, with parameters; ':NAME=VALUE' keeps the play."
+
+
+def compare(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")],
+    blue: Annotated[list[str] | None, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = None,
+    yellow: Annotated[list[str] | None, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = None,
+    world: Annotated[
+        list[str] | None,
+        typer.Option("--world", help="Where to play: sim, or a field of the league like league://grsim."),
+    ] = None,
+    settings: Set = None,
+    trials: Annotated[
+        int | None,
+        typer.Option(
+            "--trials", "-n", min=1, max=100_000, help="Trials a variant; by default the scenario's."
+        ),
+    ] = None,
+    seed: Seed = None,
+    workers: Workers = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            help="Keep every trial's result in files of this folder; a stopped run goes on from there.",
+        ),
+    ] = None,
+    imports: Imports = None,
+    as_json: Json = False,
+) -> None:
+    """Play variants of a scenario from the same starts with the same seeds, and compare them pair by pair.
+
+    Each of --blue, --yellow and --world may be given often: all combinations are
+    played, the first is what the others are compared with. Intervals are of 95 %.
+
+    Keys of --json: scenario, seed, trials; variants, by what was varied: trials,
+    distinct (trials that differ from each other), scored (trials in which blue
+    scores: count, rate, low, high), outcomes, to_ball and to_kick (seconds until a
+    robot of blue has the ball, and has kicked it: n, mean, variance);
+    against_first, null for the first: scored, goals (blue's less yellow's), to_ball
+    and to_kick, each a difference with n, mean, low and high; only_this and
+    only_first (trials in which blue scores in one of both only), p (McNemar, exact)
+    and holm (p corrected for the number of variants).
+    """
+    from robobt.experiments.compare import compare as compared
+    from robobt.match import load_scenario
+    from robobt.match.scenario.changes import changed
+
+    import_files(imports)
+    base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    variants = _variants(base, blue or [""], yellow or [""], world or ["sim"])
+    if len(variants) < 2:
+        raise typer.BadParameter("needs two variants: give --blue, --yellow or --world more than once")
+    count = base.trials if trials is None else trials
+    used = base.seed if seed is None else seed
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+    results: dict[str, list[MatchResult]] = {}
+    with Progress("compare", count * len(variants)) as progress:
+        for label, (variant, address) in variants.items():
+            name = re.sub(r"[^\w.-]+", "_", label)
+            file = None if out is None else out / f"{name}.jsonl"
+            results[label] = _played(variant, address, count, used, workers, file, progress.advance)
+    found = compared(results)
+    if as_json:
+        figures = {label: asdict(one) for label, one in found.items()}
+        print_json({"scenario": base.name, "seed": used, "trials": count, "variants": figures})
+        return
+    console.print(f"[bold]{base.name}[/bold]: {count} trials a variant, seed {used}")
+    _print(found)
+
+
+def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
+    """Return the scenario with what --blue and --yellow say; empty texts change nothing."""
+    from robobt.match.scenario.changes import with_team
+    from robobt.world.game import Team
+
+    for team, text in ((Team.BLUE, blue), (Team.YELLOW, yellow)):
+        if text:
+            play, _, given = text.partition(":")
+            # A comma inside a value is not followed by NAME=.
+            parts = re.split(r",(?=\s*\w+=)", given) if given else []
+            params = parse_assignments([part.strip() for part in parts], f"--{team.value}")
+            scenario = with_team(scenario, team, play or None, params)
+    return scenario
+
+
+def _variants(
+    base: Scenario, blues: list[str], yellows: list[str], worlds: list[str]
+) -> dict[str, tuple[Scenario, str]]:
+    """Return every combination by a label of what differs."""
+    found = {}
+    for blue, yellow, world in product(blues, yellows, worlds):
+        varied = [(blue, len(blues)), (yellow, len(yellows)), (world, len(worlds))]
+        label = " | ".join([text for text, options in varied if options > 1])
+        if label in found:
+            raise typer.BadParameter(f"{label!r} is given twice")
+        found[label] = (with_teams(base, blue, yellow), world)
+    return found
+
+
+def _played(
+    scenario: Scenario,
+    address: str,
+    count: int,
+    seed: int,
+    workers: int | None,
+    out: Path | None,
+    advance: Callable[[], object],
+) -> list[MatchResult]:
+    from robobt.match import run_trials
+    from robobt.worlds import SIM, scenario_settings
+
+    def on_result(_: MatchResult) -> None:
+        advance()
+
+    scenario_settings(scenario)
+    if address != SIM and workers not in (None, 1):
+        raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
+    processes = workers or (min(cores(), -(-count // 4)) if address == SIM else 1)
+    with world_of(address) as factory:
+        run = run_trials(scenario, factory, count, processes, seed, out, {}, on_result)
+    if run.interrupted:
+        raise typer.Exit(130)
+    return list(run.results)
+
+
+def _print(found: dict[str, Compared]) -> None:
+    rates = table("variant", "blue scores", "95 % interval", "to the ball", "to the kick")
+    for label, one in found.items():
+        if one.distinct < one.trials:
+            warn(f"{label}: only {one.distinct} of {one.trials} trials differ; vary the starts or add noise")
+        rates.add_row(
+            label,
+            f"{one.scored.count} of {one.trials}",
+            "-" if one.distinct == 1 < one.trials else f"{one.scored.low:.0%} to {one.scored.high:.0%}",
+            "-" if one.to_ball.mean is None else f"{one.to_ball.mean:.3f} s",
+            "-" if one.to_kick.mean is None else f"{one.to_kick.mean:.3f} s",
+        )
+    console.print(rates)
+    (first, _), *others = found.items()
+    gaps = table(f"less {first}", "", "difference", "95 % interval", "p", "Holm's p")
+    for label, one in others:
+        against = one.against_first
+        assert against is not None
+        tested = (f"{against.p:.2g}", f"{against.holm:.2g}")
+        gaps.add_row(label, "blue scores", *_texts(against.scored, 100.0, " points"), *tested)
+        gaps.add_row("", "", f"{against.only_this} only here, {against.only_first} only there")
+        gaps.add_row("", "goals", *_texts(against.goals, 1.0, ""))
+        gaps.add_row("", "to the ball", *_texts(against.to_ball, 1.0, " s"))
+        gaps.add_row("", "to the kick", *_texts(against.to_kick, 1.0, " s"))
+    console.print(gaps)
+
+
+def _texts(one: Difference, scale: float, unit: str) -> tuple[str, str]:
+    """Return the difference and its interval as text."""
+    if one.mean is None:
+        return ("-", "-")
+    digits = 1 if scale > 1.0 else 3
+    mean = f"{one.mean * scale:+.{digits}f}{unit}"
+    if one.low is None or one.high is None:
+        return (mean, "-")
+    return (mean, f"{one.low * scale:+.{digits}f} to {one.high * scale:+.{digits}f}")

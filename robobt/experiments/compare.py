@@ -1,0 +1,165 @@
+"""Variants of one scenario against each other, trial by trial from the same starts."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from robobt.match.results.results import MatchResult, Rate, Spread
+from robobt.statistics import holm, mcnemar, mean_interval, paired_difference_interval
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A paired difference to the first variant, with its 95 % interval.
+
+    Attributes:
+        n: trials that both have the figure in.
+        mean: mean difference, this less the first; None without such a trial.
+        low, high: its interval; None where the trials do not differ or are fewer than two.
+    """
+
+    n: int
+    mean: float | None
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class AgainstFirst:
+    """One variant against the first, paired by trial.
+
+    Attributes:
+        scored: difference of the shares of trials in which blue scores.
+        only_this, only_first: trials in which blue scores only here, and only with the first.
+        p: of McNemar's exact test, two-sided; ``holm`` is corrected for the number of variants.
+        goals: goals of blue less those of yellow, a trial.
+        to_ball, to_kick: time until the first robot of blue has the ball, and has kicked it [s].
+    """
+
+    scored: Difference
+    only_this: int
+    only_first: int
+    p: float
+    holm: float
+    goals: Difference
+    to_ball: Difference
+    to_kick: Difference
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One variant's figures.
+
+    Attributes:
+        trials: how many were played.
+        distinct: how many of them differ from each other; the rest repeat one another.
+        scored: trials in which blue scores.
+        outcomes: how the trials ended.
+        to_ball, to_kick: as in :class:`AgainstFirst` [s].
+        against_first: None for the first variant.
+    """
+
+    trials: int
+    distinct: int
+    scored: Rate
+    outcomes: Mapping[str, int]
+    to_ball: Spread
+    to_kick: Spread
+    against_first: AgainstFirst | None
+
+
+def compare(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, Compared]:
+    """Compare the variants' results by trial number, each with the first.
+
+    Raises:
+        ValueError: a variant has no trial, or none that the first has too.
+    """
+    (first, baseline), *others = variants.items()
+    pairs = {label: _paired(results, baseline) for label, results in others}
+    for label, results in variants.items():
+        if not results or not pairs.get(label, [()]):
+            raise ValueError(f"{label} has no trial to compare with")
+    tests = {
+        label: mcnemar([_scores(a) for a, _ in pair], [_scores(b) for _, b in pair])
+        for label, pair in pairs.items()
+    }
+    corrected = dict(zip(tests, holm([test.p for test in tests.values()]), strict=True))
+    found = {first: _figures(baseline, None)}
+    for label, pair in pairs.items():
+        test = tests[label]
+        alike = _distinct(variants[label]) == 1 and _distinct(baseline) == 1
+        against = AgainstFirst(
+            _share_difference(pair, alike),
+            test.only_first,
+            test.only_second,
+            test.p,
+            corrected[label],
+            _difference(((_lead(a), _lead(b)) for a, b in pair), alike),
+            _difference(((_to_ball(a), _to_ball(b)) for a, b in pair), alike),
+            _difference(((_to_kick(a), _to_kick(b)) for a, b in pair), alike),
+        )
+        found[label] = _figures(variants[label], against)
+    return found
+
+
+def _paired(
+    results: Sequence[MatchResult], baseline: Sequence[MatchResult]
+) -> list[tuple[MatchResult, MatchResult]]:
+    by_trial = {result.trial: result for result in baseline}
+    return [(result, by_trial[result.trial]) for result in results if result.trial in by_trial]
+
+
+def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Compared:
+    return Compared(
+        len(results),
+        _distinct(results),
+        Rate.of(sum(map(_scores, results)), len(results)),
+        dict(Counter(result.outcome for result in results).most_common()),
+        Spread.of(map(_to_ball, results)),
+        Spread.of(map(_to_kick, results)),
+        against,
+    )
+
+
+def _distinct(results: Sequence[MatchResult]) -> int:
+    return len({result.trace for result in results})
+
+
+def _scores(result: MatchResult) -> bool:
+    return result.blue_score > 0
+
+
+def _lead(result: MatchResult) -> float:
+    return result.blue_score - result.yellow_score
+
+
+def _to_ball(result: MatchResult) -> float | None:
+    return _soonest(robot.go_to_ball for name, robot in result.robots.items() if name.startswith("blue"))
+
+
+def _to_kick(result: MatchResult) -> float | None:
+    return _soonest(robot.total for name, robot in result.robots.items() if name.startswith("blue"))
+
+
+def _soonest(times: Iterable[float | None]) -> float | None:
+    return min((time for time in times if time is not None), default=None)
+
+
+def _share_difference(pair: Sequence[tuple[MatchResult, MatchResult]], alike: bool) -> Difference:
+    this, first = [_scores(a) for a, _ in pair], [_scores(b) for _, b in pair]
+    mean = fmean(this) - fmean(first)
+    if alike:
+        return Difference(len(pair), mean, None, None)
+    return Difference(len(pair), mean, *paired_difference_interval(this, first))
+
+
+def _difference(values: Iterable[tuple[float | None, float | None]], alike: bool) -> Difference:
+    gaps = [this - first for this, first in values if this is not None and first is not None]
+    if not gaps:
+        return Difference(0, None, None, None)
+    if alike or len(gaps) == 1:
+        return Difference(len(gaps), fmean(gaps), None, None)
+    return Difference(len(gaps), fmean(gaps), *mean_interval(gaps))

@@ -1,0 +1,92 @@
+"""Scenarios with other values, by the names of the file: what command lines change."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import BaseModel, ValidationError
+
+from robobt.config.validation import first_problem
+from robobt.match.scenario.robots import RobotSetup
+from robobt.match.scenario.scenario import Scenario
+from robobt.world.game import Team
+
+
+def changed(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
+    """Return the scenario with other values.
+
+    Names are those of the file, with dots for what lies inside (``ends.time_limit``,
+    ``simulator.preset``). A robot's begin with the robot (``blue 0.play``, ``yellow 0.limits.max_speed``);
+    one that is no field of a robot is a parameter of its play (``blue 0.rater``).
+
+    Raises:
+        ScenarioError: there is no such field, or the value does not fit.
+    """
+    for name, value in changes.items():
+        owner, _, field = name.partition(".")
+        if owner.split(maxsplit=1)[0] in list(Team):
+            scenario = _with_robot(scenario, " ".join(owner.split()), field, value)
+        else:
+            scenario = _with_field(scenario, name, value)
+    return scenario
+
+
+def with_team(scenario: Scenario, team: Team, play: str | None, params: Mapping[str, object]) -> Scenario:
+    """Return the scenario with another play, or other parameters, for a team's robots but its goalkeeper.
+
+    A goalkeeper that is alone is changed too.
+
+    Raises:
+        ScenarioError: the team has no robot, or the play or a parameter does not fit.
+    """
+    robots = scenario.robots.of(team)
+    if not robots:
+        raise scenario.error("the team has no robot", f"robots.{team.value}")
+    values = dict(params) if play is None else {"play": play, **params}
+    for robot in [robot for robot in robots if not robot.goalkeeper] or robots:
+        scenario = scenario.with_robot(f"{team.value} {robot.number}", **values)
+    return scenario
+
+
+def _with_robot(scenario: Scenario, robot: str, name: str, value: object) -> Scenario:
+    if not name:
+        raise scenario.error("takes a field or a parameter of the robot, as in 'blue 0.play'", robot)
+    key, _, inner = name.partition(".")
+    if inner:
+        setups = {str(identity): setup for identity, setup in scenario.robots}
+        value = _nested(getattr(setups.get(robot), key, None), inner, value)
+    return scenario.with_robot(robot, **{key: _frozen(value) if key in RobotSetup.model_fields else value})
+
+
+def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:
+    key, _, inner = name.partition(".")
+    fields = [field for field in Scenario.model_fields if field != "robots"]
+    if key not in fields:
+        problem = f"there is no such field; there are {', '.join(fields)}, and robots such as 'blue 0'"
+        raise scenario.error(problem, name)
+    data = {field: getattr(scenario, field) for field in scenario.model_fields_set}
+    data[key] = _frozen(_nested(data.get(key), inner, value) if inner else value)
+    try:
+        validated = Scenario.model_validate(data)
+    except ValidationError as error:
+        field, problem = first_problem(error, Scenario, data)
+        raise scenario.error(problem, field) from error
+    return scenario.model_copy(update={key: getattr(validated, key)})
+
+
+def _frozen(value: object) -> object:
+    """Return plain data with tuples for lists, as the fields of a scenario have them."""
+    if isinstance(value, Mapping):
+        return {name: _frozen(inner) for name, inner in value.items()}
+    return tuple([_frozen(item) for item in value]) if isinstance(value, list | tuple) else value
+
+
+def _nested(current: object, path: str, value: object) -> dict[str, object]:
+    """Return plain data of ``current`` with the value at the path inside it."""
+    data: dict[str, object] = {}
+    if isinstance(current, BaseModel):
+        data = current.model_dump(exclude_unset=True)
+    elif isinstance(current, Mapping):
+        data = dict(current)
+    key, _, inner = path.partition(".")
+    return {**data, key: _nested(data.get(key), inner, value) if inner else value}

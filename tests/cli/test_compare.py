@@ -1,0 +1,84 @@
+"""``robobt compare``, and how the command line changes a scenario."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+
+QUICK = ("--trials", "2", "--set", "ends.time_limit=0.3", "--workers", "1")
+
+
+def run(*options: object) -> str:
+    shown = CliRunner().invoke(app, [str(option) for option in options])
+    assert shown.exit_code == 0, shown.output
+    return shown.output
+
+
+def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> None:
+    plays = ("--blue", "attack_main", "--blue", "attack_main:speed=0.5, rater=open_angle")
+    keepers = ("--yellow", ":speed=1.0", "--yellow", ":speed=0.5")
+    out = tmp_path / "kept"
+    given = ("compare", "striker_vs_goalie", *plays, *keepers, *QUICK, "--out", out, "--json")
+    said = json.loads(run(*given))
+    assert list(said["variants"]) == [
+        "attack_main | :speed=1.0",
+        "attack_main | :speed=0.5",
+        "attack_main:speed=0.5, rater=open_angle | :speed=1.0",
+        "attack_main:speed=0.5, rater=open_angle | :speed=0.5",
+    ]
+    first, *others = said["variants"].values()
+    assert first["against_first"] is None
+    assert first["distinct"] == 2
+    assert all(one["against_first"]["scored"]["n"] == 2 for one in others)
+    seeds = [
+        [json.loads(line).get("seed") for line in path.read_text().splitlines()]
+        for path in sorted(out.iterdir())
+    ]
+    assert len(seeds) == 4
+    assert all(one[-2:] == seeds[0][-2:] for one in seeds)
+    assert json.loads(run(*given)) == said
+
+
+def test_the_figures_are_printed_as_tables() -> None:
+    shown = run("compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed=0.5", *QUICK)
+    assert "striker_vs_goalie: 2 trials a variant, seed 1" in shown
+    assert "less attack_main" in shown
+    assert "0 only here, 0 only there" in " ".join(shown.split())
+
+
+def test_trials_that_are_the_same_match_are_told() -> None:
+    fixed = ("--set", "blue 0.start.position=[-1, 0]", "--set", "ball.position=[0, 0]")
+    shown = run("compare", "striker_vs_goalie", "--blue", ":speed=1", "--blue", ":speed=0.5", *fixed, *QUICK)
+    assert "only 1 of 2 trials differ; vary the starts or add noise" in " ".join(shown.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ((), "needs two variants"),
+        (("--blue", "attack_main", "--blue", "attack_main"), "is given twice"),
+        (("--blue", "attack_man", "--blue", "attack_nn"), "no play is called 'attack_man'"),
+        (("--blue", ":sped=1", "--blue", "attack_nn"), "no such parameter"),
+        (("--blue", ":speed", "--blue", "attack_nn"), "takes name=value, not 'speed'"),
+        (("--set", "ends.time=3"), "ends.time: there is no such field"),
+        (("--set", "blue 0=3"), "takes a field or a parameter of the robot"),
+        (("--set", "blue 7.play=goalkeeper"), "there is no robot 'blue 7'"),
+    ],
+)
+def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem: str) -> None:
+    shown = CliRunner().invoke(app, ["compare", "striker_vs_goalie", *options])
+    assert shown.exit_code != 0
+    assert problem in " ".join(shown.output.replace("│", " ").split())
+    assert "Traceback" not in shown.output
+
+
+def test_match_takes_the_same_changes() -> None:
+    short = ("match", "striker_vs_goalie", "--trials", "1", "--set", "ends.time_limit=0.3", "--json")
+    said = json.loads(run(*short, "--blue", "attack_nn", "--set", "simulator.preset=grsim"))
+    assert said["time"]["mean"] == pytest.approx(0.3, abs=0.03)
+    assert json.loads(run(*short))["trace"] != said["trace"]
