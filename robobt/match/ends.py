@@ -110,13 +110,9 @@ class EndJudge:
         return team
 
     def _since_held(self, truth: Frame) -> float | None:
-        held = False
-        for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
-            for robot in robots:
-                held = held or (
-                    RobotId(team, robot.id) in self._keepers and has_ball(robot, truth.ball, ALL_AROUND)
-                )
-        if not held:
+        robots = truth.robots()
+        keepers = [robots[keeper] for keeper in self._keepers if keeper in robots]
+        if not any(has_ball(keeper, truth.ball, ALL_AROUND) for keeper in keepers):
             self._held_since = None
         elif self._held_since is None:
             self._held_since = truth.time

@@ -15,7 +15,6 @@ from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
-from robobt.match.referee.events import RefereeEvent
 from robobt.match.referee.referee import Referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
@@ -225,7 +224,7 @@ class Match:
         for event in decision.events:
             self._trace.event(f"{event.kind} {event.robot}")
             if self._recorder is not None:
-                _record_decision(self._recorder, event)
+                self._recorder.event(event.kind, event.time, team=event.team, robot=event.robot)
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
 
@@ -284,10 +283,6 @@ def _referee_of(scenario: Scenario, field: FieldGeometry) -> Referee | None:
         return None
     keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
     return Referee(field, settings.model_copy(update=keepers))
-
-
-def _record_decision(recorder: Recorder, event: RefereeEvent) -> None:
-    recorder.event(event.kind, event.time, team=event.team, robot=event.robot)
 
 
 _END_EVENTS: Mapping[Outcome, tuple[str, Team | None]] = {

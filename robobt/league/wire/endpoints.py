@@ -51,11 +51,9 @@ HostAddress = Annotated[str, AfterValidator(_ipv4)]
 """An IPv4 address as text."""
 
 
-def _endpoint(value: object) -> object:
-    return parse_endpoint(value) if isinstance(value, str) else value
-
-
-_Address = Annotated[Endpoint, BeforeValidator(_endpoint)]
+_Address = Annotated[
+    Endpoint, BeforeValidator(lambda value: parse_endpoint(value) if isinstance(value, str) else value)
+]
 _Port = Annotated[int, Field(ge=0, le=65535)]
 
 

@@ -40,7 +40,7 @@ class TickNumbers:
     def __init__(self, robots: Sequence[RobotId]) -> None:
         self._slots = {robot: slot for slot, robot in enumerate(robots)}
         # As a match lists its commands, to look none of them up.
-        self._usual = sorted(robots, key=_team_and_number)
+        self._usual = sorted(robots, key=lambda robot: (robot.team is Team.YELLOW, robot.number))
 
     def poses(self, frames: Sequence[bytes]) -> pa.Array:
         """Return the column ``truth`` or ``observed`` of frames from blue's side, packed."""
@@ -97,10 +97,6 @@ class TickNumbers:
                 columns += range(at, at + POSE)
                 taken += range(place + 1, place + 8)
         table[np.ix_(ticks, columns)] = packed[:, taken]
-
-
-def _team_and_number(robot: RobotId) -> tuple[bool, int]:
-    return robot.team is Team.YELLOW, robot.number
 
 
 def numbers_of(column: pa.FixedSizeListArray) -> NDArray[np.float32]:

@@ -180,7 +180,7 @@ class Recording:
                 x, y, heading, vx, vy, omega = row
                 state = RobotState(robot.number, x, y, heading, vx, vy, omega, contact, robot.limits)
                 teams[robot.team].append(state)
-        own, opponents = (tuple(sorted(teams[team], key=_number)) for team in (Team.BLUE, Team.YELLOW))
+        own, opponents = (tuple(sorted(robots, key=lambda robot: robot.id)) for robots in teams.values())
         return Frame(
             float(self.times[tick]),
             self.header.field,
@@ -192,10 +192,6 @@ class Recording:
             _latest(self.games, tick, OPEN_PLAY),
             _latest(self.touches, tick, None),
         )
-
-
-def _number(robot: RobotState) -> int:
-    return robot.id
 
 
 def _without_repeats(changes: Timeline[str]) -> Timeline[str]:

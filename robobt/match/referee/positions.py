@@ -36,13 +36,13 @@ def ball_placed(frame: Frame, spot: Point) -> bool:
 def spot_free(frame: Frame, spot: Point) -> bool:
     """Return whether no robot stands where the ball has to be put."""
     clear = ROBOT_RADIUS + BALL_RADIUS + 0.02
-    return all(hypot(robot.x - spot[0], robot.y - spot[1]) > clear for _, robot in _robots(frame))
+    return all(hypot(robot.x - spot[0], robot.y - spot[1]) > clear for robot in frame.robots().values())
 
 
 def stop_violations(frame: Frame, settings: RefereeSettings) -> Iterator[tuple[EventKind, RobotId]]:
     """Find robots that are too fast or too close to the ball while the game is stopped."""
     most, least = settings.stop_speed, settings.stop_distance
-    for identity, robot in _robots(frame):
+    for identity, robot in frame.robots().items():
         if most is not None and robot.speed > most + SPEED_TOLERANCE:
             yield EventKind.STOP_SPEED, identity
         if least is not None and _ball_distance(robot, frame.ball) < least:
@@ -52,7 +52,7 @@ def stop_violations(frame: Frame, settings: RefereeSettings) -> Iterator[tuple[E
 def crowding(frame: Frame, settings: RefereeSettings, kicking: Team | None) -> Iterator[RobotId]:
     """Find opponents of the kicking team that are too close to the ball while a restart is taken."""
     least = settings.stop_distance
-    for identity, robot in _robots(frame):
+    for identity, robot in frame.robots().items():
         if least is not None and identity.team is not kicking and _ball_distance(robot, frame.ball) < least:
             yield identity
 
@@ -63,7 +63,7 @@ def ready(frame: Frame, field: FieldGeometry, settings: RefereeSettings, restart
     if team is None:
         return True
     kickers = 0
-    for identity, robot in _robots(frame):
+    for identity, robot in frame.robots().items():
         if robot.speed > _STANDING:
             return False
         if restart.restart is Restart.KICKOFF:
@@ -82,12 +82,6 @@ def ready(frame: Frame, field: FieldGeometry, settings: RefereeSettings, restart
         if not fair or kickers > 1:
             return False
     return True
-
-
-def _robots(frame: Frame) -> list[tuple[RobotId, RobotState]]:
-    return [(RobotId(frame.team, robot.id), robot) for robot in frame.own] + [
-        (RobotId(frame.team.other, robot.id), robot) for robot in frame.opponents
-    ]
 
 
 def _ball_distance(robot: RobotState, ball: BallState) -> float:

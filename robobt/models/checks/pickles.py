@@ -198,10 +198,6 @@ def _naturals(numbers: object) -> list[int]:
     return found
 
 
-def _empty(_: _Machine) -> object:
-    return {}
-
-
 def _list_of(kind: type) -> Callable[[_Machine, object], object]:
     def build(_: _Machine, values: object) -> object:
         if not isinstance(values, list) or any(type(value) is not kind for value in values):
@@ -221,7 +217,7 @@ def _tagged(_: _Machine, value: object, tag: object) -> object:
 
 _CALLS: Mapping[str, Callable[..., object]] = {
     "torch._utils _rebuild_tensor_v2": _Machine.tensor,
-    "collections OrderedDict": _empty,
+    "collections OrderedDict": lambda _: {},
     "torch.jit._pickle build_tensorlist": _list_of(Tensor),
     "torch.jit._pickle restore_type_tag": _tagged,
     **{f"torch.jit._pickle {name}": _list_of(kind) for name, kind in _LISTS.items()},

@@ -54,7 +54,8 @@ class DrawGoalkeeper(Skill):
         if not has_ball(me, ball):
             return self.fail("it does not have the ball")
         if not 0.0 <= frame.time - self._last < _PAUSE:
-            self._began, self._side = frame.time, self._nearer_side()
+            self._began = frame.time
+            self._side = min((1.0, -1.0), key=lambda side: abs(wrap_angle(self._aim(side) - me.heading)))
         self._last = frame.time
         if self.patience is not None and frame.time - self._began > self.patience:
             return self.fail("its patience is at an end")
@@ -73,11 +74,6 @@ class DrawGoalkeeper(Skill):
         field = self.frame.field
         y = side * max(0.0, field.goal_width / 2.0 - BALL_RADIUS - self.inset)
         return direction(self.me.position, (field.half_length, y))
-
-    def _nearer_side(self) -> float:
-        left = abs(wrap_angle(self._aim(1.0) - self.me.heading))
-        right = abs(wrap_angle(self._aim(-1.0) - self.me.heading))
-        return 1.0 if left <= right else -1.0
 
 
 _PAUSE = 1.0

@@ -75,7 +75,7 @@ class PassRater(Settings):
             worth = self.shot_weight * (shot.score if shot is not None else 0.0)
             worth += (1.0 - self.shot_weight) * min(1.0, max(0.0, progress))
             passes.append(Pass(mate.id, target, speed, worth * _sigmoid(start / self.margin_scale)))
-        return sorted(passes, key=_rank)
+        return sorted(passes, key=lambda rated: (-rated.score, rated.receiver))
 
     def head_starts(self, frame: Frame, targets: Sequence[Point], speeds: Sequence[float]) -> list[float]:
         """Compute the least time by which the ball of each pass, kicked at its speed, beats any opponent [s].
@@ -153,7 +153,3 @@ def _may_receive(frame: Frame, target: Point) -> bool:
 
 def _sigmoid(x: float) -> float:
     return 1.0 / (1.0 + exp(-x)) if x > -700.0 else 0.0
-
-
-def _rank(rated: Pass) -> tuple[float, int]:
-    return (-rated.score, rated.receiver)

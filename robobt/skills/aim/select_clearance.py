@@ -37,7 +37,7 @@ class SelectClearance(Skill):
         store, frame, ball = self.store, self.frame, self.ball.position
         store.shot = store.pass_ = None
         mates = [mate for mate in frame.teammates(self.me.id) if mate.x > -frame.field.half_length / 3]
-        mates.sort(key=_from_the_front)
+        mates.sort(key=lambda mate: -mate.x)
         for mate in mates:
             if self._free(mate):
                 speed = DEFAULT_BALL.kick_speed(distance(ball, mate.position), _ARRIVAL_SPEED)
@@ -52,7 +52,3 @@ class SelectClearance(Skill):
             for other in self.frame.others(self.me.id)
             if other is not mate
         )
-
-
-def _from_the_front(mate: RobotState) -> float:
-    return -mate.x

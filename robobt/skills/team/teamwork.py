@@ -129,7 +129,7 @@ def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
         for robot in frame.opponents
         if robot.x < _MARK_FROM and (holder is None or holder != RobotId(frame.team.other, robot.id))
     ]
-    threats.sort(key=_first)
+    threats.sort(key=lambda threat: threat[0])
     marks: dict[int, int] = {}
     for _, threat in threats:
         if not free:
@@ -143,7 +143,3 @@ def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
 def _mark_cost(team: TeamStore, mate: RobotState, threat: RobotState) -> float:
     kept = _MARK_GAIN if team.marks.get(mate.id) == threat.id else 0.0
     return hypot(mate.x - threat.x, mate.y - threat.y) - kept
-
-
-def _first(pair: tuple[float, RobotState]) -> float:
-    return pair[0]

@@ -101,10 +101,8 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     return tick, stop
 
 
-def _as_it_brings(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
-    return cast(BringsClosures, node).closures(visit)
-
-
 _KNOWN: list[Known] = []
 AS_IT_IS = Known(None, None, _as_it_is, lambda _: False)
-_AS_IT_BRINGS = Known(None, None, _as_it_brings, lambda _: False)
+_AS_IT_BRINGS = Known(
+    None, None, lambda node, visit: cast(BringsClosures, node).closures(visit), lambda _: False
+)

@@ -19,7 +19,6 @@ from robobt.tree.interop.model import (
     names_in,
     parts_of,
 )
-from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, check_names, parameters_of
 from robobt.tree.registry import Registry
@@ -33,12 +32,9 @@ def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
     depends on the tree's parameters shows when it is built.
     """
     verifier = _Verifier(file, vocabulary)
-    try:
-        verifier.check_cycles()
-        for definition in file.trees.values():
-            verifier.spec(definition.root, definition)
-    except RecursionError as error:
-        raise TreeFileError(file.source, "it is nested too deeply") from error
+    verifier.check_cycles()
+    for definition in file.trees.values():
+        verifier.spec(definition.root, definition)
 
 
 class _Verifier:
@@ -79,7 +75,8 @@ class _Verifier:
                 raise self._error(line, f"the tree has no parameter {name!r}; {has}")
 
     def _node(self, spec: Node) -> None:
-        kind = self._type(spec)
+        kind = self.vocabulary.type(spec.type)
+        assert kind is not None, spec.type
         if kind.name_required and spec.name is None:
             raise self._error(spec.line, f"{spec.type}: name: {spec.type} needs this parameter")
         entries = {*kind.reads, *kind.writes} - set(kind.parameters)
@@ -88,15 +85,6 @@ class _Verifier:
         for name, shape in kind.branches.items():
             if name not in spec.branches and shape in ("one", "cases"):
                 raise self._error(spec.line, f"{spec.type}: {name}: {spec.type} needs this branch")
-
-    def _type(self, spec: Node) -> NodeType:
-        try:
-            kind = self.vocabulary.type(spec.type)
-        except ValueError as error:
-            raise self._error(spec.line, str(error)) from error
-        if kind is None:
-            raise self._error(spec.line, unknown_type(spec.type, self.vocabulary))
-        return kind
 
     def _sub_tree(self, spec: SubTree) -> None:
         definition = self.file.trees.get(spec.tree)

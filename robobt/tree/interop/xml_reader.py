@@ -34,9 +34,9 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
     """
     try:
         file = _Reader(vocabulary, source).file(read_element(text, source))
+        verify(file, vocabulary)
     except RecursionError as error:
         raise TreeFileError(source, "it is nested too deeply") from error
-    verify(file, vocabulary)
     return file
 
 

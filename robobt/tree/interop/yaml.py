@@ -28,9 +28,9 @@ def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") 
     """Return the trees of a YAML text."""
     try:
         file = _Reader(vocabulary, source).file(parse_marked(text, source, TreeFileError))
+        verify(file, vocabulary)
     except RecursionError as error:
         raise TreeFileError(source, "it is nested too deeply") from error
-    verify(file, vocabulary)
     return file
 
 
