@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable
 from pathlib import Path
-from time import process_time
 
 import numpy as np
 
@@ -15,6 +13,7 @@ from robobt.skills.ball.learned_skill import LearnedSkill
 from robobt.skills.ball.shoot import Shoot
 from robobt.skills.store import Store
 from robobt.tree import Behaviour, TreeRunner
+from robobt.tree.bench import medians
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.state import BallState, Frame, RobotState
@@ -47,7 +46,7 @@ def bench_policy(
     own: dict[str, Callable[..., Behaviour]] = {"GoToBall": GoToBall, "Shoot": Shoot}
     if policy.card.skill in own:
         cases["skill_us"] = _ticking(own[policy.card.skill](policy=str(model)))
-    us = _measure(cases, rounds, calls)
+    us = medians(cases, rounds, calls)
     figures = {"leaf_to_module_ratio": us["leaf_us"] / us["module_us"]}
     if "skill_us" in us:
         figures["skill_to_module_ratio"] = us["skill_us"] / us["module_us"]
@@ -68,18 +67,3 @@ def _ticking(leaf: Behaviour) -> Callable[[], object]:
         tick()
 
     return once
-
-
-def _measure(cases: dict[str, Callable[[], object]], rounds: int, calls: int) -> dict[str, float]:
-    taken: dict[str, list[float]] = {name: [] for name in cases}
-    for case in cases.values():
-        for _ in range(calls):
-            case()
-    for _ in range(rounds):
-        for name, case in cases.items():
-            gc.collect()
-            begin = process_time()
-            for _ in range(calls):
-                case()
-            taken[name].append(1e6 * (process_time() - begin) / calls)
-    return {name: float(np.median(times)) for name, times in taken.items()}

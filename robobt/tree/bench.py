@@ -48,7 +48,7 @@ def bench_tree(rounds: int = 15, ticks: int = 300) -> dict[str, float]:
         "runner_store_us": TreeRunner(_tree(_OnStore), _Entries()).tick,
     }
     try:
-        us = _measure(cases, rounds, ticks)
+        us = medians(cases, rounds, ticks)
     finally:
         for client in clients:
             client.unregister()
@@ -60,21 +60,23 @@ def bench_tree(rounds: int = 15, ticks: int = 300) -> dict[str, float]:
     }
 
 
-def _measure(cases: dict[str, Callable[[], object]], rounds: int, ticks: int) -> dict[str, float]:
+def medians(cases: dict[str, Callable[[], object]], rounds: int, calls: int) -> dict[str, float]:
+    """Return the median CPU time of a call of each case [us]; the cases take turns."""
     taken: dict[str, list[float]] = {name: [] for name in cases}
-    for tick in cases.values():
-        tick()
+    for case in cases.values():
+        for _ in range(calls):
+            case()
     # What is there already is not looked through before each case.
     gc.freeze()
     try:
         for _ in range(rounds):
-            for name, tick in cases.items():
+            for name, case in cases.items():
                 # One case's garbage is not collected in another one's time.
                 gc.collect()
                 begin = process_time()
-                for _ in range(ticks):
-                    tick()
-                taken[name].append(1e6 * (process_time() - begin) / ticks)
+                for _ in range(calls):
+                    case()
+                taken[name].append(1e6 * (process_time() - begin) / calls)
     finally:
         gc.unfreeze()
     return {name: median(times) for name, times in taken.items()}

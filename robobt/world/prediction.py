@@ -9,7 +9,7 @@ from math import ceil, cos, hypot, sin, sqrt
 
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
-from robobt.world.protocol import Placement, World
+from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import BALL_RADIUS, BallState, Frame, RobotId, RobotState
 
 _STEP = 0.005
@@ -25,7 +25,7 @@ _FRONT = 0.08
 """Centre to the flat front, where nothing better is known [m]."""
 
 
-class PredictedWorld(World):
+class PredictedWorld(WrappedWorld):
     """A world whose frames show where everything is now, as far as that follows from the commands sent.
 
     Every robot is driven on from where it was seen, under the commands that were in
@@ -43,7 +43,7 @@ class PredictedWorld(World):
     def __init__(
         self, world: World, vision_delay: float, command_delay: float = 0.0, gaps: bool = False
     ) -> None:
-        self.world = world
+        super().__init__(world)
         self.vision_delay = vision_delay
         self.command_delay = command_delay
         self._gaps = gaps
@@ -68,18 +68,15 @@ class PredictedWorld(World):
         ball = self._ball(seen, own + theirs)
         return replace(seen, ball=ball, own=own, opponents=theirs)
 
-    def truth(self) -> Frame:
-        """See :meth:`robobt.world.World.truth`."""
-        return self.world.truth()
+    @property
+    def shows_truth(self) -> bool:
+        """Never: it shows what is predicted."""
+        return False
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """See :meth:`robobt.world.World.act`."""
         self._sent.append((self._now, dict(commands)))
         self.world.act(commands)
-
-    def place_ball(self, x: float, y: float) -> None:
-        """See :meth:`robobt.world.World.place_ball`."""
-        self.world.place_ball(x, y)
 
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
         until = self._now + self.command_delay

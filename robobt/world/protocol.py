@@ -75,3 +75,49 @@ class World(Protocol):
     def scenario_ends(self) -> bool:
         """Whether a scenario's ends hold; else a match lasts until the game controller ends it."""
         return True
+
+
+class WrappedWorld(World):
+    """Another world; what a subclass leaves as it is, is the other world's."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+
+    def reset(self, placement: Placement, seed: int) -> None:
+        """See :meth:`World.reset`."""
+        self.world.reset(placement, seed)
+
+    def observe(self) -> Frame:
+        """See :meth:`World.observe`."""
+        return self.world.observe()
+
+    def truth(self) -> Frame:
+        """See :meth:`World.truth`."""
+        return self.world.truth()
+
+    def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """See :meth:`World.act`."""
+        self.world.act(commands)
+
+    def place_ball(self, x: float, y: float) -> None:
+        """See :meth:`World.place_ball`."""
+        self.world.place_ball(x, y)
+
+    def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
+        """See :meth:`World.seen_kicks`."""
+        return self.world.seen_kicks()
+
+    @property
+    def shows_truth(self) -> bool:
+        """See :attr:`World.shows_truth`."""
+        return self.world.shows_truth
+
+    @property
+    def refereed(self) -> bool:
+        """See :attr:`World.refereed`."""
+        return self.world.refereed
+
+    @property
+    def scenario_ends(self) -> bool:
+        """See :attr:`World.scenario_ends`."""
+        return self.world.scenario_ends

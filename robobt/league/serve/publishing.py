@@ -20,20 +20,20 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import REALISM
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
-from robobt.world.protocol import Placement, World
+from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import Frame, RobotId
 
 GEOMETRY_INTERVAL = 30
 """Frames from one geometry packet to the next, as grSim's."""
 
 
-class PublishedWorld(World):
+class PublishedWorld(WrappedWorld):
     """Another world, played in real time and published over the loopback."""
 
     def __init__(
         self, world: World, keepers: Mapping[Team, int] | None = None, endpoints: Endpoints | None = None
     ) -> None:
-        self.world = world
+        super().__init__(world)
         to = endpoints or Endpoints()
         self._senders = [Sender(*end) for end in (to.vision, to.tracker, to.referee)]
         self._publisher = RefereePublisher(keepers)
@@ -47,14 +47,10 @@ class PublishedWorld(World):
         self.world.reset(placement, seed)
         self._began = time.monotonic()
 
-    def observe(self) -> Frame:
-        """See :meth:`robobt.world.World.observe`."""
-        return self.world.observe()
-
     def truth(self) -> Frame:
         """See :meth:`robobt.world.World.truth`."""
         # The match writes the referee's decision into the frame.
-        self._judged = self.world.truth()
+        self._judged = super().truth()
         return self._judged
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
@@ -65,20 +61,6 @@ class PublishedWorld(World):
             if ahead > 0.0:
                 time.sleep(ahead)
         self.world.act(commands)
-
-    def place_ball(self, x: float, y: float) -> None:
-        """See :meth:`robobt.world.World.place_ball`."""
-        self.world.place_ball(x, y)
-
-    @property
-    def refereed(self) -> bool:
-        """See :meth:`robobt.world.World.refereed`."""
-        return self.world.refereed
-
-    @property
-    def scenario_ends(self) -> bool:
-        """See :meth:`robobt.world.World.scenario_ends`."""
-        return self.world.scenario_ends
 
     def close(self) -> None:
         """Stop publishing."""

@@ -13,7 +13,7 @@ from robobt.shots.data.schema import Row
 from robobt.skills.store import Shot, Store
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import distance, wrap_angle
-from robobt.world.protocol import Placement, World
+from robobt.world.protocol import World, WrappedWorld
 from robobt.world.state import Frame, RobotId, RobotState
 from robobt.worlds import sim_world
 
@@ -28,7 +28,7 @@ _OUTCOMES = {
 }
 
 
-class WatchedWorld(World):
+class WatchedWorld(WrappedWorld):
     """Passes everything on to a world and keeps the last shot of one blue robot.
 
     Attributes:
@@ -37,39 +37,24 @@ class WatchedWorld(World):
     """
 
     def __init__(self, world: World, shooter: RobotId) -> None:
-        self._world, self._shooter = world, shooter
+        super().__init__(world)
+        self._shooter = shooter
         self.store: Store | None = None
         self.shot: Row | None = None
-
-    def reset(self, placement: Placement, seed: int) -> None:
-        """See :class:`World`."""
-        self._world.reset(placement, seed)
-
-    def observe(self) -> Frame:
-        """See :class:`World`."""
-        return self._world.observe()
-
-    def truth(self) -> Frame:
-        """See :class:`World`."""
-        return self._world.truth()
-
-    def place_ball(self, x: float, y: float) -> None:
-        """See :class:`World`."""
-        self._world.place_ball(x, y)
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Pass the commands on, and look whether one of them was the kick."""
         order = commands.get(self._shooter)
         if order is None or order.kick_speed <= 0.0:
-            self._world.act(commands)
+            self.world.act(commands)
             return
-        before = self._world.truth()
+        before = self.world.truth()
         aimed = None if self.store is None else self.store.shot
-        self._world.act(commands)
+        self.world.act(commands)
         me = before.robot(self._shooter.number)
         if aimed is None or me is None:
             return
-        after = self._world.truth()
+        after = self.world.truth()
         away = _speed_away(me, after) - _speed_away(me, before)
         if away > _LEFT_SHARE * order.kick_speed or _stopped_at_once(before, after, self._shooter):
             self.shot = _scene(before, after, me, aimed, self._shooter)

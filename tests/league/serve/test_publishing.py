@@ -13,8 +13,9 @@ from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
-from robobt.match import Match, load_scenario
-from robobt.world import World
+from robobt.match import Match, Scenario, load_scenario
+from robobt.sim import SimWorld
+from robobt.world import RobotId, Team, World
 from robobt.worlds import sim_world
 from tests.league.served import free_endpoints
 
@@ -46,6 +47,25 @@ def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
     assert first.frame is not None
     assert len(first.frame.robots) == 6
     assert result.trace == Match(scenario, 1, sim_world).play().trace
+
+
+def test_kicks_that_a_world_saw_are_counted_in_a_published_match_too() -> None:
+    scenario = load_scenario("striker_vs_goalie").lasting(0.1)
+    striker = RobotId(Team.BLUE, 0)
+
+    class Seeing(SimWorld):
+        def seen_kicks(self) -> list[tuple[RobotId, float]]:
+            return [(striker, self.time)]
+
+    def world(scenario: Scenario) -> PublishedWorld:
+        simulated = sim_world(scenario)
+        simulated.__class__ = Seeing
+        return PublishedWorld(simulated, endpoints=free_endpoints())
+
+    match = Match(scenario, 1, world)
+    result = match.play()
+    match.world.close()  # type: ignore[attr-defined]
+    assert result.robots["blue 0"].kicks == result.ticks
 
 
 def test_it_waits_for_the_clock_and_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
