@@ -43,11 +43,7 @@ def sim_world(scenario: Scenario) -> World:
 
 
 def scenario_settings(scenario: Scenario, preset: str | None = None) -> SimSettings:
-    """Return the settings of a scenario's simulator.
-
-    Args:
-        scenario: whose ``simulator`` is read.
-        preset: what its changes are made to; None for its own preset.
+    """Return the settings of a scenario's simulator, with ``preset`` in place of its own if one is named.
 
     Raises:
         ScenarioError: they are wrong.

@@ -78,11 +78,8 @@ def draw_goal_map(found: GoalMap, path: Path) -> None:
 def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArray], path: Path) -> None:
     """Draw a scene with its goal line as raters judge it: the probability at every target point.
 
-    Args:
-        frame: the scene, seen from the shooter's side.
-        me: the shooter.
-        chances: (T,) for the points of :func:`goal_candidates`, by the rater's name.
-        path: the ending decides the format (.png, .svg, .pdf).
+    ``chances`` (T,) are for the points of :func:`goal_candidates`, by the rater's name; the path's ending
+    decides the format (.png, .svg, .pdf).
     """
     from matplotlib.patches import Circle
 

@@ -62,10 +62,7 @@ class Peer:
 class PeerClock:
     """The clock of a peer, and when its frames arrive.
 
-    Args:
-        peer: whose clock.
-        seconds: how long it is followed [s].
-        seed: fixes the phase of its drift, and the delays.
+    It is followed for ``seconds``; the phase of its drift, and the delays, follow from ``seed``.
 
     Attributes:
         faults: when faults begin [s].
@@ -139,11 +136,7 @@ def lead_errors(
 ) -> NDArray[np.float64]:
     """Return how far each frame was predicted beyond what was there at that moment [s].
 
-    Args:
-        peer: the field.
-        seconds: how long it is followed [s].
-        seed: of its delays.
-        settling: how long after the start and after the end of a fault nothing is judged [s].
+    ``settling`` is how long after the start and after the end of a fault nothing is judged [s].
     """
     errors = []
     clock = PeerClock(peer, seconds, seed)

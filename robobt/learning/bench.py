@@ -32,8 +32,7 @@ def bench_env(seconds: float = 2.0) -> dict[str, float]:
     The robots drive to the ball, or turn and kick, by hand-written policies, so
     that episodes start and end as in training; deciding is not in the time.
 
-    Args:
-        seconds: of CPU time for each figure, in chunks of which the fastest counts.
+    Each figure takes ``seconds`` of CPU time, in chunks of which the fastest counts.
 
     Returns:
         environment steps a second of CPU time: ``go_to_ball_...`` and

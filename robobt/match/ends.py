@@ -68,11 +68,7 @@ class EndJudge:
     ) -> Outcome | None:
         """Decide whether the match is over at this frame; None while it is not.
 
-        Args:
-            truth: what really is on the field, seen from blue's side.
-            game: the state of the game.
-            kicks: how often the ball has been kicked so far.
-            kicked: who kicked it since the frame before.
+        ``kicks`` is how often the ball has been kicked so far, ``kicked`` who did so since the frame before.
         """
         goal_by = self._goal_by(truth, game)
         if not self._hold:

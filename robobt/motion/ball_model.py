@@ -29,10 +29,7 @@ class BallModel(Settings):
     def way_in(self, time: float, speed: float, rolling: float | None = None) -> float:
         """Return how far a ball seen at ``speed`` goes within ``time`` [m].
 
-        Args:
-            time: [s].
-            speed: [m/s].
-            rolling: speed from which on it rolls [m/s]; None when it rolls already.
+        It rolls from the speed ``rolling`` on [m/s]; None when it rolls already.
         """
         way = 0.0
         if rolling is not None and rolling < speed:

@@ -17,11 +17,7 @@ _WIDEST_TURN = 0.9
 def first_hit(start: Point, end: Point, circles: list[Circle], end_counts: bool) -> Circle | None:
     """Return the circle that the segment enters first, shrunk to leave out the segment's ends.
 
-    Args:
-        start: where the segment starts [m].
-        end: where it ends [m].
-        circles: what may be in the way.
-        end_counts: whether a circle around the end is shrunk too.
+    ``end_counts`` says whether a circle around the end is shrunk too.
     """
     x, y = start
     gx, gy = end
@@ -62,13 +58,8 @@ def detour(
 ) -> tuple[Point, float, float]:
     """Compute the first waypoint round ``circle`` on one side.
 
-    Args:
-        start: where the path starts [m].
-        end: where it ends [m].
-        circle: the circle to go round.
-        side: 1 leaves it to the right, -1 to the left.
-        circles: everything that may be in the way.
-        depth: how many more circles to go round on the first leg.
+    A ``side`` of 1 leaves the circle to the right, -1 to the left; ``depth`` is how many more circles to go
+    round on the first leg.
 
     Returns:
         The point where the tangents from start and end meet, the length of the

@@ -21,13 +21,7 @@ TURN_ACCELERATION = 15.0
 def dribbling_limits(
     max_speed: float = 2.0, max_turn: float = MAX_TURN, max_acceleration: float = MAX_ACCELERATION
 ) -> RobotLimits:
-    """Limits for driving with the ball, the same in every direction.
-
-    Args:
-        max_speed: [m/s].
-        max_turn: [rad/s].
-        max_acceleration: [m/s^2].
-    """
+    """Limits for driving with the ball, the same in every direction [m/s, rad/s, m/s^2]."""
     return RobotLimits(
         max_speed=max_speed,
         acceleration=max_acceleration,

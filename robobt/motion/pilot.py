@@ -135,13 +135,8 @@ def approach_speed(
     The robot is taken to change to that speed at its limit and to hold it for
     the rest of the period. Unit of length is free: metres or radians.
 
-    Args:
-        distance: what is left, not negative.
-        speed: towards the target, now.
-        cruise: most to return.
-        acceleration: per s^2.
-        braking: per s^2.
-        period: [s].
+    ``distance`` is what is left, not negative, ``speed`` that towards the target now, ``cruise`` the most to
+    return; of angles as of ways.
     """
     v = speed if speed > 0.0 else 0.0
     # Way made within the period while braking to w, and from w to rest:
@@ -161,10 +156,7 @@ def approach_speed(
 def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
     """Compute the time to cover ``distance`` and stop there: the trapezoid optimum [s].
 
-    Args:
-        distance: along a straight line [m].
-        speed: towards the target at the start [m/s]; negative is away from it.
-        limits: how to drive.
+    ``speed`` is that towards the target at the start, negative when it is away from it [m/s].
     """
     a, b, cruise = limits.acceleration, limits.braking, limits.max_speed
     if speed < 0.0:

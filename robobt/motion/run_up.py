@@ -30,12 +30,7 @@ def run_up(
     profile, and is relative to the ball, which may roll. The robot has to be
     behind the ball already.
 
-    Args:
-        me: the robot.
-        ball: the ball.
-        facing: direction of the line through the ball [rad].
-        limits: how to drive.
-        period: time until the next command [s].
+    ``facing`` is the line's direction [rad], ``period`` the time to the next command [s].
     """
     ux, uy = cos(facing), sin(facing)
     dx, dy = ball.x - me.x, ball.y - me.y

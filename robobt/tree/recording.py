@@ -176,9 +176,7 @@ def _reader(places: Iterable[int], attribute: str, nodes: Sequence[Behaviour]) -
 def make_reader(expression: str, objects: Sequence[object]) -> FunctionType:
     """Make the function that reads attributes of objects.
 
-    Args:
-        expression: what it returns; an object is written as its place in quotes.
-        objects: by their places.
+    It returns what ``expression`` says, in which an object is written as its place in ``objects`` in quotes.
     """
     # With a place in the code for each object, the interpreter remembers at each where in that class
     # the attribute is found; in a loop over objects of many classes it has to search every time,

@@ -117,9 +117,7 @@ class TreeRunner:
     def mark(self, nodes: Iterable[Behaviour]) -> Marks:
         """Note what changes in the tree from now on.
 
-        Args:
-            nodes: of all nodes of the tree at least these are noted when they are ticked; the
-                notes are those of the last tick.
+        Of all nodes at least ``nodes`` are noted when they are ticked; the notes are those of the last tick.
         """
         self._marks = Marks(nodes)
         self._renew()

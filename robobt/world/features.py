@@ -204,11 +204,9 @@ def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
 def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: float) -> FloatArray:
     """Compute the Shoot states of many arenas.
 
-    Args:
-        robots: (n, 6) x, y, heading, vx, vy, omega in field coordinates.
-        balls: (n, 4) x, y, vx, vy in field coordinates.
-        goal_x: where the attacked goal's line is [m].
-        post_y: the left post's distance from the field's long axis; the right one's is the same [m].
+    ``robots`` (n, 6) are x, y, heading, vx, vy, omega and ``balls`` (n, 4) x, y, vx, vy in field coordinates;
+    ``goal_x`` is where the attacked goal's line is, ``post_y`` the distance of its posts from the field's
+    long axis [m].
 
     Returns:
         (n, 10): :data:`SHOOT`.

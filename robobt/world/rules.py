@@ -188,10 +188,7 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
     The sensor may be silent for a tick while the ball bounces on the dribbler, so a
     ball within ``sector`` of the heading and within :data:`HELD_GAP` of the hull counts too.
 
-    Args:
-        robot: who may have it.
-        ball: in the same view.
-        sector: on which side of the robot, :data:`MOUTH_SECTOR` or :data:`ALL_AROUND` [rad].
+    ``sector`` is on which side of the robot that may be, :data:`MOUTH_SECTOR` or :data:`ALL_AROUND` [rad].
     """
     if robot.ball_contact:
         return True

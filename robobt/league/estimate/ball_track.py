@@ -61,14 +61,8 @@ class BallTrack:
     After a kick or a bounce it is unknown whether the ball slides or rolls: both
     hypotheses are tracked, and the one that fits better is reported.
 
-    Args:
-        x, y: first detection [m].
-        time: timestamp of its capture [s].
-        settings: decelerations of the ball.
-        noise: standard deviation of detections [m].
-
-    Attributes:
-        time: timestamp of the estimate [s].
+    It begins with a first detection, of which ``noise`` is the standard deviation [m]; ``time`` is then that
+    of the estimate [s].
     """
 
     def __init__(self, x: float, y: float, time: float, settings: BallSettings, noise: float) -> None:

@@ -66,10 +66,8 @@ class _Outlier:
 class VisionFilter:
     """Merges the cameras' detections and predicts from them.
 
-    Args:
-        field: dimensions; may be replaced when the vision reports others.
-        settings: physics to expect: ball, robots' bodies, limits and noise.
-        limits: of individual robots, where they differ.
+    ``field`` may be replaced when the vision reports another; ``settings`` are the physics to expect,
+    ``limits`` those of individual robots, where they differ.
 
     Attributes:
         captured: capture time of the newest frame, None before the first [s].

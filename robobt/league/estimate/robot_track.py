@@ -47,12 +47,7 @@ _COMMAND_ERROR = 0.1
 class RobotTrack:
     """The estimate of one robot.
 
-    Args:
-        x, y, heading: first detection [m, rad].
-        time: timestamp of its capture [s].
-        limits: of the robot.
-        noise: standard deviation of detected positions [m].
-        heading_noise: standard deviation of detected headings [rad].
+    It begins with a first detection; detections deviate by ``noise`` [m] and ``heading_noise`` [rad].
 
     Attributes:
         motion: the estimate at ``time``.

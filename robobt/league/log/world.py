@@ -30,10 +30,7 @@ class LogWorld(World):
     frames where it holds no vision; the game state comes from its referee messages.
     Truth and observation are the same. Pauses are shortened to 2 s.
 
-    Args:
-        path: the log.
-        field: dimensions until the log reports others.
-        period: from one frame to the next [s].
+    ``field`` holds until the log reports another; from one frame to the next it takes ``period`` [s].
 
     Raises:
         LogError: the file is not a log.

@@ -24,11 +24,7 @@ _MAX_CAMERAS = 16
 class Cameras:
     """Cameras that share a field, each over its part of a grid.
 
-    Args:
-        field: what they observe.
-        realism: their noise and gaps; latency is the caller's business.
-        count: how many, 1 to 16.
-        rng: source of all randomness.
+    There are 1 to 16 of them; ``realism`` gives their noise and gaps, its latency is the caller's business.
 
     Attributes:
         realism: as above; may be replaced.

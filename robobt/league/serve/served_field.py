@@ -37,13 +37,9 @@ _MAX_SPEED = 20.0
 class ServedField:
     """A simulated field for 16 robots a team, of which some are present.
 
-    Args:
-        field: dimensions.
-        placement: where everything stands at the start.
-        settings: of the simulator. The delay and loss of commands take effect; noise and
-            latency of the vision are up to the cameras.
-        limits: of individual robots, where they differ from the settings'.
-        seed: of lost commands.
+    Of ``settings`` the delay and loss of commands take effect, which ``seed`` decides on; noise and latency
+    of the vision are up to the cameras. ``limits`` are those of individual robots, where they differ from the
+    settings'.
 
     Attributes:
         period: between two frames [s].

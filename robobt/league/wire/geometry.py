@@ -89,10 +89,7 @@ def write_geometry(
 ) -> SSL_GeometryData:
     """Return the geometry message of a field.
 
-    Args:
-        field: the field.
-        cameras: places of the cameras over it, by number [m].
-        ball: how the ball moves; None leaves it out.
+    ``cameras`` are the places of those over it, by number [m]; without ``ball`` it leaves out how that moves.
     """
     message = SSL_GeometryData()
     _write_size(message.field, field)

@@ -23,11 +23,8 @@ SOURCE = "robobt"
 def write_tracked(frame: Frame, number: int, time: float, uuid: str) -> bytes:
     """Return a tracker packet.
 
-    Args:
-        frame: the state to publish, seen from blue's side.
-        number: of the frame.
-        time: timestamp of the frame, Unix time or simulated [s].
-        uuid: tells this source from others while it runs.
+    ``frame`` is seen from blue's side, ``time`` Unix time or simulated [s]; ``uuid`` tells this source from
+    others while it runs.
     """
     packet = TrackerWrapperPacket(uuid=uuid, source_name=SOURCE)
     tracked = packet.tracked_frame

@@ -34,13 +34,8 @@ class NStep:
     A return is cut at the end of its episode. A terminated episode is worth
     nothing more; a truncated one is bootstrapped from its last observation.
 
-    Args:
-        horizons: how many rewards a return sums at most. Every transition comes
-            once for each; what is smaller than the first must be 1.
-        gamma: discount a step.
-        envs: number of environments.
-        observation_size: length of the vector.
-        action_size: length of the vector.
+    ``horizons`` are how many rewards a return sums at most. Every transition comes once for each; what is
+    smaller than the first must be 1.
     """
 
     def __init__(
@@ -71,13 +66,8 @@ class NStep:
     ) -> list[tuple[Transitions, ...]]:
         """Add one step of every environment; return the transitions it completes, once for each horizon.
 
-        Args:
-            observation: (envs, ...) before the step.
-            action: (envs, ...) taken in it.
-            reward: (envs,) of it.
-            next_observation: (envs, ...) after it: an ended episode's own last observation.
-            terminated: (envs,) whether the episode ended with this step.
-            truncated: (envs,) whether a time limit cut it off.
+        All are (envs, ...). ``next_observation`` is an ended episode's own last one; ``truncated`` tells that
+        a time limit cut the episode off.
         """
         slot = self._step % self._n
         self._step += 1

@@ -49,11 +49,7 @@ class Replay:
     Every row is packed as observation, action, then for each horizon reward,
     discount and next observation, so that a batch is one gather.
 
-    Args:
-        capacity: rows, demonstrations included.
-        observation_size: length of the vector.
-        action_size: length of the vector.
-        horizons: for how many numbers of steps each row holds a return.
+    ``capacity`` counts rows, demonstrations included; each holds a return over each of ``horizons`` steps.
     """
 
     def __init__(self, capacity: int, observation_size: int, action_size: int, horizons: int = 1) -> None:
@@ -141,15 +137,9 @@ class PrioritisedReplay(Replay):
     P(i) = p_i^alpha / sum, and importance weights (N P(i))^-beta, the largest of a
     batch scaled to 1, correct for it. New rows get the largest priority yet.
 
-    Args:
-        capacity: see :class:`Replay`.
-        observation_size: see :class:`Replay`.
-        action_size: see :class:`Replay`.
-        horizons: see :class:`Replay`.
-        alpha: 0 samples uniformly, 1 in proportion to the priorities.
-        beta: how far the weights correct for it, 1 in full.
-        floor: added to every priority.
-        bonus: added to the priorities of kept rows (demonstrations).
+    An ``alpha`` of 0 samples uniformly, 1 in proportion to the priorities; ``beta`` is how far the weights
+    correct for it, 1 in full; ``floor`` is added to every priority, ``bonus`` to those of kept rows
+    (demonstrations).
 
     Source: Schaul et al., "Prioritized experience replay", 2015; the bonus from
     Vecerik et al. (DDPGfD), 2017.

@@ -25,10 +25,7 @@ from robobt.world.features import ObservationSpec
 class ArenaTask(ABC):
     """``n`` arenas with one robot and a ball each; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    Args:
-        settings: of the environment.
-        n: number of arenas.
-        seed: of everything drawn from the first ``reset`` on; None for another each time.
+    ``seed`` is that of everything drawn from the first ``reset`` on; None for another each time.
 
     Attributes:
         arenas: the simulator, from the first ``reset`` on.

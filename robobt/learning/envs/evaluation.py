@@ -21,11 +21,7 @@ def run_starts(task: ArenaTask, decide: Decide, starts: ArrayLike, seed: int = 0
     Every start is played to its end, so that short episodes are not counted more
     often than long ones.
 
-    Args:
-        task: to play in; its own run is lost.
-        decide: the policy.
-        starts: (m, 10), columns ``START_COLUMNS``.
-        seed: of noise and randomisation.
+    ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's own run is lost.
 
     Returns:
         m episodes in the order of the starts.

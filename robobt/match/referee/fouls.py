@@ -46,10 +46,7 @@ class Foul:
 class Fouls:
     """Watches for fouls while the ball is in play; frames are seen from blue's side.
 
-    Args:
-        field: dimensions.
-        settings: which checks are on.
-        touches: who touches the ball, kept up to date by the caller.
+    ``settings`` say which checks are on; ``touches`` are kept up to date by the caller.
     """
 
     def __init__(self, field: FieldGeometry, settings: RefereeSettings, touches: Touches) -> None:

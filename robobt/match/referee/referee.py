@@ -36,10 +36,7 @@ _SPOT_PATIENCE = 3.0
 class Referee:
     """Follows the rules of a match in simulated time; the same frames give the same decisions.
 
-    Args:
-        field: dimensions.
-        settings: checks and pauses.
-        first_kickoff: who kicks off first; the other team does in the second half.
+    The team ``first_kickoff`` kicks off first; the other one does in the second half.
 
     Left out: cards and the robots they cost, time-outs, overtime, penalty
     shoot-outs, pushing and holding, and who places the ball (it is put down by

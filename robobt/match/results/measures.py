@@ -44,12 +44,8 @@ class Measures:
     ) -> None:
         """Take in the next true frame.
 
-        Args:
-            truth: what really is on the field, seen from blue's side.
-            game: the state of the game.
-            commands: the robots' commands at the frame before.
-            seen: kicks since the frame before and when they happened [s]; None for a world where
-                they follow from the states and the commands.
+        ``commands`` are those at the frame before; ``seen`` are the kicks since and when they happened [s],
+        None for a world where they follow from the states and the commands.
         """
         self.ticks += 1
         self.kicked.clear()

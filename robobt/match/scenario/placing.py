@@ -56,12 +56,8 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
 class Placer:
     """A sampler of one placement: what is fixed first, then the ball, then the other robots.
 
-    Args:
-        field: dimensions.
-        robots: start of each robot, in its own team's view.
-        ball: start of the ball.
-        clearance: least gap between hulls, and to the ball, where places are random [m].
-        rng: the only source of chance.
+    Robots' starts are in their own team's view; ``clearance`` is the least gap between hulls, and to the
+    ball, where places are random [m]; all chance comes from ``rng``.
     """
 
     def __init__(

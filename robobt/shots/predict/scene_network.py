@@ -103,12 +103,9 @@ def train_scene_network(
     Nothing is held out: with as many shots as a simulator gives, the rate's fall is
     what ends the training.
 
-    Args:
-        scenes: (n, 34) of :data:`~robobt.world.features.SHOT_SCENE`.
-        goals: (n,) of 1 and 0.
-        epochs: passes over the data.
-        seed: what the weights and the order of shots follow from.
-        on_epoch: called with the number of each epoch that is over.
+    ``scenes`` (n, 34) are of :data:`~robobt.world.features.SHOT_SCENE`, ``goals`` (n,) 1 or 0; weights and
+    the order of shots follow from ``seed``; ``on_epoch`` is called with the number of each epoch that is
+    over.
     """
     generator = torch.Generator().manual_seed(seed)
     state = torch.random.get_rng_state()

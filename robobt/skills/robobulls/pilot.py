@@ -33,12 +33,7 @@ def robobulls_drive(
     ``limits.braking`` just stops there; it differs from the present velocity by
     no more than ``limits.acceleration`` allows, in whatever direction.
 
-    Args:
-        me: the robot.
-        target: where to [m].
-        heading: where the mouth is to point [rad].
-        period: time until the next command [s].
-        limits: how to drive.
+    Arguments are those of :func:`robobt.motion.pilot.drive`.
     """
     error = wrap_angle(heading - me.heading)
     rate = min(sqrt(2.0 * limits.angular_braking * max(abs(error) - _TURNED, 0.0)), limits.max_turn)

@@ -28,9 +28,8 @@ class BringsClosures(Protocol):
         Children are compiled by :func:`~robobt.tree.engine.dispatch.compile_node`. A subclass that
         overrides ``tick`` or ``stop`` without ``closures`` is ticked through its generator.
 
-        Args:
-            visit: called with this node whenever it has been ticked; the closures of its
-                children do the same for them.
+        ``visit`` is called with this node whenever it has been ticked; the children's closures do the same
+        for them.
         """
 
 

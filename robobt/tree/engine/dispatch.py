@@ -39,9 +39,7 @@ def compile_tree(root: Behaviour, visit: Visit | None = None) -> Tick:
     Children may be added, removed and replaced between ticks; which of its
     methods a node has must not change.
 
-    Args:
-        root: the tree.
-        visit: called with every node as it has been ticked, in py_trees' order.
+    ``visit`` is called with every node as it has been ticked, in py_trees' order.
     """
     return compile_node(root, visit)[0]
 

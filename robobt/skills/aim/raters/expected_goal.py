@@ -68,11 +68,8 @@ class ExpectedGoal(ShotRater):
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
         """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
-        Args:
-            frame: the field, seen from the shooter's side.
-            origin: where the ball will be kicked from [m].
-            me: the robot that kicks.
-            points: (T, 2) on the opponent's goal line, from right to left [m].
+        ``points`` (T, 2) lie on the opponent's goal line, from right to left [m]; the ball will be kicked
+        from ``origin``.
 
         Returns:
             (T,) in [0, 1].

@@ -58,10 +58,8 @@ class Gaussian(ShotRater):
     def chances(self, aims: FloatArray, mouth: Interval, blockers: list[tuple[float, float]]) -> FloatArray:
         """Compute the chance of a goal for every aim.
 
-        Args:
-            aims: (T,) directions [rad].
-            mouth: directions of the posts [rad].
-            blockers: direction and standard deviation of each robot [rad].
+        ``aims`` (T,) and the posts, ``mouth``, are directions [rad]; ``blockers`` the direction and standard
+        deviation of each robot [rad].
 
         Returns:
             (T,) in [0, 1].

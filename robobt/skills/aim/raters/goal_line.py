@@ -64,11 +64,8 @@ def lane_clearances(
     not in the ball's way: its distance is infinite, unless ``behind`` is set:
     then it is their distance from the origin.
 
-    Args:
-        origin: where the lanes start [m].
-        targets: (T, 2) ends [m].
-        centres: (K, 2) [m].
-        behind: whether obstacles behind the origin count.
+    ``targets`` (T, 2) and ``centres`` (K, 2) are in metres; ``behind`` says whether obstacles behind the
+    origin count.
 
     Returns:
         (T, K) distances [m].

@@ -70,13 +70,8 @@ def opening_shots(
 
     The score is the opening's width as a share of ``full_angle``, at most 1.
 
-    Args:
-        field: dimensions.
-        origin: where the ball will be kicked from [m].
-        heading: of the robot that kicks [rad].
-        inset: what either post takes off the goal [m].
-        discs: centre and radius of everything in the way [m].
-        full_angle: width of an opening that scores 1 [rad].
+    ``inset`` is what either post takes off the goal [m], ``discs`` have the centre and radius of everything
+    in the way [m], and an opening of ``full_angle`` scores 1 [rad].
     """
     mouth = goal_mouth(field, origin, inset)
     if mouth is None:
