@@ -70,11 +70,7 @@ def read_yaml(path: Path, error: type[ConfigError] = ConfigError) -> dict[str, A
 
 
 def read_limited(path: Path, limit: int, error: type[ConfigError] = ConfigError) -> bytes:
-    """Return the content of a file of at most ``limit`` bytes.
-
-    Raises:
-        ConfigError: the file cannot be read or is larger.
-    """
+    """Return the content of a file of at most ``limit`` bytes."""
     try:
         with path.open("rb") as file:
             content = file.read(limit + 1)
@@ -87,11 +83,7 @@ def read_limited(path: Path, limit: int, error: type[ConfigError] = ConfigError)
 
 
 def parse_marked(content: bytes | str, file: str, error: type[ConfigError] = ConfigError) -> Marked:
-    """Return the data of one YAML document with its positions.
-
-    Raises:
-        ConfigError: the text is not plain YAML; it names the line.
-    """
+    """Return the data of one YAML document with its positions."""
     if len(content) > MAX_BYTES:
         raise error(file, f"is larger than {MAX_BYTES // 1024} KiB")
     try:

@@ -38,9 +38,6 @@ def goal_map(model: str = "shot_expected", spacing: float = 0.1) -> GoalMap:
     """Return the best shot's probability from every place, past a goalkeeper at rest that covers the angle.
 
     Judged by the predictor ``model`` of the ``expected_goal`` rater, at places ``spacing`` apart [m].
-
-    Raises:
-        ModelError: the model cannot be used.
     """
     field, rater = DIVISION_B, ExpectedGoal(model=model)
     points = goal_candidates(field)

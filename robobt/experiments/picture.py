@@ -22,11 +22,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write a figure; the name's ending decides the format (.png, .svg, .pdf).
-
-    Raises:
-        ValueError: matplotlib does not know the ending.
-    """
+    """Write a figure; the name's ending decides the format (.png, .svg, .pdf)."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as draft:
         figure.savefig(draft, dpi=120)

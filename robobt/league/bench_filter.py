@@ -58,10 +58,6 @@ def bench_filter(
         seed: of noise and match.
         realism: a level of :data:`robobt.sim.settings.REALISM`.
         cameras: how many.
-
-    Raises:
-        KeyError: no such level of realism.
-        ValueError: an argument is out of range.
     """
     level = realism_level(realism)
     if not seconds > 2 * _WARM_UP:

@@ -58,9 +58,6 @@ def bench_league(
         vision stalled [Hz]; latency from a frame's arrival to the commands; robots missing in
         frames, summed over the ticks; ticks in which a tree failed; dropped packets; and the
         time from the kill until all robots were commanded to stop, and stood [s].
-
-    Raises:
-        RuntimeError: one of the processes died.
     """
     endpoints = free_endpoints()
     context = multiprocessing.get_context("spawn")

@@ -71,9 +71,6 @@ class LeagueFactory:
         address: see :func:`parse_address`.
         settings: returns the settings of a scenario's simulator, with the preset of the physics there
             in place of its own if one is given.
-
-    Raises:
-        AddressError: the address is wrong.
     """
 
     def __init__(self, address: str, settings: Callable[[Scenario, str | None], SimSettings]) -> None:
@@ -84,11 +81,7 @@ class LeagueFactory:
         self._world: LeagueWorld | None = None
 
     def __call__(self, scenario: Scenario) -> LeagueWorld:
-        """Return the world with the scenario's robots.
-
-        Raises:
-            ScenarioError: the simulator's settings in the scenario are wrong.
-        """
+        """Return the world with the scenario's robots."""
         self.close()
         settings = self._settings(scenario, self._physics)
         robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}

@@ -40,11 +40,7 @@ class Run:
     interrupted: bool
 
     def summary(self) -> Summary:
-        """Summarise the trials.
-
-        Raises:
-            ValueError: no trial was finished.
-        """
+        """Summarise the trials."""
         return summarise(self.results, self.seed)
 
 

@@ -126,11 +126,7 @@ def load_policy(
 
 
 def bare_module(policy: Policy) -> Callable[[], object]:
-    """Return a call of the frozen module on a tensor of one observation, the yardstick of benchmarks.
-
-    Raises:
-        ModelError: the policy is no TorchScript one.
-    """
+    """Return a call of the frozen module on a tensor of one observation, the yardstick of benchmarks."""
     network = policy.network
     if not isinstance(network, _TorchScript):
         raise ModelError(f"{policy.path}: is no TorchScript file")

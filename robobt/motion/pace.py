@@ -25,9 +25,6 @@ class Pace:
     Args:
         limits: how to drive; None takes the robot's own.
         speed: factor on the top speed and turning rate, above 0 and at most :data:`MOST`.
-
-    Raises:
-        ValueError: the factor is out of that range.
     """
 
     def __init__(self, limits: RobotLimits | None, speed: float) -> None:

@@ -84,9 +84,6 @@ def skill(cls: type[SkillT]) -> type[SkillT]:
 
     The fields of the class become parameters of its constructor, by keyword,
     unless it writes a constructor of its own.
-
-    Raises:
-        ValueError: another skill has that name.
     """
     if "__init__" not in vars(cls):
         dataclass(kw_only=True, eq=False, repr=False)(cls)

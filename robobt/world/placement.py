@@ -31,11 +31,7 @@ def check_placement(placement: Placement, field: FieldGeometry, robots: Collecti
 
 
 def check_inside(what: str, values: tuple[float, ...], field: FieldGeometry) -> None:
-    """Check that all values are finite, and that the first two, x and y, lie within the walls [m].
-
-    Raises:
-        ValueError: they do not; the message names ``what``.
-    """
+    """Check that all values are finite, and that the first two, x and y, lie within the walls [m]."""
     if not all(map(isfinite, values)):
         raise ValueError(f"{what} is placed at {values}: not finite")
     outer_x, outer_y = field.outer

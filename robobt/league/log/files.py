@@ -61,9 +61,6 @@ class LogWriter:
     """Writes a log in place of one that is there, compressed if its name ends in ``.gz``. A context manager.
 
     If the process dies, the log can be read up to its last moments.
-
-    Raises:
-        OSError: the file cannot be written.
     """
 
     def __init__(self, path: str | Path) -> None:

@@ -26,9 +26,6 @@ def log_field(
 
     Returns:
         How many packets of each kind were written.
-
-    Raises:
-        OSError: the file cannot be written, or no interface has the address.
     """
     sources = {
         LogKind.VISION: endpoints.vision,

@@ -29,9 +29,6 @@ class Cameras:
     Attributes:
         realism: as above; may be replaced.
         places: where they hang, each over the middle of its part [m].
-
-    Raises:
-        ValueError: ``count`` is out of range.
     """
 
     def __init__(

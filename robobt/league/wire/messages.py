@@ -43,11 +43,7 @@ if TYPE_CHECKING:
 else:
 
     def _load() -> dict[str, type[Message]]:
-        """Return every message class by its name.
-
-        Raises:
-            ImportError: the package was not built, so there are no descriptors.
-        """
+        """Return every message class by its name."""
         path = files("robobt.league.wire") / "proto" / "messages.desc"
         try:
             compiled = FileDescriptorSet.FromString(path.read_bytes())

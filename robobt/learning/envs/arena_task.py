@@ -30,9 +30,6 @@ class ArenaTask(ABC):
     Attributes:
         arenas: the simulator, from the first ``reset`` on.
         ended: the episodes that the last step ended; None without any.
-
-    Raises:
-        ValueError: ``n`` is not positive.
     """
 
     observation: ClassVar[ObservationSpec]

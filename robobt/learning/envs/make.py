@@ -11,11 +11,7 @@ from robobt.learning.envs.shoot.task import ShootTask
 
 
 def make_task(settings: TaskSettings, n: int) -> ArenaTask:
-    """Return ``n`` arenas of the environment with these settings.
-
-    Raises:
-        TypeError: they are no environment's.
-    """
+    """Return ``n`` arenas of the environment with these settings."""
     if isinstance(settings, GoToBallSettings):
         return GoToBallTask(settings, n)
     if isinstance(settings, ShootSettings):

@@ -25,9 +25,6 @@ def variants(task: str, changes: Mapping[str, object] | None = None) -> dict[str
     for the paper's, which has its own.
 
     ``changes`` apply to all of them, by dotted name.
-
-    Raises:
-        SettingsError: no such task, or the changes are wrong.
     """
     switches = read_yaml(SWITCHES).get(task)
     if switches is None:

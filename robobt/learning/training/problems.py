@@ -48,11 +48,7 @@ class Problem:
 
 
 def problem_of(environment: TaskSettings) -> Problem:
-    """Return the task in that environment.
-
-    Raises:
-        TypeError: it is no environment of a task.
-    """
+    """Return the task in that environment."""
     speed, turn = environment.action.max_speed, environment.action.max_turn
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]

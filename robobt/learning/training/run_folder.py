@@ -54,11 +54,7 @@ class RunFolderError(RobobtError, ValueError):
 
 @contextmanager
 def alone_in(path: Path) -> Iterator[None]:
-    """Keep other runs out of a folder, which is made if it is not there; a run that dies lets them in.
-
-    Raises:
-        RunFolderError: another run is in it.
-    """
+    """Keep other runs out of a folder, which is made if it is not there; a run that dies lets them in."""
     if fcntl is None or (path.exists() and not path.is_dir()):
         yield
         return

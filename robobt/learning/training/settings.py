@@ -187,11 +187,7 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
 
 
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
-    """Return the environment's settings.
-
-    Raises:
-        SettingsError: they are wrong.
-    """
+    """Return the environment's settings."""
     return _validated(ENVIRONMENTS[settings.task], settings.environment, source, "environment")
 
 

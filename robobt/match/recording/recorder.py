@@ -53,9 +53,6 @@ class Recorder:
         header: what stays the same. The trees of its robots are taken from ``runners``.
         runners: the runner of each robot whose tree is recorded.
         stores: the store of each robot of which it is recorded what its skills write.
-
-    Raises:
-        OSError: the file cannot be written.
     """
 
     def __init__(

@@ -43,8 +43,8 @@ class Poses:
 class Recording:
     """A match that was recorded, in world coordinates (blue defends -x).
 
-    T is the number of ticks, K that of robots in the header. What is asked about a robot that is not
-    in the recording raises a :exc:`KeyError`.
+    T is the number of ticks, K that of robots in the header. A robot that is not in the recording
+    is a :exc:`KeyError`, a tick at which there is no frame or command an :exc:`IndexError`.
 
     Attributes:
         path: the file.
@@ -96,27 +96,15 @@ class Recording:
         return len(self.times)
 
     def frame(self, tick: int) -> Frame:
-        """Return what was on the field at a tick, from blue's side, as exactly as the file holds it.
-
-        Raises:
-            IndexError: no such tick.
-        """
+        """Return what was on the field at a tick, from blue's side, as exactly as the file holds it."""
         return self._frame(tick, self.truth)
 
     def observation(self, tick: int) -> Frame:
-        """Return what the trees were shown at a tick, from blue's side, as exactly as the file holds it.
-
-        Raises:
-            IndexError: no such tick.
-        """
+        """Return what the trees were shown at a tick, from blue's side, as exactly as the file holds it."""
         return self._frame(tick, self.observed or self.truth)
 
     def command(self, robot: RobotId, tick: int) -> RobotCommand | None:
-        """Return what the robot was sent at a tick, None if nothing.
-
-        Raises:
-            IndexError: no such tick.
-        """
+        """Return what the robot was sent at a tick, None if nothing."""
         slot = self.slot(robot)
         flags = RobotFlag(int(self.flags[tick, slot]))
         if RobotFlag.COMMANDED not in flags:

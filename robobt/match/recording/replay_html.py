@@ -40,12 +40,7 @@ _Written: TypeAlias = Timeline[dict[str, JsonValue]]
 
 
 def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
-    """Write the page of a recording, or of a recording's file, and return where it is.
-
-    Raises:
-        RecordingError: the file is not a recording.
-        OSError: the page cannot be written.
-    """
+    """Write the page of a recording, or of a recording's file, and return where it is."""
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
     path = Path(path)

@@ -69,9 +69,6 @@ class Referee:
         """Judge the next frame.
 
         ``frame`` shows what really is on the field, from blue's side; its time grows from call to call.
-
-        Raises:
-            ValueError: the frame is seen from yellow's side.
         """
         if frame.team is not Team.BLUE:
             raise ValueError("the referee looks from blue's side; pass World.truth() as it is")

@@ -76,11 +76,7 @@ class Placer:
         self._ball: Point | None = None
 
     def place(self) -> Placement:
-        """Sample everything's place, in world coordinates.
-
-        Raises:
-            FieldError: an object found no free place in a bounded number of tries.
-        """
+        """Sample everything's place, in world coordinates."""
         holder = self._holder
         if isinstance(self._ball_start.position, tuple):
             self._put_ball(self._ball_start.position)

@@ -78,11 +78,7 @@ class RobotSetup(Part):
             raise _SubstitutionError(problem) from error
 
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
-        """Return the setup with other values; of another play, the parameters that it has too stay.
-
-        Raises:
-            ValidationError: a value does not fit, or the play has no such parameter.
-        """
+        """Return the setup with other values; of another play, the parameters that it has too stay."""
         data = {name: getattr(self, name) for name in self.model_fields_set}
         data |= {name: value for name, value in changes.items() if name in RobotSetup.model_fields}
         params = {name: value for name, value in changes.items() if name not in RobotSetup.model_fields}

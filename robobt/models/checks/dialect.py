@@ -98,11 +98,7 @@ def is_literal(value: ast.expr) -> bool:
 
 
 def plain(name: str) -> str:
-    """Return a function's or class's name.
-
-    Raises:
-        ModelError: Python or torch would call it by itself.
-    """
+    """Return a function's or class's name, unless Python or torch would call it by itself."""
     if not _NAME.fullmatch(name):
         raise ModelError(f"has a function {name} in it, which would run while it is loaded")
     return name

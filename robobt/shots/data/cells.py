@@ -32,9 +32,6 @@ class Cells:
         """Return the values of a column.
 
         ``parse`` makes a value of a cell; a ValueError says what is wrong with it.
-
-        Raises:
-            ShotDataError: a cell is wrong.
         """
         values = []
         for row, cell in zip(self.rows, self.columns[title], strict=True):

@@ -19,11 +19,7 @@ _WORDS: dict[str, Any] = {
 
 
 def hint_of(words: str) -> Any:
-    """Return the type that words such as ``float | none`` stand for.
-
-    Raises:
-        ValueError: a word is unknown.
-    """
+    """Return the type that words such as ``float | none`` stand for."""
     members = [word.strip() for word in words.split("|")]
     for word in members:
         if word not in _WORDS:
@@ -32,11 +28,7 @@ def hint_of(words: str) -> Any:
 
 
 def words_of_default(default: object) -> str:
-    """Return the words for the type of a default.
-
-    Raises:
-        ValueError: the default does not determine a type.
-    """
+    """Return the words for the type of a default."""
     for word in ("bool", "int", "float", "str"):
         if type(default) is _WORDS[word]:
             return word

@@ -14,11 +14,7 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=32)
 def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
-    """Load a shot predictor by a shipped model's name or a file's path, once per process.
-
-    Raises:
-        ModelError: it cannot be used; the message names the file and the reason.
-    """
+    """Load a shot predictor by a shipped model's name or a file's path, once per process."""
     from robobt.models.policy import load_policy
 
     policy = load_policy(model, observation=observation)
