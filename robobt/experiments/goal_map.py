@@ -23,10 +23,8 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, Robo
 class GoalMap:
     """Best probability of a goal by place of the ball.
 
-    Attributes:
-        x: (X,) coordinates of the ball [m].
-        y: (Y,) likewise.
-        probability: (Y, X); not-a-number in the defence area.
+    ``x`` (X,) and ``y`` (Y,) are coordinates of the ball [m]; ``probability`` (Y, X) is not-a-number in the
+    defence area.
     """
 
     x: FloatArray

@@ -26,11 +26,8 @@ _NAMES = ("paper_shots.parquet", "paper_shots.csv", "shots.parquet", "shots.csv"
 class ShotSets:
     """Shots to learn from and shots to test on.
 
-    Attributes:
-        train: in the table of :mod:`robobt.shots.data.schema`.
-        test: likewise.
-        author: the published predictor where it lies beside the shots.
-        source: where they come from, for whoever reads the result.
+    In the table of :mod:`robobt.shots.data.schema`; ``author`` is the published predictor where it lies
+    beside the shots, ``source`` where they come from, for whoever reads the result.
     """
 
     train: pa.Table

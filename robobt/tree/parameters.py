@@ -34,10 +34,7 @@ class ParameterError(RobobtError, ValueError):
 class Parameter:
     """One parameter of a play or a node.
 
-    Attributes:
-        name: as written in a file.
-        hint: its type.
-        default: its default; ``inspect.Parameter.empty`` when it has to be given.
+    ``name`` is as written in a file, ``default`` is ``inspect.Parameter.empty`` when it has to be given.
     """
 
     name: str

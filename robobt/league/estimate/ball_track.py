@@ -17,10 +17,7 @@ from robobt.sim.settings import BallSettings
 class BallMotion:
     """A ball's state in field coordinates.
 
-    Attributes:
-        x, y: position [m].
-        vx, vy: velocity [m/s].
-        rolls_at: speed at which sliding turns into rolling [m/s]; below it, the ball rolls.
+    ``rolls_at`` is the speed at which sliding turns into rolling; below it, the ball rolls [m, m/s].
     """
 
     x: float

@@ -96,9 +96,8 @@ class FieldClock:
 
     All times of this machine are on one monotonic clock.
 
-    Attributes:
-        rate: how fast the field's clock runs [s of the field per s].
-        settled: whether the rate is measured.
+    ``rate`` is how fast the field's clock runs [s of the field per s], and ``settled`` whether that is
+    measured.
     """
 
     def __init__(self, rate: float = 1.0) -> None:

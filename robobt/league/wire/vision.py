@@ -54,12 +54,7 @@ class RobotDetection:
 class CameraFrame:
     """The detections of one camera at one instant.
 
-    Attributes:
-        camera: number of the camera.
-        number: number of the frame.
-        captured: timestamp of the capture, on the sender's clock [s].
-        sent: timestamp of sending, on the sender's clock [s].
-        balls, robots: the detections.
+    ``captured`` and ``sent`` are times on the sender's clock [s].
     """
 
     camera: int

@@ -16,10 +16,7 @@ from robobt.learning.training.settings import EvaluationSettings
 class Selection:
     """The evaluations of a run and the weights of its best actor.
 
-    Attributes:
-        validations: every evaluation so far.
-        best: the best of them; None before the first.
-        weights: of the best actor.
+    ``best`` is the best of ``validations``, None before the first, with the actor's ``weights``.
     """
 
     def __init__(self, settings: EvaluationSettings) -> None:

@@ -117,12 +117,8 @@ class RecordingHeader(Settings):
 class Event:
     """Something worth a mark on the timeline.
 
-    Attributes:
-        time: when [s].
-        kind: "goal", "kick", "save", "out", "error" or any other word.
-        team: whose event it is, if anybody's.
-        robot: which robot's, if one's.
-        text: what happened, for people.
+    ``kind`` is "goal", "kick", "save", "out", "error" or any other word; ``text`` says what happened, for
+    people; ``time`` is in seconds.
     """
 
     time: FiniteFloat

@@ -35,12 +35,8 @@ class EventKind(StrEnum):
 class RefereeEvent:
     """An event on the field.
 
-    Attributes:
-        time: when [s].
-        kind: what.
-        team: who did it: the scorer of a goal, the offender of a foul; None when nobody did.
-        robot: which robot, as far as known.
-        x, y: where, in world coordinates [m].
+    ``team`` did it: the scorer of a goal, the offender of a foul; None when nobody did. ``robot`` is which,
+    as far as known; ``x`` and ``y`` are in world coordinates [m], ``time`` in seconds.
     """
 
     time: float

@@ -30,11 +30,8 @@ SPEED_TOLERANCE = 0.02
 class Foul:
     """An offence, or a lack of progress.
 
-    Attributes:
-        kind: what was seen.
-        team: the offender's team, None where nobody is at fault.
-        robot: the offender, as far as known.
-        resumption: how play resumes, None where the foul does not stop it.
+    ``team`` is the offender's, None where nobody is at fault, and ``robot`` the offender as far as known;
+    play resumes with ``resumption``, None where the foul does not stop it.
     """
 
     kind: EventKind

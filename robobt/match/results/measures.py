@@ -19,12 +19,8 @@ _KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
 class Measures:
     """Follows a match frame by frame; frames are seen from blue's side.
 
-    Attributes:
-        robots: figures by robot.
-        kicks: kicks so far, of all robots.
-        ticks: frames seen.
-        in_play: frames among them with the ball in play.
-        kicked: who kicked between the last frame and the one before.
+    ``in_play`` counts the frames among ``ticks`` with the ball in play; ``kicked`` holds who kicked between
+    the last frame and the one before.
     """
 
     def __init__(self, robots: Mapping[RobotId, object]) -> None:

@@ -125,10 +125,8 @@ class Rate:
 class Spread:
     """Mean and variance of a figure.
 
-    Attributes:
-        n: number of trials that have the figure.
-        mean: None when none has.
-        variance: sample variance (n - 1), None with fewer than two.
+    Of ``n`` trials that have the figure; ``mean`` is None without any, the sample's ``variance`` with fewer
+    than two.
     """
 
     n: int

@@ -46,11 +46,8 @@ class CollectionSettings(Settings):
 class Attempt:
     """One trial of a collection.
 
-    Attributes:
-        scenario: what is played.
-        seed: of the match.
-        labels: columns of its row that are known beforehand.
-        section: x and y, from and to, that the attacker has to shoot from [m]; None is anywhere.
+    ``labels`` are columns of its row that are known beforehand; ``section`` is x and y, from and to, that the
+    attacker has to shoot from, None anywhere [m].
     """
 
     scenario: Scenario

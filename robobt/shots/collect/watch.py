@@ -31,9 +31,8 @@ _OUTCOMES = {
 class WatchedWorld(WrappedWorld):
     """Passes everything on to a world and keeps the last shot of one blue robot.
 
-    Attributes:
-        store: the shooter's store; it knows the target.
-        shot: the last shot so far, columns by name, None before the first.
+    ``store`` is the shooter's, which knows the target; ``shot`` has the last shot's columns by name, None
+    before the first.
     """
 
     def __init__(self, world: World, shooter: RobotId) -> None:

@@ -18,10 +18,8 @@ T = TypeVar("T")
 class Cells:
     """The cells of a CSV file.
 
-    Attributes:
-        file: where they come from.
-        rows: the row of a spreadsheet that each is in; the header is row 1.
-        columns: the cells of each column, by its title.
+    ``rows`` tells the row of a spreadsheet that each is in (the header is row 1), ``columns`` has the cells
+    of each column by its title.
     """
 
     file: Path

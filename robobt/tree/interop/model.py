@@ -59,12 +59,8 @@ class _Placed:
 class Node(_Placed):
     """One node.
 
-    Attributes:
-        type: name of its type.
-        name: its own name, None for the type's default.
-        parameters: what its constructor is given.
-        branches: its children: a node, a list of nodes, or nodes by case, as the
-            type's constructor takes them.
+    ``name`` is None for the type's default; ``branches`` hold its children: a node, a list of nodes, or nodes
+    by case, as the type's constructor takes them.
     """
 
     type: str
@@ -87,11 +83,8 @@ class Node(_Placed):
 class SubTree(_Placed):
     """In the place of a node: another tree of the file, or a play.
 
-    Attributes:
-        tree: name of the tree or play.
-        parameters: what it is given.
-        autoremap: whether names that it is not given are looked up outside of it.
-        label: name of the place it is put in; only kept.
+    With ``autoremap``, names that it is not given are looked up outside of it; ``label`` names the place it
+    is put in and is only kept.
     """
 
     tree: str
@@ -119,11 +112,8 @@ class Definition:
 class TreeFile:
     """The trees of a file.
 
-    Attributes:
-        source: the file, for messages.
-        main: name of the tree that is meant when none is named.
-        trees: all of them by name.
-        language: in XML a name that is no parameter is an entry of the store.
+    ``main`` is the tree that is meant when none is named, ``source`` the file, for messages. In the
+    ``language`` XML a name that is no parameter is an entry of the store.
     """
 
     source: str = field(compare=False)
