@@ -14,7 +14,7 @@ from robobt.sim.chipmunk import BodyBuffer
 from robobt.sim.columns import COMMAND, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.kernels import control_tick, report
 from robobt.sim.settings import SimSettings
-from robobt.sim.wheels import WHEEL_STATE
+from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
@@ -147,6 +147,7 @@ class Arenas:
             rolls: whether a moving ball rolls; one that does not slides, as after a kick.
         """
         count = self.contact.shape[1]
+        self._wheels[arena, :, HELD] = 0.0
         self._buffer.read()
         row = self._buffer.rows[arena * (count + 1) + count]
         row[:] = 0.0

@@ -34,6 +34,20 @@ def test_the_baseline_gets_to_the_ball_as_fast_as_in_the_paper(
     assert time_to_ball(benchmark(ball, "robobulls")) == pytest.approx(paper, rel=0.1)
 
 
+@pytest.mark.parametrize("away", [(0.35, 0.2), (-0.6, 0.9), (2.0, -1.5)])
+@pytest.mark.parametrize("preset", ["default", "grsim"])
+def test_a_ball_that_is_lost_with_the_shot_begun_is_fetched_again(
+    preset: str, away: tuple[float, float]
+) -> None:
+    tree = go_to_ball_and_shoot(policy="geometric", shoot="geometric")
+    trial = Trial({blue(0): tree}, {blue(0): (-1.0, 0.0, 0.0)}, (0.0, 1.0), preset, period=0.03)
+    trial.run(5.0, eventually("it has the ball", lambda frame: frame.own[0].ball_contact))
+    me = trial.frames[-1].own[0]
+    trial.world.place_ball(me.x + away[0], me.y + away[1])
+    trial.run(8.0, eventually("the ball is in the goal", goal_for_us()))
+    assert len(trial.kicks) == 1
+
+
 @pytest.mark.parametrize("ball", [(0.0, 0.0), (0.0, 1.5), (2.0, -1.0), (-3.0, 2.0)])
 def test_the_default_style_is_faster(ball: tuple[float, float]) -> None:
     baseline, ours = benchmark(ball, "robobulls"), benchmark(ball, "default")

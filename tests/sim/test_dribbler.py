@@ -145,3 +145,16 @@ def test_no_dribbler_carries_the_ball_through_the_side_of_a_goal(name: str) -> N
         world.act({ME: RobotCommand(5, dribbler=True)})
         # The middle of the wall, from where it would be pushed out on the other side.
         assert world.truth().ball.y > side + 0.01
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+def test_a_ball_that_is_taken_from_the_dribbler_stays_where_it_is_put(name: str) -> None:
+    for ticks in range(1, 8):  # grSim's dribbler decides once a frame: at different times in it
+        world = holding(name, period=0.007)
+        for _ in range(ticks):
+            world.act({ME: RobotCommand(dribbler=True)})
+        assert world.truth().own[0].ball_contact
+        world.place_ball(1.5, -1.0)
+        world.act({ME: RobotCommand(dribbler=True)})
+        ball = world.truth().ball
+        assert (ball.x, ball.y, ball.speed) == (1.5, -1.0, 0.0)
