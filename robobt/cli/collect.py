@@ -8,16 +8,7 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import (
-    MAX_SEED,
-    Json,
-    Progress,
-    Workers,
-    cores,
-    errors,
-    print_json,
-    say,
-)
+from robobt.cli.common import MAX_SEED, Json, Progress, Workers, cores, errors, print_json, say
 
 
 class Scenario(StrEnum):

@@ -76,8 +76,7 @@ Workers = Annotated[
 Where = Annotated[
     str,
     typer.Option(
-        "--world",
-        help="Where to play: sim, or a field of the league like league://grsim (one worker).",
+        "--world", help="Where to play: sim, or a field of the league like league://grsim (one worker)."
     ),
 ]
 """The option of every command that can play elsewhere; see ``world_of``."""

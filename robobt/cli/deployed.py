@@ -74,12 +74,7 @@ def deployed(
     processes = workers or (cores() if world == SIM else 1)
     with Progress("deployed", 2 * len(PLAYED) * shots) as progress, world_of(world) as factory:
         result = run(
-            shots,
-            used,
-            processes,
-            goalkeeper=goalkeeper.value,
-            progress=progress.advance,
-            world=factory,
+            shots, used, processes, goalkeeper=goalkeeper.value, progress=progress.advance, world=factory
         )
         if picture is not None:
             judged_goal_line("half", used, picture, goalkeeper.value, factory)

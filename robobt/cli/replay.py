@@ -13,8 +13,7 @@ from robobt.cli.common import PAGE, RECORDING, say
 
 def replay(
     recording: Annotated[
-        Path,
-        typer.Argument(help=f"A recording (*{RECORDING}), or a league log (*.log, *.log.gz)."),
+        Path, typer.Argument(help=f"A recording (*{RECORDING}), or a league log (*.log, *.log.gz).")
     ],
     html: Annotated[
         Path | None,

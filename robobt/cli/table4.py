@@ -7,17 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import (
-    Json,
-    Progress,
-    Seed,
-    Where,
-    console,
-    print_json,
-    say,
-    table,
-    world_of,
-)
+from robobt.cli.common import Json, Progress, Seed, Where, console, print_json, say, table, world_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -74,10 +64,7 @@ def table4(
     _check([] if realism is None else [realism], REALISM, "--realism")
     _check(only or [], COMBINATIONS, "--only")
     combinations = tuple(only or COMBINATIONS)
-    with (
-        Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress,
-        world_of(world) as factory,
-    ):
+    with Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress, world_of(world) as factory:
         result = run(
             runs,
             seed,

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
 Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")]
 Changes = Annotated[
-    list[str] | None,
-    typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again."),
+    list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")
 ]
 
 

@@ -23,11 +23,7 @@ TRIALS = ("1", "2")
 COMBINATIONS: dict[str, dict[str, str | None]] = {
     "robobulls": {"style": "robobulls"},
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
-    "geometric, kick, quick": {
-        "policy": "geometric",
-        "shoot": "kick_to_target",
-        "pickup_speed": None,
-    },
+    "geometric, kick, quick": {"policy": "geometric", "shoot": "kick_to_target", "pickup_speed": None},
     "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},
     "geometric, ddpg": {"policy": "geometric", "shoot": "ddpg"},
     "ddpg, kick": {"policy": "ddpg", "shoot": "kick_to_target", "pickup_speed": None},

@@ -55,8 +55,6 @@ def go_to_ball_and_shoot(
         "go to ball and shoot",
         when("shoot", HasBall(), *shot),
         when(
-            "get the ball",
-            GoToBall(policy=policy, approach="behind_target"),
-            PickUpBall(speed=pickup_speed),
+            "get the ball", GoToBall(policy=policy, approach="behind_target"), PickUpBall(speed=pickup_speed)
         ),
     )

@@ -7,16 +7,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import (
-    MAX_SEED,
-    Bundled,
-    Json,
-    console,
-    errors,
-    print_json,
-    say,
-    table,
-)
+from robobt.cli.common import MAX_SEED, Bundled, Json, console, errors, print_json, say, table
 
 
 def bench_filter(

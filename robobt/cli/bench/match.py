@@ -7,16 +7,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import (
-    Bundled,
-    Imports,
-    Json,
-    Seed,
-    errors,
-    import_files,
-    print_json,
-    say,
-)
+from robobt.cli.common import Bundled, Imports, Json, Seed, errors, import_files, print_json, say
 
 
 def bench_match(

@@ -12,8 +12,7 @@ from robobt.cli.common import Json, Progress, print_json, say
 
 def bench_shots(
     data: Annotated[
-        Path | None,
-        typer.Option("--data", help="Shots to learn from, as for 'robobt paper'."),
+        Path | None, typer.Option("--data", help="Shots to learn from, as for 'robobt paper'.")
     ] = None,
     networks: Annotated[
         int, typer.Option("--networks", min=1, max=1000, help="How many networks, 100 being 10 x 10 folds.")

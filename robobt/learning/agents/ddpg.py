@@ -53,13 +53,7 @@ class DDPG:
         actions, norm = len(smoothed), settings.layer_norm
         self.actor = Actor(scale, actions, settings.hidden, norm, generator)
         self.critic = Critic(
-            scale,
-            actions,
-            settings.hidden,
-            settings.atoms or 1,
-            2 if settings.twin else 1,
-            norm,
-            generator,
+            scale, actions, settings.hidden, settings.atoms or 1, 2 if settings.twin else 1, norm, generator
         )
         self.target_actor, self.target_critic = deepcopy(self.actor), deepcopy(self.critic)
         for frozen in (self.target_actor, self.target_critic):

@@ -120,10 +120,7 @@ class Replay:
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Return everything that a resumed run needs."""
-        return {
-            "rows": self._rows[: self._filled],
-            "places": np.array([self.kept, self._next, self._filled]),
-        }
+        return {"rows": self._rows[: self._filled], "places": np.array([self.kept, self._next, self._filled])}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
         """Take over another replay's :meth:`state`."""

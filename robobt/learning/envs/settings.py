@@ -119,8 +119,7 @@ class TaskSettings(OrderedSettings):
     period: float = Field(0.030, ge=0.005, le=0.1, description="control period [s]")
     sub_steps: int = Field(4, ge=1, le=100, description="physics steps a control period")
     velocities: Literal["true", "finite_difference"] = Field(
-        "true",
-        description="the bodies' own velocities, or differences of two observed positions, 0 at first",
+        "true", description="the bodies' own velocities, or differences of two observed positions, 0 at first"
     )
     noise: NoiseSettings = NoiseSettings()
     latency: int = Field(0, ge=0, le=20, description="age of what is observed [ticks]")

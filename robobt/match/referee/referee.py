@@ -44,10 +44,7 @@ class Referee:
     """
 
     def __init__(
-        self,
-        field: FieldGeometry,
-        settings: RefereeSettings | None = None,
-        first_kickoff: Team = Team.BLUE,
+        self, field: FieldGeometry, settings: RefereeSettings | None = None, first_kickoff: Team = Team.BLUE
     ) -> None:
         self.field = field
         self.settings = settings or RefereeSettings()

@@ -84,8 +84,7 @@ class Scenario(Part):
         None, description="true or settings for a referee on the field, none for free play"
     )
     on_error: Literal["stop", "raise"] = Field(
-        "stop",
-        description="what an exception in a tree does: stop that robot for the tick, or end the match",
+        "stop", description="what an exception in a tree does: stop that robot for the tick, or end the match"
     )
     _source: str = PrivateAttr("")
 

@@ -16,14 +16,7 @@ import numpy as np
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.match.scenario.starts import Box
-from robobt.shots.collect.plan import (
-    CLOSE_RANGE,
-    MID_RANGE,
-    SHOT_SPEED,
-    Attempt,
-    CollectionSettings,
-    Section,
-)
+from robobt.shots.collect.plan import CLOSE_RANGE, MID_RANGE, SHOT_SPEED, Attempt, CollectionSettings, Section
 
 TRAIN, TEST = 542, 201
 """Shots to train and to test with."""

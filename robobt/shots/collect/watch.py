@@ -20,12 +20,7 @@ from robobt.worlds import sim_world
 _LEFT_SHARE = 0.5
 """A ball that leaves with this share of the kick's speed has been kicked."""
 
-_OUTCOMES = {
-    Outcome.GOAL_BLUE: "goal",
-    Outcome.SAVED: "saved",
-    Outcome.OUT: "wide",
-    Outcome.REST: "stopped",
-}
+_OUTCOMES = {Outcome.GOAL_BLUE: "goal", Outcome.SAVED: "saved", Outcome.OUT: "wide", Outcome.REST: "stopped"}
 
 
 class WatchedWorld(WrappedWorld):

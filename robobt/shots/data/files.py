@@ -115,12 +115,7 @@ def _reals(cell: str) -> list[float]:
         raise ValueError(f"{cell!r} is not a list of numbers") from None
 
 
-_PARSERS: dict[str, Callable[[str], object]] = {
-    "text": str,
-    "int": _integer,
-    "real": _real,
-    "reals": _reals,
-}
+_PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "real": _real, "reals": _reals}
 
 
 def _checked(table: pa.Table, file: Path, rows: list[int] | None = None) -> pa.Table:

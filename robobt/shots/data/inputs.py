@@ -6,13 +6,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from robobt.world.features import (
-    ABSENT,
-    SCENE_HEAD,
-    SCENE_OPPONENTS,
-    SHOT_SCENE,
-    shot_scene,
-)
+from robobt.world.features import ABSENT, SCENE_HEAD, SCENE_OPPONENTS, SHOT_SCENE, shot_scene
 from robobt.world.geometry import FloatArray
 
 _KINEMATICS = ("x", "y", "heading", "field_vx", "field_vy", "omega")

@@ -21,11 +21,7 @@ _TURNED = radians(0.5)
 
 
 def robobulls_drive(
-    me: RobotState,
-    target: Point,
-    heading: float,
-    period: float,
-    limits: RobotLimits = ROBOBULLS_LIMITS,
+    me: RobotState, target: Point, heading: float, period: float, limits: RobotLimits = ROBOBULLS_LIMITS
 ) -> RobotCommand:
     """Compute the command that brings ``me`` one control period nearer to a pose.
 
