@@ -187,12 +187,9 @@ def _observe_scene(
 
 @compiled
 def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
-    """Compute the Go-To-Ball states of many arenas.
+    """Compute the states :data:`GO_TO_BALL` of many arenas, (n, 6).
 
     ``robots`` (n, 6) are x, y, heading, vx, vy, omega in field coordinates, ``balls`` (n, 2 or more) x, y.
-
-    Returns:
-        (n, 6): :data:`GO_TO_BALL`.
     """
     rows = np.empty((len(robots), 6))
     for i in range(len(robots)):
@@ -202,14 +199,11 @@ def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
 
 @compiled
 def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: float) -> FloatArray:
-    """Compute the Shoot states of many arenas.
+    """Compute the states :data:`SHOOT` of many arenas, (n, 10).
 
     ``robots`` (n, 6) are x, y, heading, vx, vy, omega and ``balls`` (n, 4) x, y, vx, vy in field coordinates;
     ``goal_x`` is where the attacked goal's line is, ``post_y`` the distance of its posts from the field's
     long axis [m].
-
-    Returns:
-        (n, 10): :data:`SHOOT`.
     """
     rows = np.empty((len(robots), 10))
     for i in range(len(robots)):
@@ -219,15 +213,12 @@ def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: flo
 
 @compiled
 def shot_features(shooter: FloatArray, targets: FloatArray, opponents: FloatArray) -> FloatArray:
-    """Compute Eq. 4 of the paper for every target point and every opponent.
+    """Compute Eq. 4 of the paper, :data:`SHOT`, for every target point and every opponent, (T, K, 5).
 
     The frame has its origin at the shooter and its first axis along shooter ->
     target (not along the robot's heading).
 
     Positions in metres: the ``shooter`` (2,), ``targets`` (T, 2) and ``opponents`` (K, 2).
-
-    Returns:
-        (T, K, 5): :data:`SHOT`.
     """
     rows = np.empty((len(targets), len(opponents), 5))
     for i in range(len(targets)):

@@ -18,14 +18,13 @@ def log_field(
 ) -> dict[LogKind, int]:
     """Log what vision, tracker and game controller send, until interrupted or for so many seconds.
 
+    It returns how many packets of each kind were written.
+
     Args:
         path: the log; compressed when the name ends in ``.gz``.
         endpoints: where to listen.
         interface: own address of the interface to listen on; none: this machine's packets only.
         seconds: how long [s]; None until interrupted.
-
-    Returns:
-        How many packets of each kind were written.
     """
     sources = {
         LogKind.VISION: endpoints.vision,

@@ -139,12 +139,9 @@ def log_factory(path: str | Path) -> Callable[[Scenario], LogWorld]:
 
 
 def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path:
-    """Convert a log to a recording, which ``robobt replay`` turns into a page.
+    """Convert a log to a recording, which ``robobt replay`` turns into a page, and return where it is.
 
     ``period`` is the time from one frame of the recording to the next [s].
-
-    Returns:
-        The path of the recording.
 
     Raises:
         LogError: the file is not a log, or holds no robot.

@@ -127,11 +127,7 @@ class ServedField:
         self._commands[0, fired, 3] = 0.0
 
     def teleport(self, robot: Teleport) -> str | None:
-        """Put a robot somewhere, take it off the field or bring it back.
-
-        Returns:
-            The reason why it cannot be done, None when it was done.
-        """
+        """Put a robot somewhere, take it off the field or bring it back; say why if it cannot be done."""
         i = self._index.get(robot.robot)
         if i is None:
             return f"there is no robot {robot.robot}; a team has numbers 0 to {TEAM_SIZE - 1}"
@@ -154,11 +150,7 @@ class ServedField:
         return None
 
     def teleport_ball(self, ball: BallTeleport) -> str | None:
-        """Put the ball somewhere.
-
-        Returns:
-            The reason why it cannot be done, None when it was done.
-        """
+        """Put the ball somewhere; say why if it cannot be done."""
         old = self._arenas.balls[0].tolist()
         given = (ball.x, ball.y, ball.vx, ball.vy)
         x, y, vx, vy = (before if new is None else new for new, before in zip(given, old, strict=True))

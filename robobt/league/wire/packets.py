@@ -67,12 +67,9 @@ def decode(kind: type[_M], data: bytes, counts: PacketCounts) -> _M | None:
 
 
 def read(kind: type[_M], data: bytes, counts: PacketCounts, convert: Callable[[_M], _T | None]) -> _T | None:
-    """Decode a packet, convert its message and count the outcome.
+    """Decode a packet, convert its message and count the outcome, which is None when it was dropped.
 
     ``convert`` turns the message into a result, or into None when it is implausible.
-
-    Returns:
-        The converted message, or None when the packet was dropped.
     """
     message = decode(kind, data, counts)
     if message is None:

@@ -89,12 +89,9 @@ def read_feedback(data: bytes, counts: PacketCounts) -> dict[int, bool]:
 def read_control(
     data: bytes, team: Team, headings: Mapping[int, float], counts: PacketCounts
 ) -> Request | None:
-    """Return the commands of a control packet.
+    """Return the commands of a control packet, or None (counted) when it is malformed or implausible.
 
     ``headings``, those of the team's robots, convert velocities given in field coordinates [rad].
-
-    Returns:
-        The request, or None (counted) when the packet is malformed or implausible.
     """
 
     def convert(message: RobotControl) -> Request | None:

@@ -47,15 +47,12 @@ def write_tracked(frame: Frame, number: int, time: float, uuid: str) -> bytes:
 
 
 def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tuple[str, Frame] | None:
-    """Return source and frame of a tracker packet.
+    """Return source and frame of a tracker packet, None (counted) when it is malformed or implausible.
 
     The frame has the packet's timestamp and the first of several balls; without
     any, a ball at rest in the centre.
 
     ``field`` has the dimensions, which a tracker packet does not hold.
-
-    Returns:
-        None (counted) for a packet that is malformed or implausible.
     """
 
     def convert(message: TrackerWrapperPacket) -> tuple[str, Frame] | None:

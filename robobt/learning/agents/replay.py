@@ -66,10 +66,7 @@ class Replay:
         return self._filled
 
     def add(self, *transitions: Transitions) -> NDArray[np.int64]:
-        """Append transitions, over the oldest when full; the same ones once for each horizon.
-
-        Returns:
-            Their rows in the replay.
+        """Append transitions, over the oldest when full, the same once for each horizon; return their rows.
 
         Raises:
             ValueError: they are more than the replay has room for.

@@ -16,15 +16,12 @@ Decide = Callable[[FloatArray], FloatArray]
 
 
 def run_starts(task: ArenaTask, decide: Decide, starts: ArrayLike, seed: int = 0) -> Episodes:
-    """Play one episode from each start, whatever the number of arenas.
+    """Play one episode from each start, whatever the number of arenas; return them in that order.
 
     Every start is played to its end, so that short episodes are not counted more
     often than long ones.
 
     ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's own run is lost.
-
-    Returns:
-        m episodes in the order of the starts.
     """
     rows = np.atleast_2d(np.array(starts, dtype=np.float64))
     observation = task.reset_to(rows, seed)

@@ -30,13 +30,7 @@ def turn_and_kick(
 ) -> FloatArray:
     """Turn to the middle of the goal and kick when the ball will leave well between the posts.
 
-    Args:
-        observation: (n, 10).
-        scaling: of the actions.
-        pull: what the dribbler is relied on to hold the ball with [m/s^2].
-
-    Returns:
-        (n, 2) actions.
+    It takes (n, 10) and answers (n, 2); ``pull`` is what the dribbler is relied on to hold with [m/s^2].
     """
     ball_x, ball_y, _, sideways = observation[:, :4].T
     upper = np.arctan2(observation[:, 6], observation[:, 7])

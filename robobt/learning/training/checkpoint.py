@@ -75,10 +75,7 @@ def load(path: Path) -> tuple[Arrays, RunState]:
 
 
 def load_latest(path: Path) -> tuple[Arrays, RunState, str | None]:
-    """Return the checkpoint, or the one before it where this one is missing or damaged.
-
-    Returns:
-        Arrays, plain data, and why the newest could not be used (None where it was).
+    """Return the checkpoint, or the one before it and why the newest could not be used.
 
     Raises:
         CheckpointError: neither can be read; the message is about the newest.

@@ -39,7 +39,7 @@ def export_run(
     formats: Sequence[Format] = ("torchscript",),
     starts: int | None = None,
 ) -> tuple[Path, ...]:
-    """Write the best actor of a finished run as model files and enter them in the folder's manifest.
+    """Write the best actor of a finished run as model files enter them in the manifest; return them.
 
     The actor is evaluated once more on the held-out starts; these figures, with their
     intervals, are on the card.
@@ -51,9 +51,6 @@ def export_run(
         folder: where to.
         formats: "torchscript", "onnx" or both.
         starts: number of held-out starts; None for as many as the run was set to.
-
-    Returns:
-        The files.
 
     Raises:
         RunFolderError: the folder holds no run that has ended.

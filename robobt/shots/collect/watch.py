@@ -55,11 +55,9 @@ class WatchedWorld(WrappedWorld):
 
 
 def take_shot(attempt: Attempt, trial: int) -> tuple[Row | None, float]:
-    """Play one trial with one attacker, blue's first robot.
+    """Play one trial with one attacker, blue's first robot; return its last shot and how long it lasted [s].
 
-    Returns:
-        Its last shot, as recorded columns of the table of shots, None when it took
-        none; and how long the trial lasted [s].
+    The shot is recorded columns of the table of shots, None when it took none.
     """
     shooter = next(iter(attempt.scenario.robots))[0]
     watched: list[WatchedWorld] = []

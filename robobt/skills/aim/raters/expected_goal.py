@@ -68,11 +68,7 @@ class ExpectedGoal(ShotRater):
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
         """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
-        ``points`` (T, 2) lie on the opponent's goal line, from right to left [m]; the ball will be kicked
-        from ``origin``.
-
-        Returns:
-            (T,) in [0, 1].
+        They are (T,); ``points`` (T, 2) lie on the opponent's goal line, from right to left [m].
         """
         mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
         if mouth is None:

@@ -56,13 +56,10 @@ class Gaussian(ShotRater):
         return best_first(shots, origin, me.heading)
 
     def chances(self, aims: FloatArray, mouth: Interval, blockers: list[tuple[float, float]]) -> FloatArray:
-        """Compute the chance of a goal for every aim.
+        """Compute the chance of a goal for every aim, (T,).
 
         ``aims`` (T,) and the posts, ``mouth``, are directions [rad]; ``blockers`` the direction and standard
         deviation of each robot [rad].
-
-        Returns:
-            (T,) in [0, 1].
         """
         low, high = mouth
         error = self.kick_error

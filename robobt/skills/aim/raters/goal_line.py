@@ -31,10 +31,7 @@ def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
     As many as fit between the posts less :data:`POST_GAP` on either side, 94 on a
     goal of 1 m at the paper's 10 mm. The row is centred on the goal, so that it is
     its own mirror image (the paper's starts at the right end instead, which puts
-    it up to half a spacing off centre).
-
-    Returns:
-        (T, 2) points [m], not to be written to.
+    it up to half a spacing off centre). It is (T, 2) [m] and not to be written to.
     """
     return _candidates(field.half_length, field.goal_width, spacing)
 
@@ -58,7 +55,7 @@ def obstacles(frame: Frame, me: RobotState) -> FloatArray:
 def lane_clearances(
     origin: Point, targets: FloatArray, centres: FloatArray, *, behind: bool = False
 ) -> FloatArray:
-    """Compute the distance of every obstacle from every straight lane origin -> target.
+    """Compute the distance of every obstacle from every straight lane origin -> target, (T, K) [m].
 
     An obstacle whose nearest point on the lane would lie behind the origin is
     not in the ball's way: its distance is infinite, unless ``behind`` is set:
@@ -66,9 +63,6 @@ def lane_clearances(
 
     ``targets`` (T, 2) and ``centres`` (K, 2) are in metres; ``behind`` says whether obstacles behind the
     origin count.
-
-    Returns:
-        (T, K) distances [m].
     """
     dx, dy = (targets - origin).T[:, :, None]
     ox, oy = (centres - origin).T[:, None, :]
