@@ -17,14 +17,9 @@ class Claims:
     are found by the names of sockets in its network, which the kernel frees with a process; programs other
     than this one make no claims.
 
-    Args:
-        where: the field, as everybody calls it who plays there.
-        robots: who is commanded; None for all of the teams, whoever they are.
-        teams: teams that are commanded.
-        release: gives the robots up.
-
-    Attributes:
-        taken: robots that another process commands.
+    ``where`` is the field, as everybody calls it who plays there; None for ``robots`` are all of the
+    ``teams``, whoever they are. ``release`` gives them up; ``taken`` are robots that another process
+    commands.
     """
 
     def __init__(

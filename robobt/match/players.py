@@ -20,11 +20,8 @@ _log = logging.getLogger(__name__)
 class Player:
     """One robot on the field.
 
-    Attributes:
-        robot: which robot it is.
-        runner: ticks its tree.
-        store: what its skills share.
-        problem: why its tree failed at the last tick that it did: the node's path and what happened.
+    Skills share ``store``; ``problem`` is why its tree failed at the last tick that it did: the node's path
+    and what happened.
     """
 
     robot: RobotId

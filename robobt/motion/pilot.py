@@ -90,13 +90,8 @@ def command(
     It is shortened to ``limits`` and turned back by half of what the robot will
     turn within the period, so that on average it points where it should.
 
-    Args:
-        me: the robot.
-        vx: target velocity along x at the end of the period [m/s].
-        vy: target velocity along y at the end of the period [m/s].
-        omega: turning rate [rad/s].
-        limits: how to drive.
-        period: time until the next command [s].
+    ``vx`` and ``vy`` are the target velocity at the end of the period [m/s], ``omega`` is the turning rate
+    [rad/s], ``period`` the time until the next command [s].
     """
     squared = vx * vx + vy * vy
     if squared > limits.max_speed * limits.max_speed:

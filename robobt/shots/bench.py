@@ -45,11 +45,8 @@ def bench_cross_validation(
 
     Both train the same networks, on one thread.
 
-    Args:
-        scenes: (n, 34) of shots.
-        labels: (n,) which of them scored.
-        networks: how many of the folds to train, 100 being ten times ten.
-        progress: called after every network of the loop.
+    ``scenes`` (n, 34) are of shots, and ``labels`` (n,) tell which of them scored; ``networks`` is how many
+    of the folds to train, 100 being ten times ten. ``progress`` is called after every network of the loop.
     """
     torch.set_num_threads(1)
     inputs = paper_features(scenes)

@@ -13,10 +13,8 @@ class Debounce:
 
     Source: the counters of RoboBulls' published code, AttackMain, as times.
 
-    Args:
-        rise: how long yes must outweigh no to turn on [s].
-        fall: longest gap it survives [s].
-        on: the answer at the start.
+    ``rise`` is how long yes must outweigh no to turn it on, ``fall`` the longest gap it survives [s]; it
+    begins ``on``.
     """
 
     __slots__ = ("_balance", "_first", "_last", "fall", "on", "rise")

@@ -38,11 +38,8 @@ class DDPG:
             threshold, as that of a kick, it may not.
         seed: of the initial weights.
 
-    Attributes:
-        actor, critic: the online networks.
-        target_actor, target_critic: the slow ones, of which the target y is made.
-        updates: number of updates so far.
-        critic_loss, value: sums over the updates since :meth:`reset_sums`.
+    The targets are the slow networks, of which the target y is made; ``critic_loss`` and ``value`` are sums
+    over the ``updates`` since :meth:`reset_sums`.
     """
 
     def __init__(

@@ -16,10 +16,8 @@ from torch import Tensor, nn
 def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | None) -> nn.Sequential:
     """Build linear layers with ReLU between them, initialised as PyTorch does.
 
-    Args:
-        sizes: of the input, the hidden layers and the output.
-        layer_norm: normalise each hidden layer before its ReLU.
-        generator: of the initial weights; None for the global one.
+    ``sizes`` are those of the input, the hidden layers and the output; ``layer_norm`` normalises each hidden
+    layer before its ReLU. Weights come from ``generator``, None for the global one.
     """
     layers: list[nn.Module] = []
     for i, (fan_in, fan_out) in enumerate(pairwise(sizes)):

@@ -29,11 +29,8 @@ class Bootstrap:
 class Batch:
     """Rows drawn from a replay.
 
-    Attributes:
-        observation, action: (batch, ...).
-        bootstraps: one for each horizon (number of steps) of the returns in the replay.
-        weights: (batch,) importance weights, None when sampled uniformly.
-        rows: (batch,) indices in the replay.
+    ``bootstraps`` has one for each horizon of the returns in the replay; ``weights`` (batch,) are for
+    importance, None when sampled uniformly; ``rows`` (batch,) are indices in the replay.
     """
 
     observation: Tensor

@@ -28,10 +28,7 @@ _ROBOT_TRAIL, _BALL_TRAIL = (142, 190, 255), (255, 178, 120)
 class Renderer:
     """Draws robots and ball of one field; +x is to the right.
 
-    Args:
-        field: to draw.
-        face: centre of a robot to its flat front [m].
-        width: of the picture [px].
+    ``face`` is the distance from a robot's centre to its flat front [m], ``width`` that of the picture [px].
     """
 
     def __init__(self, field: FieldGeometry, face: float, width: int = 800) -> None:
@@ -53,12 +50,8 @@ class Renderer:
     ) -> Picture:
         """Draw the picture of one moment.
 
-        Args:
-            robot: (6,) x, y, heading, ...
-            ball: (4,) x, y, ...
-            reach: radius of a ring around the ball [m], the distance at which it counts as reached.
-            robot_trail: where the robot has been, oldest first [m].
-            ball_trail: where the ball has been, oldest first [m].
+        ``robot`` (6,) and ``ball`` (4,) begin with x, y; the ball counts as reached in a ring of radius
+        ``reach``; trails show where they have been, oldest first [m].
         """
         image = self._ground.copy()
         pen = ImageDraw.Draw(image)

@@ -39,7 +39,7 @@ def export_run(
     formats: Sequence[Format] = ("torchscript",),
     starts: int | None = None,
 ) -> tuple[Path, ...]:
-    """Write the best actor of a finished run as model files enter them in the manifest; return them.
+    """Write the best actor of a finished run as model files, enter them in the manifest and return them.
 
     The actor is evaluated once more on the held-out starts; these figures, with their
     intervals, are on the card.

@@ -25,10 +25,8 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     Part of the training data is held out, in equal shares of both classes, to decide
     when to stop.
 
-    Args:
-        recipe: its layers and how they are trained; None is the paper's.
-        hold_out: share of the data to hold out.
-        random_state: what the hold-out, the weights and the order of samples follow from.
+    No ``recipe`` is the paper's; ``hold_out`` is a share of the data, which, the weights and the order of
+    samples follow from ``random_state``.
 
     Attributes:
         network_: the trained :class:`~robobt.shots.predict.networks.ShotNetwork`.

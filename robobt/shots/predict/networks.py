@@ -45,10 +45,8 @@ class ShotNetwork(nn.Module):
     Kernels are Glorot-uniform and biases zero, as Keras draws them.
     :func:`~robobt.shots.predict.batched.train_networks` trains it.
 
-    Args:
-        inputs: length of the input.
-        layers: its layers; the last has one unit.
-        generator: where the weights come from; None for zeros, to be filled in.
+    The last of ``layers`` has one unit; weights come from ``generator``, without one they are zeros, to be
+    filled in.
     """
 
     def __init__(
