@@ -154,7 +154,7 @@ def test_a_ball_that_is_taken_from_the_dribbler_stays_where_it_is_put(name: str)
         for _ in range(ticks):
             world.act({ME: RobotCommand(dribbler=True)})
         assert world.truth().own[0].ball_contact
-        world.place_ball(1.5, -1.0)
+        world.place_ball(-1.5, -1.0)
         world.act({ME: RobotCommand(dribbler=True)})
         ball = world.truth().ball
-        assert (ball.x, ball.y, ball.speed) == (1.5, -1.0, 0.0)
+        assert (ball.x, ball.y, ball.speed) == (-1.5, -1.0, 0.0)
