@@ -22,18 +22,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
-_QUICK = ("config", "world", "motion", "models", "skills", "plays", "tree", "sim", "match")
-"""Rooms whose tests take a moment each: what ``make test-fast`` runs, but for what is marked there."""
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    for item in items:
-        room = item.path.relative_to(config.rootpath / "tests").parts[0]
-        if room not in _QUICK:
-            item.add_marker(pytest.mark.integration)
-
-
 @pytest.fixture
 def moments(request: pytest.FixtureRequest) -> int:
     """How many random moments a slow test tries."""

@@ -29,6 +29,7 @@ def test_every_example_is_tested() -> None:
     assert sorted(EXPECTED) == sorted(path.name for path in EXAMPLES.glob("*.py"))
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", EXPECTED)
 def test_an_example_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -43,6 +43,7 @@ def test_importing_it_imports_nothing_heavy() -> None:
     assert done.stdout == "set()\n"
 
 
+@pytest.mark.integration
 def test_a_match_without_a_learned_skill_needs_no_torch() -> None:
     code = (
         "import sys; sys.modules['torch'] = None; import robobt\n"

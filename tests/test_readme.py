@@ -39,6 +39,7 @@ def test_the_two_commands_exist() -> None:
         assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.integration
 def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As they stand there, but that matches and evaluations are shorter."""
     monkeypatch.chdir(tmp_path)

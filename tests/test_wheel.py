@@ -45,6 +45,7 @@ def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert not (unpacked / "tests").exists()
 
 
+@pytest.mark.integration
 def test_it_plays_a_bundled_scenario_outside_the_checkout(unpacked: Path, tmp_path: Path) -> None:
     found = run(unpacked, tmp_path, "import robobt; print(robobt.__file__)")
     assert found.startswith(str(unpacked))

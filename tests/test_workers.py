@@ -6,6 +6,8 @@ import pytest
 
 from robobt.workers import Work, run_tasks
 
+pytestmark = pytest.mark.integration
+
 
 class SquareError(Exception):
     pass

@@ -119,6 +119,7 @@ class TestHelp:
         assert loaded.stdout == "set()\n"
 
 
+@pytest.mark.integration
 class TestMatch:
     def test_it_prints_outcomes_times_and_goals(self, scenario: Path):
         printed = robobt("match", scenario, "--trials", "3").stdout
@@ -236,6 +237,7 @@ class TestMatch:
         assert told("match", scenario, "--import", mine)["robots"]["blue 0"]["errors"] == 0
 
 
+@pytest.mark.integration
 class TestReplay:
     def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
         recording = tmp_path / "a.robobt.arrows"
@@ -256,6 +258,7 @@ class TestReplay:
         assert "Is a directory" in complaint("replay", ".")
 
 
+@pytest.mark.integration
 class TestLists:
     def test_every_bundled_scenario_is_listed(self):
         printed = robobt("scenarios").stdout
@@ -351,6 +354,7 @@ class TestLists:
         assert "DribbleTo" not in printed
 
 
+@pytest.mark.integration
 class TestTree:
     def test_it_is_shown_as_text(self):
         printed = robobt("tree", "goalkeeper").stdout
@@ -430,6 +434,7 @@ class TestTree:
         assert said == f"robobt: {mine}:2: AttributeError: 'int' object has no attribute 'y'\n"
 
 
+@pytest.mark.integration
 class TestBench:
     def test_the_simulator(self):
         printed = told("bench", "sim", "--seconds", "0.1")

@@ -31,6 +31,7 @@ def quiet() -> list[str]:
     return [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}", *ANY_PORT]
 
 
+@pytest.mark.integration
 def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
     log = tmp_path / "game.log.gz"
     printed = json.loads(
@@ -58,6 +59,7 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
     assert "<html" in page.read_text()
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("clock", ["sim", "unix"])
 def test_serve_stamps_its_vision_by_the_clock_that_is_asked_for(tmp_path: Path, clock: str) -> None:
     log = tmp_path / "game.log"
@@ -117,6 +119,7 @@ def test_log_writes_what_is_heard(tmp_path: Path) -> None:
     assert "must end in .log" in robobt("log", tmp_path / "heard.txt", code=2)
 
 
+@pytest.mark.integration
 def test_the_filter_is_measured() -> None:
     play = json.loads(robobt("bench", "filter", "--seconds", 2, "--json"))["play"]
     assert play["compensated"]["robot_position"] < play["uncompensated"]["robot_position"]

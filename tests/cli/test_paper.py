@@ -16,6 +16,7 @@ def shots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(tmp_path / "shots.parquet")
 
 
+@pytest.mark.integration
 def test_table_3_is_printed_as_a_table_and_as_json(shots: str, tmp_path: Path):
     options = [
         "--data",

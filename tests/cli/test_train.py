@@ -18,6 +18,7 @@ def run(*arguments):
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
+@pytest.mark.integration
 def test_a_run_is_trained_resumed_and_told(tmp_path):
     told = run("train", "go_to_ball", *OPTIONS, "--out", tmp_path / "run", "--json")
     assert told.exit_code == 0, told.output
@@ -74,6 +75,7 @@ def test_demonstrations_are_recorded_by_one_command(tmp_path):
     assert "2 episodes" in spoken.output
 
 
+@pytest.mark.integration
 def test_the_switches_are_compared_by_one_command(tmp_path):
     told = run("bench", "train", "shoot", "--seeds", 1, "--only", "fast", *OPTIONS, "--out", tmp_path)
     assert told.exit_code == 0, told.output

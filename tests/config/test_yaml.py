@@ -22,6 +22,7 @@ def read(text: str | bytes) -> object:
     return parse_marked(text, "file").plain()
 
 
+@pytest.mark.integration
 @given(plain)
 @settings(max_examples=200, deadline=None)
 def test_plain_data_written_and_read_is_the_same_and_of_the_same_types(data: object) -> None:
@@ -75,6 +76,7 @@ def test_every_value_knows_its_line_and_column() -> None:
     ]
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     ("text", "problem"),
     [

@@ -14,6 +14,7 @@ from robobt.worlds import sim_world
 PNG = b"\x89PNG"
 
 
+@pytest.mark.integration
 def test_every_play_is_judged_on_the_same_starts_beside_the_papers_figures():
     ticks = []
     result = deployed(3, seed=11, speeds=("half",), progress=lambda: ticks.append(1))
@@ -40,6 +41,7 @@ def test_the_goalkeeper_is_that_of_the_collection_scenario(speed: str, factor: f
     assert sim_world(deployed_scenario(speed, "attack_nn")).settings.kicker.max_speed == 7.5
 
 
+@pytest.mark.integration
 def test_it_is_printed_as_tables_and_as_json(tmp_path: Path):
     picture = tmp_path / "line.png"
     options = ["paper", "deployed", "--shots", "1", "-w", "1", "--seed", "3"]

@@ -24,6 +24,7 @@ def address(endpoints: Endpoints, speed: float) -> str:
     return "league://grsim?" + "&".join(options)
 
 
+@pytest.mark.integration
 def test_table_4_is_played_on_a_served_field() -> None:
     scenario: Scenario = table4_scenario("1", COMBINATIONS["geometric, kick"])
     endpoints = free_endpoints()

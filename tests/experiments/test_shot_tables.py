@@ -65,6 +65,7 @@ def test_shots_to_test_on_only_are_refused(tmp_path: Path):
         load_shot_sets(tmp_path / "a.csv")
 
 
+@pytest.mark.integration
 def test_table_3_judges_every_model_on_the_test_shots(folder: Path, monkeypatch: pytest.MonkeyPatch):
     train_quickly(monkeypatch)
     told: list[int] = []

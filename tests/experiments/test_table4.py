@@ -17,6 +17,8 @@ from robobt.match import load_scenario
 from robobt.match.runner import trial_seed
 from robobt.models.policy import load_policy
 
+pytestmark = pytest.mark.integration
+
 QUICK = ("robobulls", "geometric, kick")
 LEARNED = COMBINATIONS["ddpg, ddpg"]
 

@@ -8,6 +8,7 @@ from robobt.league.bench_clock import FAULTS, SPEEDS, Fault, Peer, PeerClock, Pe
 from robobt.league.known_field import KnownField
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_frames_are_predicted_to_the_present(speed: float, fault: Fault) -> None:
@@ -27,6 +28,7 @@ def test_they_are_in_other_matches_too(speed: float, seed: int) -> None:
         assert figures["p99_error"] <= 0.008
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("fault", ["none", "frozen", "lost", "restart"])  # queued packets show a latency
 @pytest.mark.parametrize("speed", [0.25, 0.98, 4.0])
 def test_nothing_is_predicted_further_than_the_latency_that_was_measured(speed: float, fault: Fault) -> None:
@@ -40,6 +42,7 @@ def test_nothing_is_predicted_further_than_the_latency_that_was_measured(speed: 
                 assert -1e-9 <= world._looked_at - captured <= min(since, 0.25) + 0.002 * max(1.0, speed)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("speed", [0.25, 0.98, 1.0, 4.0])
 def test_a_match_lasts_as_long_as_on_the_fields_clock(speed: float) -> None:
     clock = PeerClock(Peer(speed, fault="frozen"), 14.0)

@@ -158,6 +158,7 @@ def orders_to_the_simulator() -> list[Message]:
     return configurations
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("amount", AMOUNTS)
 @pytest.mark.parametrize("port", ["grsim", "control", "blue", "yellow"])
 def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: str, amount: int) -> None:

@@ -22,6 +22,8 @@ from robobt.worlds import sim_world
 from tests.league.lockstep import LockstepWorld
 from tests.league.served import free_endpoints
 
+pytestmark = pytest.mark.integration
+
 TRIALS = 100
 
 

@@ -25,6 +25,8 @@ from robobt.world.state import RobotId
 from robobt.worlds import world_from
 from tests.league.served import free_endpoints, poses, served
 
+pytestmark = pytest.mark.integration
+
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 1)
 START = Placement({ME: (-1.0, 0.5, 0.3), HER: (2.0, -1.0, pi - 0.2)}, (0.5, 0.25, 0.0, 0.0))
 SPEED = 3.0

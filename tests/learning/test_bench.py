@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
+
+pytestmark = pytest.mark.integration
 
 
 def test_bench_env_measures_both_environments() -> None:

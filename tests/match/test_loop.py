@@ -77,6 +77,7 @@ def test_every_tick_observes_and_acts_once():
     assert match.measures.ticks == 5
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     ("breaks", "said"),
     [

@@ -20,6 +20,8 @@ from tests.conftest import StartPython
 from tests.match.scripted import PlainWorld, Scripted, data
 from tests.registries import temporarily
 
+pytestmark = pytest.mark.integration
+
 
 def scenario(**changes: Any) -> Scenario:
     ball = {"position": {"center": [0, 0], "radius": 1.0}}
@@ -54,7 +56,6 @@ def test_a_trial_does_not_depend_on_the_others():
     assert figures(run_trials(scenario(), PlainWorld, 2, seed=1)) != figures(few)
 
 
-@pytest.mark.integration
 def test_a_run_over_worker_processes_is_the_same_run(tmp_path: Path):
     """Determinism over processes, in the real simulator: traces, figures and recordings are identical."""
     paths = [tmp_path / f"{workers}.robobt.arrows" for workers in (1, 2)]

@@ -23,6 +23,7 @@ from tests.models.made_models import go_to_ball_card, network, predictor_card
 SCALE = (1.0, 1.0, 3.0, 1.5, 1.5, 1.4)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("layer_norm", [False, True])
 @pytest.mark.parametrize("format_", ["torchscript", "onnx"])
 def test_file_and_network_agree_on_random_inputs(tmp_path: Path, format_: Format, layer_norm: bool) -> None:

@@ -165,6 +165,7 @@ def resealed(data: bytes) -> bytes:
     return data[:-64] + sha256(data[:-64]).hexdigest().encode()
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("which", ["sealed anew in TorchScript", "sealed anew in ONNX", "written by torch"])
 @pytest.mark.parametrize(
     "count", [200, pytest.param(5_000, marks=pytest.mark.slow)], ids=["some", "five thousand"]

@@ -13,6 +13,7 @@ def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
     return summary.goals["blue"].trials.count
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
 @pytest.mark.parametrize("speed", ["half", "full"])
 def test_it_scores_nearly_always_where_attack_main_seldom_does(play: str, speed: str):

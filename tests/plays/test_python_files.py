@@ -155,6 +155,7 @@ def test_another_file_is_refused(write: Write) -> None:
         import_file(write("x = 1", "mine.txt"))
 
 
+@pytest.mark.integration
 def test_worker_processes_run_the_files_too(write: Write, tmp_path: Path) -> None:
     import_file(write())
     # A tree file names the skill; nothing that is sent to the worker does.
@@ -188,6 +189,7 @@ def test_the_documents_example_scores(write: Write) -> None:
     assert result.robots["blue 0"].errors == 0
 
 
+@pytest.mark.integration
 def test_importing_needs_no_test_around_it(write: Write) -> None:
     code = f"from robobt.plays.python_files import import_file; print(import_file({str(write())!r}).advance)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

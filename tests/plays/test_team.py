@@ -30,6 +30,8 @@ from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, stop_before
 
+pytestmark = pytest.mark.integration
+
 PERIOD = 1 / 60
 CLEAR = 0.5 + 0.09
 SPOT = (1.0, 1.5)

@@ -4,6 +4,8 @@ from robobt.shots.bench import bench_cross_validation, bench_goal_line
 from robobt.shots.data import goals, shot_inputs
 from tests.shots.made_up import made_up_table, train_quickly
 
+pytestmark = pytest.mark.integration
+
 
 def test_networks_are_trained_at_once_and_one_after_the_other(monkeypatch: pytest.MonkeyPatch):
     train_quickly(monkeypatch)

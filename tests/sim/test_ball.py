@@ -22,6 +22,7 @@ def closed_form(ball: BallSettings, speed: float) -> tuple[float, float]:
     return distance, time
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", sorted(PRESETS))
 @pytest.mark.parametrize("speed", [1.0, 3.0, 6.5])
 @pytest.mark.parametrize("period", [0.005, 1 / 60])

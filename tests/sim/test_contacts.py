@@ -15,6 +15,7 @@ from tests.sim.rig import IT, ME, one_robot
 MARGIN = DIVISION_B.margin
 
 
+@pytest.mark.integration
 @settings(max_examples=60, deadline=None)
 @given(
     x=st.floats(-4.4, 4.4),
@@ -33,6 +34,7 @@ def test_no_ball_ever_leaves_the_walls(x: float, y: float, angle: float, speed: 
         assert abs(ball.y) <= 3.0 + MARGIN
 
 
+@pytest.mark.integration
 @settings(max_examples=40, deadline=None)
 @given(speed=st.floats(2.0, 15.0), aim=st.floats(-0.45, 0.45), distance=st.floats(0.3, 3.0))
 def test_a_shot_between_the_posts_stays_in_the_goal(speed: float, aim: float, distance: float) -> None:
@@ -136,6 +138,7 @@ def test_eleven_robots_a_team_fit() -> None:
     assert [robot.id for robot in frame.opponents] == list(range(11))
 
 
+@pytest.mark.integration
 @settings(max_examples=60, deadline=None)
 @given(
     heading=st.floats(-pi, pi),

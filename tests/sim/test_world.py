@@ -102,6 +102,7 @@ def test_a_trigger_may_be_given_by_its_word(word: str, kicks: list[RobotId]) -> 
     assert world.kicks == kicks
 
 
+@pytest.mark.integration
 def test_realistic_noise_has_the_stated_spread_and_the_seed_fixes_it() -> None:
     def run(seed: int) -> np.ndarray:
         world = pair("realistic")

@@ -90,6 +90,7 @@ def first_difference(seed: int, ticks: int) -> str | None:
     return None
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     "block", [0, *(pytest.param(block, marks=pytest.mark.slow) for block in range(1, 8))]
 )
@@ -170,6 +171,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     function, old, new = FAULTS[fault]

@@ -79,6 +79,7 @@ def watched() -> Watched:
     return Watched()
 
 
+@pytest.mark.integration
 def test_at_constant_velocity_the_errors_are_within_the_bars() -> None:
     figures = bench_filter(load_scenario("six_v_six"), seconds=8.0, seed=1)["constant_velocity"]["at_capture"]
     noise = REALISM["realistic"]
@@ -91,6 +92,7 @@ def test_at_constant_velocity_the_errors_are_within_the_bars() -> None:
     assert figures["missing_robots"] == 0.0
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("cameras", [1, 4])
 def test_in_a_match_prediction_with_the_sent_commands_beats_none(cameras: int) -> None:
     play = bench_filter(load_scenario("six_v_six"), seconds=6.0, seed=2, cameras=cameras)["play"]

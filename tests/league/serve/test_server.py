@@ -107,6 +107,7 @@ def test_vision_and_tracker_go_out_with_every_step(server: SimServer, endpoints:
     assert tracked[1].ball.position == pytest.approx(server.field.truth().ball.position, abs=1e-6)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(("clock", "start"), [("sim", 0.0), ("unix", 1_800_000_000.0)])
 def test_stamps_advance_with_the_simulated_time_however_busy_the_machine_is(
     endpoints: Endpoints, clock: Clock, start: float

@@ -39,6 +39,7 @@ def fill(message: Any, name: str, values: dict[str, Any]) -> Any:
     return message
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_encodes_to_the_bytes_of_an_independent_implementation(name: str) -> None:
     rng = random.Random(name)

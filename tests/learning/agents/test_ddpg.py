@@ -43,6 +43,7 @@ def same(one, other):
     return all(torch.equal(one[key], other[key]) for key in one)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("switches", SWITCHES, ids=str)
 def test_targets_follow_in_closed_form(switches):
     agent = small_agent(3, 2, **switches)

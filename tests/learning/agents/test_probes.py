@@ -9,6 +9,8 @@ import torch
 from robobt.learning.agents.nstep import NStep, Transitions
 from tests.learning.tiny import learn, small_agent
 
+pytestmark = pytest.mark.integration
+
 ROWS = 512
 ATOMS = {"atoms": 41, "returns": (-12.0, 12.0)}
 

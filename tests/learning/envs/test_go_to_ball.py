@@ -132,6 +132,7 @@ def test_a_robot_that_is_too_fast_has_not_reached_the_ball() -> None:
     assert any(result.success[1] for result in results)
 
 
+@pytest.mark.integration
 def test_driving_straight_reaches_every_start_in_the_optimal_time() -> None:
     made = GoToBallTask(n=128, seed=0)
     episodes = run_starts(made, straight_drive, made.sample_starts(11, 512))
@@ -143,6 +144,7 @@ def test_driving_straight_reaches_every_start_in_the_optimal_time() -> None:
     assert episodes.time_ratio == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.integration
 def test_random_actions_hardly_ever_reach_the_ball() -> None:
     made, rng = GoToBallTask(n=128, seed=0), np.random.default_rng(4)
     episodes = run_starts(made, lambda seen: rng.uniform(-1, 1, (len(seen), 3)), made.sample_starts(12, 512))

@@ -31,6 +31,7 @@ def many(name: str, n: int = 6, **more: Any) -> Any:
     return gymnasium.make_vec(name, num_envs=n, vectorization_mode="vector_entry_point", **more)
 
 
+@pytest.mark.integration
 @IDS
 @pytest.mark.parametrize("settings", [None, DISTURBED])
 def test_gymnasiums_checker_has_nothing_to_say(name: str, settings: Any) -> None:
@@ -129,6 +130,7 @@ def test_the_last_step_tells_what_became_of_the_episode() -> None:
     assert np.isnan(info["kick_time"])
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", ["GoToBall-v0", "ShootTowardsGoal-v0"])
 @pytest.mark.parametrize("settings", [None, {**DISTURBED, "velocities": "finite_difference"}])
 def test_nothing_observed_lies_outside_the_spaces(name: str, settings: Any) -> None:

@@ -118,6 +118,7 @@ def test_parameters_are_drawn_evenly_from_their_ranges_for_each_episode() -> Non
     assert (made.arenas.arena_parameters[:, sim.ROLL] != before).all()
 
 
+@pytest.mark.integration
 def test_acceleration_changes_how_fast_robots_get_and_their_optimum() -> None:
     made = task(randomisation={"acceleration": (0.5, 1.5)})
     factor = made.arenas.robot_parameters[:, 0, sim.FORWARD_UP] / 3.0

@@ -27,6 +27,7 @@ def recorded():
     return record(GoToBallSettings(), 12, "script", seed=3)
 
 
+@pytest.mark.integration
 def test_the_straight_drive_reaches_every_start_in_the_shortest_time():
     settings = GoToBallSettings()
     task = GoToBallTask(settings)
@@ -37,6 +38,7 @@ def test_the_straight_drive_reaches_every_start_in_the_shortest_time():
     assert figures.time_ratio < 1.01
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("simulator", ["default", "robobulls", "erforce"])
 def test_the_scripted_shooter_hardly_ever_misses(simulator):
     settings = ShootSettings(simulator=simulator)
@@ -174,6 +176,7 @@ def test_an_action_is_turned_into_the_command_it_stands_for_and_back():
     assert command_of(action_of(kick, SHOOT_ACTION), SHOOT_ACTION) == kick
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("preset", ["ddpgfd", "cmu"])
 def test_training_begins_with_demonstrations(tmp_path, preset):
     changes = {

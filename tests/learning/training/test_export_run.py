@@ -41,6 +41,7 @@ def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     return folder
 
 
+@pytest.mark.integration
 def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     (path,) = export_run(run, folder=tmp_path)
     task = run.name
@@ -119,6 +120,7 @@ def test_held_out_figures_carry_their_intervals() -> None:
     assert list(nothing) == ["success"]
 
 
+@pytest.mark.integration
 def test_the_commands_write_list_and_show_models(run: Path, tmp_path: Path) -> None:
     def robobt(*arguments: str, code: int = 0) -> str:
         done = CliRunner().invoke(app, list(arguments))

@@ -70,6 +70,7 @@ def test_nothing_to_train_is_refused(tmp_path):
         train_seeds(settings, [], tmp_path)
 
 
+@pytest.mark.integration
 def test_a_comparison_is_a_table_and_is_taken_up_again(tmp_path):
     only = ["fast", "twin critics"]
     figures = compare("go_to_ball", tmp_path, [0], only, SHORT)

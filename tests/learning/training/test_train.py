@@ -17,6 +17,8 @@ from robobt.learning.training.settings import load_settings
 from robobt.learning.training.train import TrainError, train
 from tests.learning.tiny import SLIDE, Slide, slide_settings
 
+pytestmark = pytest.mark.integration
+
 EVERYTHING = {
     "agent__twin": True,
     "agent__atoms": 21,

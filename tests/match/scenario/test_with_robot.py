@@ -46,6 +46,7 @@ def test_params_replace_all_parameters() -> None:
     assert scenario.robots.blue[0].params == {}
 
 
+@pytest.mark.integration
 def test_robots_keep_their_order() -> None:
     scenario = load_scenario("six_v_six")
     changed = scenario.with_robot("blue 3", limits={"max_speed": 1.0})

@@ -141,6 +141,7 @@ def loop(model: onnx.ModelProto) -> None:
     model.graph.node[0].op_type = "Loop"
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     "change",
     [

@@ -125,6 +125,7 @@ def test_torch_itself_would_have_run_it(tmp_path: Path) -> None:
     assert victim.read_bytes() == b"AAAAAAAA"
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     ("name", "content"),
     [

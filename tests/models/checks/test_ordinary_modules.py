@@ -15,6 +15,8 @@ from robobt.models.export import export_model
 from robobt.models.policy import load_policy
 from tests.models.made_models import go_to_ball_card
 
+pytestmark = pytest.mark.integration
+
 
 class Recurrent(nn.Module):
     """One step of a recurrent layer, with a buffer."""

@@ -18,6 +18,8 @@ from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS
 from tests.conftest import StartPython
 
+pytestmark = pytest.mark.integration
+
 SETTINGS = CollectionSettings(seed=5)
 
 

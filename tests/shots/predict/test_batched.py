@@ -48,6 +48,7 @@ def test_a_network_does_not_depend_on_the_others_in_its_stack():
     assert _apart(alone, train_networks(tasks, recipe)[1], tasks[1]) < 1e-4
 
 
+@pytest.mark.integration
 def test_training_learns():
     task = _task(400, 1, held=200)
     network = train_networks([task], Recipe(warm_up=10, epochs=20))[0]

@@ -15,6 +15,8 @@ from robobt.world.features import SCENE_HEAD
 from tests.shots.made_up import QUICK, made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
+pytestmark = pytest.mark.integration
+
 
 def _quick(predictor: Pipeline) -> Pipeline:
     """A predictor that learns in less time than it should."""

@@ -17,6 +17,7 @@ from robobt.world.features import SCENE_HEAD
 from tests.shots.made_up import made_up_table, train_quickly
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
 def test_a_predictor_ships_with_a_card_that_says_how_good_it_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -36,6 +37,7 @@ def test_the_shipped_predictors_are_calibrated_and_trained_on_our_own_shots(name
     assert card.environment["shots"] >= 20_000
 
 
+@pytest.mark.integration
 def test_training_again_gives_the_same_file(tmp_path: Path):
     first, _ = train_shipped("shot_expected", made_up_table(200), tmp_path / "a", epochs=2)
     second, _ = train_shipped("shot_expected", made_up_table(200), tmp_path / "b", epochs=2)
@@ -75,6 +77,7 @@ def test_a_mirrored_scene_gets_the_same_answer():
     assert answers(mirrored) == pytest.approx(answers(scenes), abs=1e-6)
 
 
+@pytest.mark.integration
 def test_training_and_map_are_commands(tmp_path: Path):
     data = tmp_path / "shots.parquet"
     write_shots(made_up_table(200), data)

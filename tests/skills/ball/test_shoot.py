@@ -46,6 +46,7 @@ class TestEveryPolicy:
     def leaf(self, learned: bool, model: str) -> Shoot:
         return Shoot(policy=model if learned else "geometric")
 
+    @pytest.mark.integration
     def test_it_fails_without_the_ball_in_the_mouth(self, learned: bool, model: str) -> None:
         alone = Alone(self.leaf(learned, model))
         assert alone.tick(frame(robot(), ball=(HELD, 0.0))) is Status.FAILURE

@@ -33,6 +33,7 @@ def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
     return trial
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("settings", ["default", "grsim"])
 @pytest.mark.parametrize(
     ("ball", "spot"),

@@ -41,6 +41,7 @@ def shape(root: Behaviour) -> list[tuple[str, str]]:
     return [(node_path(node), type(node).__name__) for node in preorder(root)]
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("block", range(3))
 def test_random_trees_with_substitutes_are_ticked_as_py_trees_ticks_them(block: int) -> None:
     ticked = sum(_live_the_same_life(seed) for seed in range(100 * block, 100 * (block + 1)))
@@ -119,6 +120,7 @@ def test_statistics_add_up_whatever_the_tree() -> None:
         assert len(statistics.as_table().splitlines()) == 1 + len(counts), seed
 
 
+@pytest.mark.integration
 def test_mutated_files_of_rules_are_rules_or_one_clear_error(tmp_path: Path) -> None:
     _mutate_rules(tmp_path, range(300))
 

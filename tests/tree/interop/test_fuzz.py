@@ -295,6 +295,7 @@ def run(kind: str, seed: int, count: int) -> tuple[int, int]:
     return trees, count - trees
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("kind", ["yaml", "xml"])
 def test_mutated_files_are_trees_or_clear_errors(kind: str) -> None:
     trees, errors = run(kind, 1, 200)

@@ -102,6 +102,7 @@ def shipped() -> list[str]:
     return [name for name in PLAYS if PLAYS[name].__module__.startswith("robobt.")]
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("play", shipped())
 def test_every_play_that_ships_can_be_saved_and_read_back_whatever_its_parameters(play: str) -> None:
     builder = PLAYS[play]
@@ -138,6 +139,7 @@ def test_values_of_all_kinds_are_saved_and_read_back(root: Behaviour) -> None:
     assert same(root, build(tree_yaml(root, "test")))
 
 
+@pytest.mark.integration
 @given(
     target=st.none() | st.tuples(st.floats(-9, 9), st.floats(-9, 9)),
     heading=st.none() | st.floats(allow_nan=False, allow_infinity=False),

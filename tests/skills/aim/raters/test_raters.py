@@ -128,6 +128,7 @@ def test_the_goal_is_that_of_the_field_played_on(name: str) -> None:
     assert shot.target == pytest.approx((6.0, 0.0), abs=0.02)
 
 
+@pytest.mark.integration
 @each_rater
 @pytest.mark.parametrize("ball", [(2.0, 0.0), (3.0, 1.2), (2.4, -1.0)])
 @pytest.mark.parametrize("keeper", [-0.25, 0.0, 0.3])
@@ -177,6 +178,7 @@ def reflected(robots: tuple[RobotState, ...]) -> tuple[RobotState, ...]:
     return tuple(RobotState(r.id, r.x, -r.y, -r.heading, r.vx, -r.vy, -r.omega) for r in robots)
 
 
+@pytest.mark.integration
 @each_rater
 @settings(max_examples=60, deadline=None)
 @given(
@@ -207,6 +209,7 @@ def test_a_mirrored_scene_has_the_mirrored_shot(
     )
 
 
+@pytest.mark.integration
 @each_rater
 @settings(max_examples=60, deadline=None)
 @given(origin=origins, others=st.lists(robots, max_size=4), more=robots, is_mate=st.booleans())
@@ -222,6 +225,7 @@ def test_one_robot_more_never_improves_the_best_score(
         assert second.score <= first.score + 1e-9
 
 
+@pytest.mark.integration
 @each_rater
 @settings(max_examples=60, deadline=None)
 @given(origin=origins, others=st.lists(robots, max_size=6))
