@@ -17,6 +17,7 @@ from robobt.plays import PLAYS, python_files
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
+from robobt.tree.bench import bench_tree
 from tests.match.scripted import data
 from tests.registries import temporarily
 
@@ -103,6 +104,7 @@ class TestHelp:
         listed = CliRunner().invoke(app, []).output
         assert all(command.split()[0] in listed for command in COMMANDS)
 
+    @pytest.mark.integration
     @pytest.mark.parametrize("command", COMMANDS)
     def test_every_command_has_help(self, command: str):
         assert command.rpartition(" ")[2] in help_of(command)
@@ -454,7 +456,8 @@ class TestBench:
         assert printed["recording_share"] < 1
         assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
 
-    def test_trees(self):
+    def test_trees(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr("robobt.tree.bench.bench_tree", lambda: bench_tree(rounds=1, ticks=20))
         printed = told("bench", "tree")
         explained = help_of("bench tree")
         for key in ("speedup_vs_py_trees", "ratio_to_plain_classes", "store_speedup_vs_blackboard"):

@@ -82,6 +82,7 @@ def test_serve_takes_a_scenario() -> None:
     assert "Serving 2 robots" in robobt("serve", "striker_vs_goalie", *quiet(), "--seconds", 0.1)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [

@@ -41,6 +41,7 @@ def test_table_3_is_printed_as_a_table_and_as_json(shots: str, tmp_path: Path):
     assert len(said["models"]["logistic"]["confusion"]) == 2
 
 
+@pytest.mark.integration
 def test_table_2_is_printed_as_json(shots: str, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)
     monkeypatch.setattr("robobt.experiments.table2.HOLD_OUTS", (0.33,))

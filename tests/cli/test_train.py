@@ -34,6 +34,7 @@ def test_a_run_is_trained_resumed_and_told(tmp_path):
     assert "holds a run already" in refused.output
 
 
+@pytest.mark.integration
 def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_path, monkeypatch):
     draw_no_curves(monkeypatch)
     own = run("train", "go_to_ball", *OPTIONS, "--set", "seed=7", "--out", tmp_path / "own", "--json")
@@ -44,6 +45,7 @@ def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_p
     assert json.loads(asked.stdout)["together"]["seeds"] == [0]
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -108,6 +108,7 @@ def test_table_3_refuses_data_with_too_few_goals(tmp_path: Path):
         table3(load_shot_sets(tmp_path / "shots.parquet"), seeds=1, repeats=0, models=["logistic"])
 
 
+@pytest.mark.integration
 def test_table_2_compares_the_network_with_both_regressions(folder: Path, monkeypatch: pytest.MonkeyPatch):
     train_quickly(monkeypatch)
     monkeypatch.setattr("robobt.experiments.table2.REPEATS", 1)

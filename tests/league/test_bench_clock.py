@@ -90,6 +90,7 @@ def test_a_field_much_slower_than_expected_is_told_with_what_it_means(
     assert "takes longer" in told
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(("speed", "expected"), [(1.005, 1.0), (0.5, 0.5), (2.0, 2.0)])
 def test_the_expected_rate_is_not_told(
     speed: float, expected: float, caplog: pytest.LogCaptureFixture

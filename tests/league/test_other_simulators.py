@@ -35,8 +35,16 @@ def erforce(endpoints: Endpoints, **more: object) -> FakeSimulator:
     return FakeSimulator(endpoints, rate=66.0, delay=0.035, told_delay=0.005, occludes=True, **more)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("teams", [("blue", "yellow"), ("blue",), ("yellow",)], ids=str)
-@pytest.mark.parametrize("form", ["grsim", "protocol"])
+@pytest.mark.parametrize(
+    ("form", "teams"),
+    [
+        ("grsim", ("blue", "yellow")),
+        ("grsim", ("blue",)),
+        ("protocol", ("blue", "yellow")),
+        ("protocol", ("yellow",)),
+    ],
+    ids=str,
+)
 def test_grsim_never_takes_a_command_back(endpoints: Endpoints, form: str, teams: tuple[str, ...]) -> None:
     with (
         running(grsim(endpoints)) as simulator,

@@ -21,6 +21,8 @@ from tests.conftest import StartPython
 from tests.league.lockstep import LockstepWorld
 from tests.league.served import free_endpoints
 
+pytestmark = pytest.mark.integration
+
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 0)
 START = line_up(DIVISION_B, 6)
 

@@ -28,6 +28,7 @@ def commands(n: int, rng: np.random.Generator) -> np.ndarray:
     return values
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("name", ["default", "grsim"])
 def test_each_of_many_arenas_moves_as_it_would_alone(name: str) -> None:
     rng = np.random.default_rng(5)

@@ -16,7 +16,7 @@ MARGIN = DIVISION_B.margin
 
 
 @pytest.mark.integration
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     x=st.floats(-4.4, 4.4),
     y=st.floats(-2.9, 2.9),
@@ -139,7 +139,7 @@ def test_eleven_robots_a_team_fit() -> None:
 
 
 @pytest.mark.integration
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     heading=st.floats(-pi, pi),
     bearing=st.floats(-0.9, 0.9),

@@ -217,6 +217,7 @@ NODE_FAULTS: dict[str, tuple[Any, str, str]] = {
 }
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("fault", NODE_FAULTS)
 def test_a_fault_planted_in_a_node_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     cls, old, new = NODE_FAULTS[fault]
@@ -361,6 +362,7 @@ def test_a_tree_that_is_too_deep_is_told_so(depth: int) -> None:
         root.parent = None
 
 
+@pytest.mark.integration
 def test_many_siblings_of_one_name_are_told_apart_in_no_time() -> None:
     nodes = [Success("same") for _ in range(20_000)]
     root = Sequence("root", memory=False, children=nodes)

@@ -8,7 +8,7 @@ from math import cos, hypot, inf, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from robobt.league.bench_filter import bench_filter
+from robobt.league.bench_filter import Rms, bench_filter
 from robobt.league.estimate.ball_track import BallMotion, predict_ball
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
@@ -79,9 +79,14 @@ def watched() -> Watched:
     return Watched()
 
 
+@pytest.fixture(scope="module", params=[1, 4], ids=["one camera", "four cameras"])
+def measured(request: pytest.FixtureRequest) -> dict[str, Rms]:
+    return bench_filter(load_scenario("six_v_six"), seconds=6.0, seed=2, cameras=request.param)
+
+
 @pytest.mark.integration
-def test_at_constant_velocity_the_errors_are_within_the_bars() -> None:
-    figures = bench_filter(load_scenario("six_v_six"), seconds=8.0, seed=1)["constant_velocity"]["at_capture"]
+def test_at_constant_velocity_the_errors_are_within_the_bars(measured: dict[str, Rms]) -> None:
+    figures = measured["constant_velocity"]["at_capture"]
     noise = REALISM["realistic"]
     # The figures are errors in the plane, the noise is that of an axis.
     assert figures["robot_position"] / sqrt(2) <= noise.robot_noise / 2
@@ -93,9 +98,8 @@ def test_at_constant_velocity_the_errors_are_within_the_bars() -> None:
 
 
 @pytest.mark.integration
-@pytest.mark.parametrize("cameras", [1, 4])
-def test_in_a_match_prediction_with_the_sent_commands_beats_none(cameras: int) -> None:
-    play = bench_filter(load_scenario("six_v_six"), seconds=6.0, seed=2, cameras=cameras)["play"]
+def test_in_a_match_prediction_with_the_sent_commands_beats_none(measured: dict[str, Rms]) -> None:
+    play = measured["play"]
     for figure in ("robot_position", "robot_heading", "robot_velocity", "robot_turn", "ball_position"):
         assert play["compensated"][figure] < play["uncompensated"][figure] * 0.75
     assert play["at_capture"]["robot_position"] < 0.003

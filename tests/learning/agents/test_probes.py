@@ -102,7 +102,7 @@ def test_a_time_limit_is_bootstrapped_and_an_end_is_not(n, truncated, worth):
         rows += steps.add(zeros, rng.uniform(-1, 1, (envs, 1)), np.ones(envs), zeros, *ends)
     agent = small_agent(1, 1, tau=0.3)
     joined = Transitions(*[np.concatenate(part) for part in zip(*[row[0] for row in rows], strict=True)])
-    learn(agent, joined, 500)
+    learn(agent, joined, 300)
     assert value(agent, [0.0], [0.0]) == pytest.approx(worth, rel=0.1)
 
 
@@ -124,7 +124,7 @@ def test_the_actor_of_a_linear_quadratic_problem_costs_what_riccati_says():
     learn(
         agent,
         made(state, action, reward, np.full(rows, gamma), next_observation),
-        1500,
+        1000,
         batch=128,
         decay=True,
     )

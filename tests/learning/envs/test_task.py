@@ -47,6 +47,7 @@ def trace(task: ArenaTask, ticks: int, seed: int | None = None) -> list[bytes]:
     return parts
 
 
+@pytest.mark.integration
 @BOTH
 def test_an_arena_among_many_moves_as_it_would_alone(kind: Any) -> None:
     many = kind(n=25)
@@ -133,6 +134,7 @@ def test_what_a_step_returns_is_not_touched_by_the_next() -> None:
     np.testing.assert_array_equal(kept[2], result.final_observation)
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("n", [1, 16, 300])
 def test_every_start_is_counted_once_whatever_the_number_of_arenas(n: int) -> None:
     task = GoToBallTask(GoToBallSettings(time_limit=60), n=n, seed=0)

@@ -46,6 +46,7 @@ def test_the_scripted_shooter_hardly_ever_misses(simulator):
     assert figures.rate >= 0.99
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(("environment", "share"), [(GoToBallSettings(), 0.9), (ShootSettings(), 0.95)])
 def test_the_hand_written_skills_do_their_tasks(environment, share):
     shown = record(environment, 40, "skill", seed=1)

@@ -69,6 +69,7 @@ def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.integration
 def test_the_exported_policy_is_the_runs_best_actor(run: Path, tmp_path: Path) -> None:
     from robobt.learning.agents.networks import policy_of
 

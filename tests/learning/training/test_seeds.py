@@ -56,6 +56,7 @@ def test_seeds_side_by_side_come_to_what_they_come_to_one_after_the_other(tmp_pa
     assert load_run(tmp_path / "two" / "seed_1").settings.seed == 1
 
 
+@pytest.mark.integration
 def test_seeds_that_have_ended_are_kept_and_new_ones_added(tmp_path):
     settings = load_settings("go_to_ball", changes=SHORT)
     first = train_seeds(settings, [0], tmp_path)

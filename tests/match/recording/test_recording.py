@@ -129,6 +129,7 @@ class Ticked(VisitorBase):
         self.reached.add(self.places[id(behaviour)])
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("seed", range(40))
 def test_whatever_a_tree_does_is_recorded_as_it_was_seen(path: Path, seed: int) -> None:
     rng = random.Random(seed)
@@ -735,6 +736,7 @@ def test_a_very_deep_or_very_wide_tree_is_recorded_too(path: Path) -> None:
     assert len(set(recording.ticked_path(BLUE_1, 2))) == 554
 
 
+@pytest.mark.integration
 def test_recording_changes_nothing_of_what_is_played(path: Path) -> None:
     scenario = load_scenario("three_v_three").lasting(4.0)
     bare = Match(scenario, 5, sim_world).play()

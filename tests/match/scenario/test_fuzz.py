@@ -22,7 +22,7 @@ pytestmark = pytest.mark.integration
 
 TICKS = 20
 HANG = 60
-"""Seconds after which a case counts as hanging; they take some hundredths [s]."""
+"""Processor time after which a case hangs; but for the first, which compiles, they take hundredths [s]."""
 
 
 def texts() -> list[str]:
@@ -32,15 +32,15 @@ def texts() -> list[str]:
 @contextmanager
 def no_longer_than(seconds: int) -> Iterator[None]:
     def ring(*_: object) -> None:
-        raise AssertionError(f"still busy after {seconds} s")
+        raise AssertionError(f"still busy after {seconds} s of the processor")
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.alarm(seconds)
+    before = signal.signal(signal.SIGPROF, ring)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def outcome(path: Path) -> str:
@@ -74,7 +74,7 @@ def check(cases: range, folder: Path) -> Counter[str]:
     return outcomes
 
 
-@pytest.mark.parametrize("block", range(6))
+@pytest.mark.parametrize("block", range(2))
 def test_a_mutated_file_is_played_or_refused_in_one_line(block: int, tmp_path: Path):
     outcomes = check(range(50 * block, 50 * block + 50), tmp_path)
     # Both kinds have to come up, or the mutations have stopped testing anything.

@@ -102,6 +102,7 @@ def test_the_linter_only_looks_and_names_nodes_of_the_tree() -> None:
         assert found == lint_tree(root), seed
 
 
+@pytest.mark.integration
 def test_statistics_add_up_whatever_the_tree() -> None:
     for seed in range(500, 600):
         runner = TreeRunner(random_tree(random.Random(seed), "n")([], f"d{seed}"), Clock())

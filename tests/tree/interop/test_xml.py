@@ -352,6 +352,7 @@ def test_values_of_all_kinds_are_read(attributes: str, expected: Behaviour) -> N
     assert tree_differences(root, expected, PLAY_VOCABULARY) == []
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize(
     "root",
     [

@@ -84,7 +84,7 @@ def settings_of(builder: Callable[..., Behaviour]) -> list[dict[str, Any]]:
     others = {parameter.name: other_values(parameter) for parameter in parameters_of(builder)}
     found: list[dict[str, Any]] = [{}]
     found += [{name: value} for name, values in others.items() for value in values]
-    found += [{name: values[place] for name, values in others.items() if values} for place in (0, -1)]
+    found.append({name: values[-1] for name, values in others.items() if values})
     return found
 
 
@@ -93,7 +93,7 @@ def other_values(parameter: Any) -> list[Any]:
     hint = parameter.hint
     if get_origin(hint) is Literal:
         return list(get_args(hint))
-    by_type: list[tuple[type, list[Any]]] = [(bool, [True, False]), (float, [0.5, 2.0]), (int, [1, 2])]
+    by_type: list[tuple[type, list[Any]]] = [(bool, [True, False]), (float, [0.5]), (int, [1, 2])]
     return next((values for kind, values in by_type if kind in (hint, *get_args(hint))), [])
 
 
@@ -114,8 +114,9 @@ def test_every_play_that_ships_can_be_saved_and_read_back_whatever_its_parameter
             continue
         built += 1
         text = tree_yaml(root, play)
-        assert tree_differences(root, build(text), VOCABULARY) == [], parameters
-        assert write_yaml(describe_tree(build(text), VOCABULARY, play)) == text
+        again = build(text)
+        assert tree_differences(root, again, VOCABULARY) == [], parameters
+        assert write_yaml(describe_tree(again, VOCABULARY, play)) == text
     assert built >= len(parameters_of(builder))
 
 
@@ -145,7 +146,7 @@ def test_values_of_all_kinds_are_saved_and_read_back(root: Behaviour) -> None:
     heading=st.none() | st.floats(allow_nan=False, allow_infinity=False),
     name=st.text(min_size=1, max_size=20).filter(lambda name: name.isprintable() and name.strip()),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_whatever_a_skill_is_made_from_is_saved_and_read_back(
     target: Any, heading: float | None, name: str
 ) -> None:
