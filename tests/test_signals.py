@@ -166,5 +166,5 @@ def test_who_swallows_every_exception_is_ended_by_force(start_python: StartPytho
     began = time.monotonic()
     process.send_signal(signal.SIGTERM)
     assert process.wait(20) == 128 + signal.SIGTERM
-    assert time.monotonic() - began < 5.0
+    assert time.monotonic() - began < 15.0
     assert process.stdout.readline() == "robots stopped\n"

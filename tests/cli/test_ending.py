@@ -100,7 +100,7 @@ def robobt(*arguments: object) -> Result:
 def in_a_process(*arguments: object) -> subprocess.CompletedProcess[str]:
     """The same in a process of its own."""
     command = [sys.executable, "-m", "robobt", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 
 def soon(what: Callable[[], bool]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, pi
+from statistics import median
 
 import pytest
 
@@ -93,11 +94,13 @@ def test_vision_that_is_later_than_it_tells_can_be_reckoned_with(endpoints: Endp
         ) as world,
     ):
         world.reset(START, 0)
+        errors = []
         for _ in range(60):
             world.act({ME: RobotCommand(1.5)})
-        me, robot = world.observe().own[0], simulator.robots[ME]
-        # Two thirds of what the delay alone would make it: threads do not keep time well.
-        assert abs(me.x - robot.x) + abs(me.y - robot.y) < 0.035
+            me, robot = world.observe().own[0], simulator.robots[ME]
+            errors.append(abs(me.x - robot.x) + abs(me.y - robot.y))
+        # Two thirds of what the delay alone would make it, most of the time: threads do not keep time well.
+        assert median(errors[30:]) < 0.035
 
 
 def test_vision_that_is_started_anew_is_played_on_with_where_people_place_the_robots(

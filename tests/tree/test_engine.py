@@ -366,8 +366,8 @@ def test_a_tree_that_is_too_deep_is_told_so(depth: int) -> None:
 def test_many_siblings_of_one_name_are_told_apart_in_no_time() -> None:
     nodes = [Success("same") for _ in range(20_000)]
     root = Sequence("root", memory=False, children=nodes)
-    before = time.perf_counter()
+    before = time.process_time()
     ids = node_ids(preorder(root))
-    assert time.perf_counter() - before < 2.0
+    assert time.process_time() - before < 2.0
     assert [path for _, path in ids[1:4]] == ["root/same", "root/same#2", "root/same#3"]
     assert len({path for _, path in ids}) == 20_001

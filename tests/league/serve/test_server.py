@@ -54,8 +54,8 @@ def server(endpoints: Endpoints) -> Iterator[SimServer]:
 
 
 def eventually(look: Callable[[], Answer | None]) -> Answer:
-    """What ``look`` finds within two seconds."""
-    end = time.monotonic() + 2.0
+    """What ``look`` finds, soon or on a busy machine late."""
+    end = time.monotonic() + 20.0
     while time.monotonic() < end:
         found = look()
         if found:
@@ -115,7 +115,7 @@ def test_stamps_advance_with_the_simulated_time_however_busy_the_machine_is(
     field = ServedField(DIVISION_B, Placement({ME: (0.0, 0.0, 0.0)}))
 
     def busy(_: ServedField) -> None:
-        if server.frames in (3, 20):
+        if server.frames in (3, 6):
             time.sleep(0.4)
 
     with (
@@ -126,7 +126,7 @@ def test_stamps_advance_with_the_simulated_time_however_busy_the_machine_is(
         server.run(1.2, on_step=busy)
         seen = [read_vision(packet.data, PacketCounts()) for packet in vision.receive()]
         tracked = [read_tracked(packet.data, DIVISION_B, PacketCounts()) for packet in tracker.receive()]
-    assert server.frames == len(seen) == len(tracked) > 20
+    assert server.frames == len(seen) == len(tracked) > 6
     assert server.kept < 0.8
     stamps = [packet.frame.captured for packet in seen if packet is not None and packet.frame is not None]
     assert stamps == [start + number * ServedField.period for number in range(1, len(seen) + 1)]

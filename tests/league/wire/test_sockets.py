@@ -16,7 +16,7 @@ GROUP = "224.5.23.2"
 
 def received(receiver: Receiver, expected: int = 1) -> list[Packet]:
     packets: list[Packet] = []
-    end = time.monotonic() + 2.0
+    end = time.monotonic() + 20.0
     while len(packets) < expected and time.monotonic() < end:
         packets += receiver.receive()
         time.sleep(0.001)
@@ -67,7 +67,7 @@ def test_a_packet_of_another_machine_is_dropped_and_counted(
     monkeypatch.setattr("robobt.league.wire.sockets._can_bind", lambda _: False)
     with Sender("127.0.0.1", receiver.port) as sender:
         sender.send(b"hello")
-        end = time.monotonic() + 2.0
+        end = time.monotonic() + 20.0
         while not receiver.counts.foreign and time.monotonic() < end:
             assert list(receiver.receive()) == []
     assert receiver.counts.foreign == 1
@@ -88,7 +88,7 @@ def test_answers_of_anybody_else_are_left_out(receiver: Receiver) -> None:
             stranger.sendto(b"not asked", question.sender)
         receiver.answer(b"answer", question.sender)
         answers: list[bytes] = []
-        end = time.monotonic() + 2.0
+        end = time.monotonic() + 20.0
         while not answers and time.monotonic() < end:
             answers += sender.answers()
         assert answers == [b"answer"]

@@ -55,12 +55,12 @@ def archive(*members: tuple[str, bytes]) -> bytes:
 
 
 def refused(path: Path, said: str = ".") -> None:
-    before = time.monotonic()
+    before = time.process_time()
     with pytest.raises(ModelError, match=said) as caught:
         load_policy(path)
     assert str(caught.value).startswith(f"{path}: ")
     assert len(str(caught.value).splitlines()) == 1
-    assert time.monotonic() - before < 5.0
+    assert time.process_time() - before < 5.0
 
 
 def harmless(name: str = "Attack") -> bytes:

@@ -192,7 +192,7 @@ def kill_after(start_python: StartPython, path: Path, rows: int, workers: int) -
     command = ["-m", "robobt", "collect", "shots", "-n", "80", "--seed", "5"]
     growing = path if path.suffix == ".csv" else path.with_name(path.name + ".csv")
     process = start_python(*command, "--out", path, "-w", workers)
-    until = time.monotonic() + 60.0
+    until = time.monotonic() + 300.0
     while process.poll() is None and time.monotonic() < until:
         if growing.exists() and growing.read_bytes().count(b"\n") > rows:
             break
