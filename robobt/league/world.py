@@ -265,7 +265,8 @@ class LeagueWorld(World):
         if now - self._feed.heard > _STALE:
             commands = {robot: RobotCommand() for robot in commands}
         self._link.send(commands, now)
-        self._feed.filter.sent(self._feed.vision_now() + self.settings.realism.command_delay, commands)
+        effect = self.settings.realism.command_delay + self.settings.limits.reaction
+        self._feed.filter.sent(self._feed.vision_now() + effect, commands)
         self.send_times.append(self._clock())
         self._sent_at = now
 

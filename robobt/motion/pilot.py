@@ -7,8 +7,9 @@ solved for the speed at the *end* of a control period, so that the robot brakes
 neither a period too late, which overshoots, nor too early, which creeps.
 
 A robot that reacts late (``reaction`` of its limits) is driven as if at a longer
-control period: what is commanded now stands until the next command takes effect.
-Planned for the control period alone, it would swing about its target.
+control period: what was commanded before takes effect first, and what is commanded
+now stands until the next command does. Planned for the control period alone, it would
+swing about its target.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def drive(
     dx, dy = target[0] - me.x, target[1] - me.y
     distance = hypot(dx, dy)
     vx = vy = 0.0
-    stands = period + me.limits.reaction
+    stands = period + 2.0 * me.limits.reaction
     if distance > 0.0:
         ux, uy = dx / distance, dy / distance
         bearing = atan2(uy, ux) - me.heading
@@ -114,7 +115,7 @@ def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float
         limits.max_turn,
         limits.turn_acceleration,
         limits.angular_braking,
-        period + me.limits.reaction,
+        period + 2.0 * me.limits.reaction,
     )
     if limits.turn_acceleration < me.limits.turn_acceleration:
         step = limits.turn_acceleration * (period + me.limits.reaction)

@@ -135,7 +135,7 @@ _GRSIM = SimSettings(
         turn_acceleration=50.0,
         catch_speed=0.6,
         hold_acceleration=50.0,
-        reaction=2 / 60,
+        reaction=1 / 60,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6),

@@ -96,7 +96,7 @@ class DribbleTo(Skill):
                 limits.max_speed,
                 acceleration,
                 acceleration,
-                frame.period + me.limits.reaction,
+                frame.period + 2.0 * me.limits.reaction,
             )
             # Only a ball that is pushed stays: the robot turns first and drives as it faces the way.
             speed *= max(0.0, cos(wrap_angle(heading - me.heading))) ** 2
