@@ -16,7 +16,7 @@ _SLIVER = 1e-9
 
 
 def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | None:
-    """Return the directions from ``origin`` to the right and left post, either ``inset`` nearer [rad].
+    """Return the directions from ``origin`` to the right and the left post [rad], ``inset`` further in [m].
 
     None from a point on or behind the goal line.
     """
