@@ -125,13 +125,20 @@ def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[N
         if not _told.waiting:
             check()
 
+    def on_unraisable(ignored: sys.UnraisableHookArgs) -> None:
+        # It came while something was deleted or collected, and is raised again.
+        if not isinstance(ignored.exc_value, Terminated | KeyboardInterrupt):
+            report(ignored)
+
     before = {number: signal.getsignal(number) or signal.SIG_DFL for number in numbers}
+    report, sys.unraisablehook = sys.unraisablehook, on_unraisable
     try:
         for number, handler in before.items():
             if number == signal.SIGINT or handler is not signal.SIG_IGN:
                 signal.signal(number, on_signal)
         yield
     finally:
+        sys.unraisablehook = report
         for number, handler in before.items():
             signal.signal(number, handler)
         _told.number, _told.waiting = None, False

@@ -97,6 +97,24 @@ def test_what_was_swallowed_is_raised_at_the_next_check() -> None:
     check()
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_one_that_comes_while_something_is_deleted_prints_nothing_and_is_raised(
+    number: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    class Deleted:
+        def __del__(self) -> None:
+            send(number)
+            time.sleep(0.01)
+
+    def block() -> None:
+        for _ in range(2):
+            Deleted()
+            check()
+
+    assert isinstance(raised_by(block), SystemExit | KeyboardInterrupt)
+    assert capfd.readouterr().err == ""
+
+
 def test_signals_that_come_together_are_one() -> None:
     """As a service manager sends SIGTERM and SIGHUP: the second must not break the way out."""
     done = []
