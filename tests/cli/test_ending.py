@@ -275,7 +275,9 @@ def test_a_match_over_the_network_stops_its_robots_before_it_ends(tmp_path: Path
         ended = robobt(*six_v_six(endpoints, recording))
         assert soon(lambda: told_to_stop(last))
     assert ended.exit_code == 128 + number
-    assert ended.output.count("\n") == 1
+    # A busy machine may have been told before that it is too slow.
+    assert ended.output.splitlines()[-1].startswith("robobt: ")
+    assert "Traceback" not in ended.output
     assert recording.read_bytes().endswith(WHOLE)
 
 
