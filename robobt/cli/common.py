@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from robobt.config.errors import ConfigError, RobobtError
 from robobt.signals import Terminated, at_the_latest_after, ending
@@ -224,7 +224,7 @@ def print_json(data: Mapping[str, object]) -> None:
     sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
 
 
-def table(*columns: str) -> Table:
+def table(*columns: str | Column) -> Table:
     """Return an empty table without lines, to be printed on ``console``."""
     return Table(*columns, box=None, padding=(0, 2, 0, 0))
 

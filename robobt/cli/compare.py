@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Callable
 from dataclasses import asdict
@@ -10,6 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.markup import escape
+from rich.table import Column
 
 from robobt.cli.common import (
     Imports,
@@ -75,16 +78,17 @@ def compare(
     """Play variants of a scenario from the same starts with the same seeds, and compare them pair by pair.
 
     Each of --blue, --yellow and --world may be given often: all combinations are
-    played, the first is what the others are compared with. Intervals are of 95 %.
+    played, the first is what the others are compared with. An empty text ("") is
+    the scenario as it is. Intervals are of 95 %.
 
     Keys of --json: scenario, seed, trials; variants, by what was varied: trials,
     distinct (trials that differ from each other), scored (trials in which blue
-    scores: count, rate, low, high), outcomes, to_ball and to_kick (seconds until a
-    robot of blue has the ball, and has kicked it: n, mean, variance);
-    against_first, null for the first: scored, goals (blue's less yellow's), to_ball
-    and to_kick, each a difference with n, mean, low and high; only_this and
-    only_first (trials in which blue scores in one of both only), p (McNemar, exact)
-    and holm (p corrected for the number of variants).
+    scores: count, rate, low, high), outcomes, to_ball and to_kick (seconds until
+    a robot of blue has the ball, and has kicked it: n, mean, variance);
+    against_first, null for the first: scored, goals (blue's less yellow's),
+    to_ball and to_kick, each a difference with n, mean, low and high; only_this
+    and only_first (trials in which blue scores in one of both only), p (McNemar,
+    exact) and holm (p corrected for the number of variants).
     """
     from robobt.experiments.compare import compare as compared
     from robobt.match import load_scenario
@@ -97,20 +101,21 @@ def compare(
         raise typer.BadParameter("needs two variants: give --blue, --yellow or --world more than once")
     count = base.trials if trials is None else trials
     used = base.seed if seed is None else seed
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+    if out is not None and out.exists() and not out.is_dir():
+        raise typer.BadParameter(f"'{out}' is not a folder", param_hint="--out")
     results: dict[str, list[MatchResult]] = {}
     with Progress("compare", count * len(variants)) as progress:
         for label, (variant, address) in variants.items():
-            name = re.sub(r"[^\w.-]+", "_", label)
-            file = None if out is None else out / f"{name}.jsonl"
+            file = None if out is None else out / _file_name(label)
             results[label] = _played(variant, address, count, used, workers, file, progress.advance)
     found = compared(results)
     if as_json:
         figures = {label: asdict(one) for label, one in found.items()}
         print_json({"scenario": base.name, "seed": used, "trials": count, "variants": figures})
         return
-    console.print(f"[bold]{base.name}[/bold]: {count} trials a variant, seed {used}")
+    console.print(
+        f"[bold]{escape(base.name)}[/bold]: {count} trial{'s' if count > 1 else ''} a variant, seed {used}"
+    )
     _print(found)
 
 
@@ -136,11 +141,17 @@ def _variants(
     found = {}
     for blue, yellow, world in product(blues, yellows, worlds):
         varied = [(blue, len(blues)), (yellow, len(yellows)), (world, len(worlds))]
-        label = " | ".join([text for text, options in varied if options > 1])
+        label = " | ".join([text or "as it is" for text, options in varied if options > 1])
         if label in found:
             raise typer.BadParameter(f"{label!r} is given twice")
         found[label] = (with_teams(base, blue, yellow), world)
     return found
+
+
+def _file_name(label: str) -> str:
+    """Return a name of printable characters, not too long for a folder, that no other label has."""
+    digest = hashlib.blake2b(label.encode(), digest_size=4).hexdigest()
+    return f"{re.sub(r'[^A-Za-z0-9.-]+', '_', label)[:100].strip('_.')}_{digest}.jsonl"
 
 
 def _played(
@@ -170,12 +181,14 @@ def _played(
 
 
 def _print(found: dict[str, Compared]) -> None:
-    rates = table("variant", "blue scores", "95 % interval", "to the ball", "to the kick")
+    rates = table(
+        Column("variant", overflow="fold"), "blue scores", "95 % interval", "to the ball", "to the kick"
+    )
     for label, one in found.items():
         if one.distinct < one.trials:
             warn(f"{label}: only {one.distinct} of {one.trials} trials differ; vary the starts or add noise")
         rates.add_row(
-            label,
+            escape(label),
             f"{one.scored.count} of {one.trials}",
             "-" if one.distinct == 1 < one.trials else f"{one.scored.low:.0%} to {one.scored.high:.0%}",
             "-" if one.to_ball.mean is None else f"{one.to_ball.mean:.3f} s",
@@ -183,13 +196,14 @@ def _print(found: dict[str, Compared]) -> None:
         )
     console.print(rates)
     (first, _), *others = found.items()
-    gaps = table(f"less {first}", "", "difference", "95 % interval", "p", "Holm's p")
+    console.print(f"\nless [bold]{escape(first)}[/bold]:")
+    gaps = table(Column("variant", overflow="fold"), "", "difference", "95 % interval", "p", "Holm's p")
     for label, one in others:
         against = one.against_first
         assert against is not None
         tested = (f"{against.p:.2g}", f"{against.holm:.2g}")
-        gaps.add_row(label, "blue scores", *_texts(against.scored, 100.0, " points"), *tested)
-        gaps.add_row("", "", f"{against.only_this} only here, {against.only_first} only there")
+        gaps.add_row(escape(label), "blue scores", *_texts(against.scored, 100.0, " points"), *tested)
+        gaps.add_row("", "", f"{against.only_this} only here", f"{against.only_first} only there")
         gaps.add_row("", "goals", *_texts(against.goals, 1.0, ""))
         gaps.add_row("", "to the ball", *_texts(against.to_ball, 1.0, " s"))
         gaps.add_row("", "to the kick", *_texts(against.to_kick, 1.0, " s"))

@@ -71,9 +71,13 @@ class LeagueFactory:
         address: see :func:`parse_address`.
         settings: returns the settings of a scenario's simulator, with the preset of the physics there
             in place of its own if one is given.
+
+    Attributes:
+        address: as given; results that are kept name it.
     """
 
     def __init__(self, address: str, settings: Callable[[Scenario, str | None], SimSettings]) -> None:
+        self.address = address
         self._connection, physics = parse_address(address)
         self._physics = physics or _PHYSICS.get(self._connection.simulator)
         self._settings = settings

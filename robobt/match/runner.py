@@ -101,7 +101,8 @@ def run_trials(
     )
     results: dict[int, MatchResult] = {}
     interrupted = False
-    with ResultsFile(out, scenario, seed) if out is not None else nullcontext() as file:
+    world = getattr(world_factory, "address", None)
+    with ResultsFile(out, scenario, seed, world) if out is not None else nullcontext() as file:
         try:
             for trial, result in sorted(file.done.items() if file is not None else ()):
                 if trial < trials and trial not in record:

@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
+from robobt.cli.common import console
 
 QUICK = ("--trials", "2", "--set", "ends.time_limit=0.3", "--workers", "1")
 
@@ -48,7 +49,34 @@ def test_the_figures_are_printed_as_tables() -> None:
     shown = run("compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed=0.5", *QUICK)
     assert "striker_vs_goalie: 2 trials a variant, seed 1" in shown
     assert "less attack_main" in shown
-    assert "0 only here, 0 only there" in " ".join(shown.split())
+    assert "0 only here 0 only there" in " ".join(shown.split())
+
+
+def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(console, "width", 80)
+    speeds = (
+        "--blue",
+        "attack_main:dribble_speed=1.25,speed=0.5",
+        "--blue",
+        "attack_main:dribble_speed=1.25,speed=0.75",
+    )
+    first, second = run("compare", "striker_vs_goalie", "--blue", "", *speeds, *QUICK).split("less as it is:")
+    for part in (first, second):
+        unwrapped = "".join(line.split()[0] for line in part.splitlines() if line[:1].strip())
+        assert "…" not in part
+        assert "speed=1.25,speed=0.5attack" in unwrapped
+        assert "speed=1.25,speed=0.75" in unwrapped
+
+
+def test_variants_with_names_alike_get_files_of_their_own(tmp_path: Path) -> None:
+    tree = "play: mine\ntree: Stop\n"
+    alike = [tmp_path / "my play.yaml", tmp_path / "my_play.yaml", tmp_path / ("my" * 120 + ".yaml")]
+    for path in alike:
+        path.write_text(tree)
+    out = tmp_path / "kept"
+    plays = [option for path in alike for option in ("--blue", str(path))]
+    run("compare", "striker_vs_goalie", *plays, *QUICK, "--out", out)
+    assert len(list(out.iterdir())) == 3
 
 
 def test_trials_that_are_the_same_match_are_told() -> None:
@@ -61,6 +89,8 @@ def test_trials_that_are_the_same_match_are_told() -> None:
     ("options", "problem"),
     [
         ((), "needs two variants"),
+        (("--blue", "attack_main", "--blue", "", "--out", __file__), "is not a folder"),
+        (("--set", " =3"), "there is no such field"),
         (("--blue", "attack_main", "--blue", "attack_main"), "is given twice"),
         (("--blue", "attack_man", "--blue", "attack_nn"), "no play is called 'attack_man'"),
         (("--blue", ":sped=1", "--blue", "attack_nn"), "no such parameter"),

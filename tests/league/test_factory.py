@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robobt.league.factory import AddressError, LeagueFactory, parse_address
+from robobt.league.serve.publishing import PublishingFactory
 from robobt.match import Scenario, load_scenario
 from robobt.sim import SimSettings, preset
 from robobt.world.game import Team
@@ -84,3 +85,9 @@ def test_another_physics_keeps_what_the_scenario_changes() -> None:
     settings = scenario_settings(scenario, "erforce")
     assert settings.limits == preset("erforce").limits
     assert settings.kicker.max_speed == 7.5
+
+
+def test_factories_know_their_address() -> None:
+    factory = LeagueFactory("league://grsim?speed=2", scenario_settings)
+    assert factory.address == "league://grsim?speed=2"
+    assert PublishingFactory(factory).address == factory.address

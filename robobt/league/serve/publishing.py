@@ -82,10 +82,14 @@ class PublishedWorld(WrappedWorld):
 
 
 class PublishingFactory:
-    """Publishes the worlds that another factory makes; each one ends the publication of the previous."""
+    """Publishes the worlds that another factory makes; each one ends the publication of the previous.
+
+    ``address`` is that of the other factory, None where it has none.
+    """
 
     def __init__(self, factory: WorldFactory, endpoints: Endpoints | None = None) -> None:
         self._factory, self._endpoints = factory, endpoints
+        self.address: str | None = getattr(factory, "address", None)
         self._world: PublishedWorld | None = None
 
     def __call__(self, scenario: Scenario) -> PublishedWorld:

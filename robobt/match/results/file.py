@@ -30,8 +30,14 @@ class ResultsFileError(RobobtError, ValueError):
 class ResultsFile:
     """A results file that is open for appending. A context manager.
 
-    A file that exists is continued when it holds the same scenario, seed and
+    A file that exists is continued when it holds the same scenario, seed, world and
     version; damaged lines are dropped, and their trials played again.
+
+    Args:
+        path: the file.
+        scenario: what is played.
+        seed: seed of the run.
+        world: address of the world it is played in; None for the built-in simulator.
 
     Attributes:
         done: results the file held already, by trial.
@@ -41,7 +47,7 @@ class ResultsFile:
         OSError: it cannot be read or written.
     """
 
-    def __init__(self, path: str | Path, scenario: Scenario, seed: int) -> None:
+    def __init__(self, path: str | Path, scenario: Scenario, seed: int, world: str | None = None) -> None:
         self.path = Path(path)
         self.done: dict[int, MatchResult] = {}
         head: dict[str, object] = {
@@ -51,6 +57,8 @@ class ResultsFile:
             "seed": seed,
             "robobt": __version__,
         }
+        if world is not None:
+            head["world"] = world
         self.path.parent.mkdir(parents=True, exist_ok=True)
         # A pipe or a device is read for ever.
         if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
@@ -121,9 +129,10 @@ class ResultsFile:
     def _check_head(self, found: object, head: dict[str, object]) -> None:
         if not isinstance(found, dict) or found.get("format") != FORMAT:
             raise ResultsFileError(f"{self.path}: not a file of results; give another name")
-        for key, value in head.items():
-            if found.get(key) != value:
-                what = "another version of the scenario" if key == "digest" else f"{key} {found.get(key)!r}"
+        for key in dict.fromkeys([*head, "world"]):
+            if found.get(key) != head.get(key):
+                there = found.get(key, "sim" if key == "world" else None)
+                what = "another version of the scenario" if key == "digest" else f"{key} {there!r}"
                 raise ResultsFileError(f"{self.path}: holds results of {what}; give another name")
 
 

@@ -24,8 +24,9 @@ def changed(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
     """
     for name, value in changes.items():
         owner, _, field = name.partition(".")
-        if owner.split(maxsplit=1)[0] in list(Team):
-            scenario = _with_robot(scenario, " ".join(owner.split()), field, value)
+        words = owner.split()
+        if words and words[0] in list(Team):
+            scenario = _with_robot(scenario, " ".join(words), field, value)
         else:
             scenario = _with_field(scenario, name, value)
     return scenario

@@ -4,9 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from robobt.match import MatchResult, RobotResult, summarise
+from robobt.match import MatchResult, RobotResult, Scenario, run_trials, summarise
 from robobt.match.results.file import ResultsFile, ResultsFileError
 from robobt.match.scenario.scenario import scenario_from
+from robobt.world.protocol import World
+from robobt.worlds import sim_world
 from tests.match.scripted import data
 
 
@@ -151,6 +153,24 @@ class TestResultsFile:
             ResultsFile(path, scenario_from(data(period=0.03), "test.yaml"), 0)
         with pytest.raises(ResultsFileError, match="scenario 'test'"):
             ResultsFile(path, scenario_from(data(name="other"), "test.yaml"), 0)
+
+    def test_results_of_another_world_are_not_continued(self, tmp_path: Path):
+        class Factory:
+            address = "league://grsim"
+
+            def __call__(self, scenario: Scenario) -> World:
+                return sim_world(scenario)
+
+        path = tmp_path / "results.jsonl"
+        scenario = self.scenario.lasting(0.1)
+        run_trials(scenario, sim_world, 1, out=path)
+        with pytest.raises(ResultsFileError, match="holds results of world 'sim'"):
+            run_trials(scenario, Factory(), 1, out=path)
+        path.unlink()
+        run_trials(scenario, Factory(), 1, out=path)
+        assert len(run_trials(scenario, Factory(), 2, out=path).results) == 2
+        with pytest.raises(ResultsFileError, match="holds results of world 'league://grsim'"):
+            run_trials(scenario, sim_world, 1, out=path)
 
     def test_another_tree_in_the_same_file_is_another_scenario(self, tmp_path: Path):
         tree, path = tmp_path / "tree.yaml", tmp_path / "results.jsonl"
