@@ -151,7 +151,7 @@ def say_hint(hint: object) -> str:
 
 
 def _say_default(default: object) -> str:
-    return "none" if default is None else repr(str(default)) if isinstance(default, str) else f"{default}"
+    return "null" if default is None else repr(str(default)) if isinstance(default, str) else f"{default}"
 
 
 def members_of(hint: object) -> set[object]:

@@ -45,7 +45,7 @@ def test_parameters_are_listed_with_type_and_default() -> None:
     assert [str(parameter) for parameter in parameters_of(drive)] == [
         "speed: float",
         "style: 'calm' | 'keen' = 'calm'",
-        "limits: Limits | none = none",
+        "limits: Limits | none = null",
         "name: str = ''",
     ]
     assert [str(parameter) for parameter in parameters_of(Skill)] == [
