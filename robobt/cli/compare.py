@@ -176,6 +176,8 @@ def _played(
     with world_of(address) as factory:
         run = run_trials(scenario, factory, count, processes, seed, out, {}, on_result)
     if run.interrupted:
+        goes_on = "without --out nothing is kept" if out is None else "the same command goes on with it"
+        warn(f"stopped; {goes_on}")
         raise typer.Exit(130)
     return list(run.results)
 

@@ -245,10 +245,11 @@ def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: in
         )
     console.print(listed)
     console.print(_times(summary) if scenario.referee is None else _goals(summary))
+    pace = summary.real_time_factor
     goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
     say(
         f"Goals: {goals}. Mean time {summary.time.mean:.1f} s, ball in play {summary.in_play:.0%} of it. "
-        f"{summary.real_time_factor:.0f} times real time a core. Trace {summary.trace}."
+        f"{pace:.{0 if pace >= 10.0 else 1}f} times real time a core. Trace {summary.trace}."
     )
     for name, robot in summary.robots.items():
         if robot.errors:

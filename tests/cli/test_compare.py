@@ -107,6 +107,21 @@ def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem:
     assert "Traceback" not in shown.output
 
 
+@pytest.mark.parametrize(("kept", "told"), [(False, "nothing is kept"), (True, "the same command goes on")])
+def test_a_run_that_is_stopped_says_what_is_kept(
+    kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("robobt.match.runner.play_match", stopped)
+    out = ("--out", str(tmp_path)) if kept else ()
+    given = ["compare", "striker_vs_goalie", "--blue", "", "--blue", "attack_nn", *QUICK, *out]
+    shown = CliRunner().invoke(app, given)
+    assert shown.exit_code == 130
+    assert told in " ".join(shown.stderr.split())
+
+
 def test_match_takes_the_same_changes() -> None:
     short = ("match", "striker_vs_goalie", "--trials", "1", "--set", "ends.time_limit=0.3", "--json")
     said = json.loads(run(*short, "--blue", "attack_nn", "--set", "simulator.preset=grsim"))
