@@ -224,9 +224,9 @@ def print_json(data: Mapping[str, object]) -> None:
     sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
 
 
-def table(*columns: str | Column) -> Table:
-    """Return an empty table without lines, to be printed on ``console``."""
-    return Table(*columns, box=None, padding=(0, 2, 0, 0))
+def table(*columns: str) -> Table:
+    """Return an empty table without lines, to be printed on ``console``; long words are broken, not cut."""
+    return Table(*[Column(name, overflow="fold") for name in columns], box=None, padding=(0, 2, 0, 0))
 
 
 class Progress:

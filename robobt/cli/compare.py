@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
-from rich.table import Column
 
 from robobt.cli.common import (
     Imports,
@@ -183,9 +182,7 @@ def _played(
 
 
 def _print(found: dict[str, Compared]) -> None:
-    rates = table(
-        Column("variant", overflow="fold"), "blue scores", "95 % interval", "to the ball", "to the kick"
-    )
+    rates = table("variant", "blue scores", "95 % interval", "to the ball", "to the kick")
     for label, one in found.items():
         if one.distinct < one.trials:
             warn(f"{label}: only {one.distinct} of {one.trials} trials differ; vary the starts or add noise")
@@ -199,7 +196,7 @@ def _print(found: dict[str, Compared]) -> None:
     console.print(rates)
     (first, _), *others = found.items()
     console.print(f"\nless [bold]{escape(first)}[/bold]:")
-    gaps = table(Column("variant", overflow="fold"), "", "difference", "95 % interval", "p", "Holm's p")
+    gaps = table("variant", "", "difference", "95 % interval", "p", "Holm's p")
     for label, one in others:
         against = one.against_first
         assert against is not None

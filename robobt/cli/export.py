@@ -113,14 +113,15 @@ def _data(file: ModelFile) -> dict[str, object]:
 
 
 def _print_table(files: list[ModelFile]) -> None:
-    listed = table("model", "format", "kind", "skill", "observation", "KiB", "held-out results")
+    listed = table("model", "kind", "skill", "observation", "KiB", "held-out results")
     listed.columns[0].no_wrap = True
     for file in files:
         card = file.card
-        figures = [f"{name} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()][:2]
+        figures = [
+            f"{name.replace('_', ' ')} {_figure(one.value, one.unit)}" for name, one in card.held_out.items()
+        ][:2]
         listed.add_row(
             escape(card.name),
-            file.format,
             card.kind.replace("_", " "),
             escape(card.skill),
             escape(f"{card.observation.name} v{card.observation.version}"),
@@ -145,8 +146,7 @@ def _print_whole(file: ModelFile) -> None:
         "seed": "" if card.seed is None else str(card.seed),
         "code": card.code_version,
         "written by": card.created_by,
-        "environment": _assignments(card.environment),
-        "training": _assignments(card.training),
+        "settings": "--json has those of its environment and training",
     }
     for title, text in lines.items():
         if text:
