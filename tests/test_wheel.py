@@ -38,6 +38,7 @@ def run(unpacked: Path, where: Path, code: str) -> str:
     return done.stdout
 
 
+@pytest.mark.integration
 def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert (unpacked / "robobt" / "py.typed").exists()
     assert list((unpacked / "robobt" / "_data" / "scenarios").glob("*.yaml"))

@@ -30,7 +30,9 @@ class RobotLimits(Settings):
     hold_acceleration: float = Field(
         3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"
     )
-    reaction: float = Field(0.0, ge=0, le=0.2, description="from a command to its effect on the robot [s]")
+    reaction: float = Field(
+        0.0, ge=0, le=0.05, description="time that the robot itself takes from a command to its effect [s]"
+    )
 
     @property
     def lateral_acceleration(self) -> float:

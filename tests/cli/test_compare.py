@@ -20,6 +20,7 @@ def run(*options: object) -> str:
     return shown.output
 
 
+@pytest.mark.integration
 def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> None:
     plays = ("--blue", "attack_main", "--blue", "attack_main:speed=0.5, rater=open_angle")
     keepers = ("--yellow", ":speed=1.0", "--yellow", ":speed=0.5")
@@ -68,6 +69,7 @@ def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.Mon
         assert "speed=1.25,speed=0.75" in unwrapped
 
 
+@pytest.mark.integration
 def test_variants_with_names_alike_get_files_of_their_own(tmp_path: Path) -> None:
     tree = "play: mine\ntree: Stop\n"
     alike = [tmp_path / "my play.yaml", tmp_path / "my_play.yaml", tmp_path / ("my" * 120 + ".yaml")]

@@ -54,6 +54,7 @@ def test_it_is_printed_as_tables_and_as_json(tmp_path: Path):
     assert set(said["speeds"]) == {"half", "full"}
 
 
+@pytest.mark.integration
 def test_the_judged_goal_line_is_a_picture(tmp_path: Path):
     judged_goal_line("half", 3, tmp_path / "line.png")
     assert (tmp_path / "line.png").read_bytes()[:4] == PNG

@@ -346,6 +346,7 @@ def test_an_exception_comes_through_as_it_is() -> None:
         compile_tree(Sequence("s", memory=False, children=[Bad("bad")]))()
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("depth", [200, 201, 500, 20_000])
 def test_a_tree_that_is_too_deep_is_told_so(depth: int) -> None:
     root: Behaviour = Success("leaf")

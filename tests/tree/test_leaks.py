@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 
+import pytest
 from py_trees.blackboard import Blackboard
 from py_trees.common import ParallelPolicy
 
@@ -43,6 +44,7 @@ def live_and_die(count: int) -> None:
             runner.tick()
 
 
+@pytest.mark.integration
 def test_hundreds_of_trees_leave_nothing_behind() -> None:
     live_and_die(20)
     gc.collect()

@@ -26,6 +26,7 @@ def follow(clock: FieldClock, rate: float, origin: float, late: list[float], sec
     return there - (origin + seconds * rate)
 
 
+@pytest.mark.integration
 @given(rates, origins)
 def test_a_steady_clock_is_known_exactly(rate: float, origin: float) -> None:
     clock = FieldClock()
@@ -41,6 +42,7 @@ def test_delays_cost_no_more_than_they_are(rate: float, late: list[float]) -> No
     assert -most * rate - 0.002 <= error <= (most - least) * rate + 0.002
 
 
+@pytest.mark.integration
 @given(rates, delays, origins)
 def test_origins_do_not_matter(rate: float, late: list[float], origin: float) -> None:
     moved = follow(FieldClock(), rate, origin, late)

@@ -20,6 +20,7 @@ from robobt.worlds import sim_world
 from tests.league.served import free_endpoints
 
 
+@pytest.mark.integration
 def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
     endpoints = free_endpoints()
     scenario = load_scenario("three_v_three").lasting(0.8)

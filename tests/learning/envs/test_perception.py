@@ -92,6 +92,7 @@ def test_the_balls_velocity_is_differenced_too() -> None:
     assert seen[0, 2] == pytest.approx((made.arenas.balls[0, 0] - before) / 0.03)
 
 
+@pytest.mark.integration
 def test_parameters_are_drawn_evenly_from_their_ranges_for_each_episode() -> None:
     ranges = {
         "friction": (0.5, 2.0),

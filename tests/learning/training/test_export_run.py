@@ -79,6 +79,7 @@ def test_the_exported_policy_is_the_runs_best_actor(run: Path, tmp_path: Path) -
         np.testing.assert_allclose(load_policy(path)(inputs), wanted, atol=1e-6)
 
 
+@pytest.mark.integration
 def test_it_is_a_skill_at_once(run: Path, tmp_path: Path) -> None:
     (path,) = export_run(run, "mine", tmp_path, starts=5)
     leaf = GoToBall if run.name == "go_to_ball" else Shoot

@@ -444,6 +444,7 @@ def test_what_stands_after_the_end_is_refused(path: Path) -> None:
         load_recording(path)
 
 
+@pytest.mark.integration
 def test_spoiled_files_load_or_raise_one_error(path: Path) -> None:
     record(path, ticks=8)
     data = path.read_bytes()

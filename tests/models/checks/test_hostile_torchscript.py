@@ -294,6 +294,7 @@ PICKLES = {
 }
 
 
+@pytest.mark.integration
 @pytest.mark.parametrize("what", PICKLES)
 def test_a_pickle_that_torch_would_not_write_is_refused(what: str, tmp_path: Path) -> None:
     refused(plain(tmp_path, PLAIN, PICKLES[what]))

@@ -685,6 +685,7 @@ def test_the_line_is_that_of_the_element() -> None:
     assert caught.value.file == "test.xml"
 
 
+@pytest.mark.integration
 def test_a_small_file_does_not_become_a_large_tree() -> None:
     twice = '<Sequence><SubTree ID="T{0}"/><SubTree ID="T{0}"/></Sequence>'
     trees = "".join(f'<BehaviorTree ID="T{n}">{twice.format(n + 1)}</BehaviorTree>' for n in range(40))

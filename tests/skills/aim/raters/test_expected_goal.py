@@ -27,6 +27,7 @@ def test_an_aim_near_a_post_is_worth_less_than_one_inside():
     assert open_goal[0] < open_goal[8]
 
 
+@pytest.mark.integration
 def test_a_robot_in_the_lane_stops_the_shot():
     assert chances(robot(3.5, 0.0, pi))[47] == 0.0
 
