@@ -49,8 +49,8 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
         _, *arguments = shlex.split(command)
         done = CliRunner().invoke(app, [*arguments, *(fewer if arguments[0] == "train" else [])])
         assert done.exit_code == 0, f"{command}: {done.output}"
-    assert (tmp_path / "match.html").stat().st_size > 10_000
-    assert (tmp_path / "six.html").stat().st_size > 100_000
+    assert (tmp_path / "out/match.html").stat().st_size > 10_000
+    assert (tmp_path / "out/six.html").stat().st_size > 100_000
 
 
 def test_the_python_in_it_runs_and_plays(capsys: pytest.CaptureFixture[str]) -> None:
