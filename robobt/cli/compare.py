@@ -83,7 +83,8 @@ def compare(
     Keys of --json: scenario, seed, trials; variants, by what was varied: trials,
     distinct (trials that differ from each other), scored (trials in which blue
     scores: count, rate, low, high), outcomes, to_ball and to_kick (seconds until
-    a robot of blue has the ball, and has kicked it: n, mean, variance);
+    a robot of blue has the ball, and has kicked it: n, mean, variance), errors
+    (ticks in which a robot's tree failed), first_error;
     against_first, null for the first: scored, goals (blue's less yellow's),
     to_ball and to_kick, each a difference with n, mean, low and high; only_this
     and only_first (trials in which blue scores in one of both only), p (McNemar,
@@ -186,6 +187,8 @@ def _print(found: dict[str, Compared]) -> None:
     for label, one in found.items():
         if one.distinct < one.trials:
             warn(f"{label}: only {one.distinct} of {one.trials} trials differ; vary the starts or add noise")
+        if one.errors:
+            warn(f"{label}: trees failed in {one.errors} ticks; the first: {one.first_error}")
         rates.add_row(
             escape(label),
             f"{one.scored.count} of {one.trials}",

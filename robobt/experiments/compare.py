@@ -18,7 +18,7 @@ class Difference:
     Attributes:
         n: trials that both have the figure in.
         mean: mean difference, this less the first; None without such a trial.
-        low, high: its interval; None where the trials do not differ or are fewer than two.
+        low, high: its interval; None where the trials, or the differences, are all the same.
     """
 
     n: int
@@ -59,6 +59,7 @@ class Compared:
         scored: trials in which blue scores.
         outcomes: how the trials ended.
         to_ball, to_kick: as in :class:`AgainstFirst` [s].
+        errors: ticks in which a robot's tree failed; ``first_error`` is the first, None without one.
         against_first: None for the first variant.
     """
 
@@ -68,6 +69,8 @@ class Compared:
     outcomes: Mapping[str, int]
     to_ball: Spread
     to_kick: Spread
+    errors: int
+    first_error: str | None
     against_first: AgainstFirst | None
 
 
@@ -113,6 +116,7 @@ def _paired(
 
 
 def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Compared:
+    failed = [(name, robot) for result in results for name, robot in result.robots.items() if robot.errors]
     return Compared(
         len(results),
         _distinct(results),
@@ -120,6 +124,8 @@ def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Co
         dict(Counter(result.outcome for result in results).most_common()),
         Spread.of(map(_to_ball, results)),
         Spread.of(map(_to_kick, results)),
+        sum(robot.errors for _, robot in failed),
+        f"{failed[0][0]}: {failed[0][1].first_error}" if failed else None,
         against,
     )
 
@@ -160,6 +166,6 @@ def _difference(values: Iterable[tuple[float | None, float | None]], alike: bool
     gaps = [this - first for this, first in values if this is not None and first is not None]
     if not gaps:
         return Difference(0, None, None, None)
-    if alike or len(gaps) == 1:
+    if alike or len(set(gaps)) == 1:
         return Difference(len(gaps), fmean(gaps), None, None)
     return Difference(len(gaps), fmean(gaps), *mean_interval(gaps))

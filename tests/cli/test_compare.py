@@ -124,6 +124,19 @@ def test_a_run_that_is_stopped_says_what_is_kept(
     assert told in " ".join(shown.stderr.split())
 
 
+def test_a_tree_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def bursts(_: object) -> None:
+        raise ZeroDivisionError("mine")
+
+    monkeypatch.setattr("robobt.skills.aim.select_shot.SelectShot.on_running", bursts)
+    shown = " ".join(
+        run("compare", "striker_vs_goalie", "--blue", ":speed=0.5", "--blue", "take_shot", *QUICK).split()
+    )
+    assert ":speed=0.5: trees failed in" in shown
+    assert "ZeroDivisionError: mine" in shown
+    assert "take_shot: trees failed in" not in shown
+
+
 def test_match_takes_the_same_changes() -> None:
     short = ("match", "striker_vs_goalie", "--trials", "1", "--set", "ends.time_limit=0.3", "--json")
     said = json.loads(run(*short, "--blue", "attack_nn", "--set", "simulator.preset=grsim"))

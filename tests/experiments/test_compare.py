@@ -52,6 +52,21 @@ def test_trials_that_repeat_one_another_give_no_interval() -> None:
     assert (against.scored.low, against.scored.high, against.to_kick.low) == (None, None, None)
 
 
+def test_differences_that_are_all_the_same_give_no_interval() -> None:
+    trials = [trial(n, goal=n < 2) for n in range(5)]
+    against = compare({"a": trials, "b": trials})["b"].against_first
+    assert against is not None
+    assert (against.goals.mean, against.goals.low, against.goals.high) == (0.0, None, None)
+
+
+def test_failed_trees_are_counted() -> None:
+    failing = trial(0, goal=True)
+    failing.robots["blue 0"].errors, failing.robots["blue 0"].first_error = 3, "Burst: ValueError"
+    found = compare({"a": [trial(0, goal=True)], "b": [failing]})
+    assert (found["a"].errors, found["a"].first_error) == (0, None)
+    assert (found["b"].errors, found["b"].first_error) == (3, "blue 0: Burst: ValueError")
+
+
 def test_p_is_corrected_for_the_number_of_variants() -> None:
     base = [trial(n, goal=False) for n in range(8)]
     found = compare(
