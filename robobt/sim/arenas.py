@@ -44,6 +44,8 @@ class Arenas:
         sub_steps: physics steps a control period.
         arena_parameters, robot_parameters, wheel_parameters: what the kernels use; columns are
             named in :mod:`robobt.sim.columns`. Writing to them randomises arenas.
+        delay: from a command to its effect [s].
+        late: whether that is after the period in which the command was given.
         switch: (n,) sub-step of a period from which a command is in force, the
             part of the command delay beyond whole periods; may be written to as well.
     """
@@ -95,8 +97,12 @@ class Arenas:
         self._spin = np.zeros((n, 2))
         self._twist = np.zeros((n, 1))
         self._cooldown = np.zeros((n, count))
-        delay = round(settings.realism.command_delay / self.dt)
+        self.delay = settings.realism.command_delay
+        if settings.wheels is None:  # which react late by themselves
+            self.delay += settings.limits.reaction
+        delay = round(self.delay / self.dt)
         self.switch: NDArray[np.int64] = np.full(n, delay % self.sub_steps, dtype=np.int64)
+        self.late = delay >= self.sub_steps
         # The command in force before the switch, the one after it, and those still on their way.
         self._pipeline = [np.zeros((n, count, COMMAND)) for _ in range(delay // self.sub_steps + 2)]
 

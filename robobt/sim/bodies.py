@@ -8,6 +8,7 @@ from math import acos, cos, pi, sin
 import pymunk
 
 from robobt.sim.columns import SOFT
+from robobt.sim.robot_settings import BodySettings
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
@@ -22,6 +23,9 @@ BEYOND = 0.5
 _HULL_CORNERS = 24
 _PLATE = 0.006
 """Thickness of the plate that forms a robot's flat front [m]."""
+
+_RECESS = 0.025
+"""How far behind the front of a mouth between jaws the hull begins [m]."""
 
 # Collision categories: robots meet robots as discs and the ball with their hull.
 _DISC, _HULL, _BALL, _STATIC = 1, 2, 4, 8
@@ -65,8 +69,8 @@ def fill(
         "goal": (contact.goal_restitution, contact.goal_friction),
         "goal_back": (contact.goal_back_restitution, contact.goal_friction),
     }
-    hull = _hull(body.face - _PLATE)
-    plate = _plate(body.face)
+    hull = _hull(body.face - (_PLATE if body.jaws is None else _RECESS))
+    plate = _plate(body.face, body.mouth_width / 2 if body.jaws is not None else None)
     bodies = []
     for origin_x, origin_y in origins:
         for (x0, y0, x1, y1), kind in walls:
@@ -80,9 +84,11 @@ def fill(
             robot.position = (origin_x, origin_y + 3 * ROBOT_RADIUS * (i + 1))
             hull_parts: list[pymunk.Shape]
             if settings.shell is None:
-                hull_parts = [pymunk.Poly(robot, hull), pymunk.Poly(robot, plate)]
-                _finish(hull_parts[0], contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
-                _finish(hull_parts[1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
+                hull_parts = [pymunk.Poly(robot, hull), *_jaws(robot, body)]
+                for part in hull_parts:
+                    _finish(part, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
+                hull_parts.append(pymunk.Poly(robot, plate))
+                _finish(hull_parts[-1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
             else:
                 # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
                 hull_parts = [pymunk.Circle(robot, settings.shell.core - SOFT)]
@@ -127,7 +133,21 @@ def _hull(chord: float) -> list[tuple[float, float]]:
     return [ends[0], *[(radius * cos(angle), radius * sin(angle)) for angle in angles], ends[1]]
 
 
-def _plate(face: float) -> list[tuple[float, float]]:
+def _plate(face: float, half: float | None) -> list[tuple[float, float]]:
     """Return the flat front as a thin box, so that it can be of another material than the hull."""
-    half = (ROBOT_RADIUS**2 - face**2) ** 0.5
+    if half is None:
+        half = (ROBOT_RADIUS**2 - face**2) ** 0.5
     return [(face - 2 * _PLATE, -half), (face, -half), (face, half), (face - 2 * _PLATE, half)]
+
+
+def _jaws(robot: pymunk.Body, body: BodySettings) -> list[pymunk.Shape]:
+    """Return what stands beside a mouth that lies back, with rounded corners: one part a side, or none."""
+    if body.jaws is None:
+        return []
+    rounding = body.jaws.rounding
+    radius, front = ROBOT_RADIUS - rounding, body.jaws.front - rounding
+    back, inner = body.face - _RECESS, body.jaws.opening / 2 + rounding
+    first, last = acos(front / radius), acos(back / radius)
+    angles = [first + (last - first) * i / 5 for i in range(6)]
+    outline = [(back, inner), (front, inner), *[(radius * cos(a), radius * sin(a)) for a in angles]]
+    return [pymunk.Poly(robot, [(x, side * y) for x, y in outline], radius=rounding) for side in (1, -1)]

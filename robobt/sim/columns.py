@@ -59,8 +59,17 @@ ROBOT_PARAMETERS = 7
     SOFTNESS,
     FRONT_FRICTION,
     HULL_FRICTION,
-) = range(25)
-ARENA_PARAMETERS = 25
+    ROLLER,
+    ROLLER_FRICTION,
+    GROUND_FRICTION,
+    BOUNCE_DRIVEN,
+    BOUNCE_IDLE,
+    BOUNCE_HULL,
+    JAW,
+    HALF_OPENING,
+    ROUNDING,
+) = range(34)
+ARENA_PARAMETERS = 34
 
 # Columns of the parameters of an arena's robots' wheels; those from LOAD_REST on are four, one a wheel.
 (
@@ -107,13 +116,25 @@ def arena_row(settings: SimSettings) -> FloatArray:
     row[BALL_R] = BALL_RADIUS
     row[ROBOT_R] = ROBOT_RADIUS
     row[BALL_M] = ball.mass
+    if dribbler.kind == "roller":
+        row[ROLLER] = dribbler.roller_speed
+        row[ROLLER_FRICTION] = dribbler.roller_friction
+        row[GROUND_FRICTION] = dribbler.ground_friction
+        row[BOUNCE_DRIVEN] = dribbler.roller_restitution
+        row[BOUNCE_IDLE] = settings.contact.front_restitution
+        row[BOUNCE_HULL] = settings.contact.hull_restitution
+    row[HULL_FRICTION] = settings.contact.hull_friction
+    row[JAW] = body.face
+    if body.jaws is not None:
+        row[JAW] = body.jaws.front
+        row[HALF_OPENING] = body.jaws.opening / 2
+        row[ROUNDING] = body.jaws.rounding
     if settings.shell is not None:
         row[CORE] = settings.shell.core
         row[SOLID] = settings.shell.core - SOFT
         row[HALF_WHEEL] = settings.shell.wheel_width / 2
         row[SOFTNESS] = settings.shell.softness
         row[FRONT_FRICTION] = settings.contact.front_friction
-        row[HULL_FRICTION] = settings.contact.hull_friction
     return row
 
 

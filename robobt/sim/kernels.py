@@ -20,19 +20,21 @@ from robobt.sim.columns import (
     BALL_R,
     CORE,
     DRIBBLE,
-    FACE,
     GLUE,
     IDLE_HOLD,
+    JAW,
     KICK,
     MASS,
     ON_CONTACT,
     REACH,
     RECHARGE,
     ROBOT_R,
+    ROLLER,
     SENSOR,
 )
 from robobt.sim.motion import drive, friction
 from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick
+from robobt.sim.roller import CONTACTS, SCRATCH, roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import HELD, drive_wheels
@@ -63,7 +65,7 @@ def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch:
         reach = p[ROBOT_R] + p[BALL_R] + _TOUCH
         if px * px + py * py > reach * reach:
             continue
-        if cos(row[2]) * px + sin(row[2]) * py > p[FACE] + p[BALL_R] + _TOUCH:
+        if cos(row[2]) * px + sin(row[2]) * py > p[JAW] + p[BALL_R] + _TOUCH:
             continue
         if found < 0 or found == touch[a]:
             found = i
@@ -170,6 +172,8 @@ def control_tick(
     move = np.zeros(2)
     pull = np.zeros(2)
     hit = np.zeros(3)
+    driven = np.zeros(robots)
+    contacts = np.zeros((robots, CONTACTS, SCRATCH))
     target = np.zeros((arenas, 2))
     kicked[:] = False
     for step in range(sub_steps):
@@ -177,13 +181,13 @@ def control_tick(
             first = a * width
             p = arena_parameters[a]
             ball = rows[first + robots]
-            velocity = ball_velocity[a]
-            spin = ball_spin[a]
+            velocity, spin, twist = ball_velocity[a], ball_spin[a], ball_twist[a]
             commands = new[a] if step >= switch[a] else old[a]
             glued = -1
             held = fired = False
             pull[0] = pull[1] = 0.0
             for i in range(robots):
+                driven[i] = 0.0
                 command = commands[i]
                 robot = rows[first + i]
                 begins = False
@@ -208,7 +212,7 @@ def control_tick(
                         held = False
                         pull[0] = pull[1] = 0.0
                         continue
-                    if command[ON_CONTACT] == 0.0:
+                    if command[ON_CONTACT] == 0.0 and p[ROLLER] == 0.0:
                         command[KICK] = 0.0
                 if fired:
                     continue
@@ -219,6 +223,8 @@ def control_tick(
                     if wheels[a, i, HELD] > 0.0:
                         held = True
                         glued = i
+                elif p[ROLLER] > 0.0:
+                    driven[i] = command[DRIBBLE]
                 elif command[DRIBBLE] > 0.0:
                     if in_mouth(ball, robot, p, p[REACH]):
                         held = True
@@ -251,14 +257,14 @@ def control_tick(
                 velocity[1] += pull[1] * dt
                 move[0] = spin[0] = velocity[0]
                 move[1] = spin[1] = velocity[1]
+            elif p[ROLLER] > 0.0 and roll(ball, velocity, spin, twist, rows, first, driven, contacts, p, dt):
+                move[0], move[1] = velocity[0], velocity[1]
             else:
                 friction(velocity, spin, p, dt, move)
             if glued < 0 and p[CORE] > 0.0:
                 before_x, before_y = velocity[0], velocity[1]
                 for i in range(robots):
-                    meet(
-                        ball, velocity, spin, ball_twist[a], rows[first + i], p, wheel_parameters[a], dt, hit
-                    )
+                    meet(ball, velocity, spin, twist, rows[first + i], p, wheel_parameters[a], dt, hit)
                 if velocity[0] != before_x or velocity[1] != before_y:
                     # Pushed, it moves as it leaves the contact: what friction took is made up for.
                     move[0], move[1] = velocity[0], velocity[1]

@@ -10,6 +10,14 @@ from robobt.config.validation import Settings
 from robobt.world.state import ROBOT_RADIUS
 
 
+class JawSettings(Settings):
+    """Where the body goes on beside and ahead of the mouth, so that the ball lies in a notch."""
+
+    front: float = Field(0.0789, gt=0.03, lt=ROBOT_RADIUS, description="centre to the jaws' front [m]")
+    opening: float = Field(0.0722, gt=0.05, le=0.16, description="width between the jaws [m]")
+    rounding: float = Field(0.004, ge=0, le=0.01, description="radius of their corners [m]")
+
+
 class BodySettings(Settings):
     """A robot's body: a disc cut flat at the front, with the mouth in the flat."""
 
@@ -21,6 +29,7 @@ class BodySettings(Settings):
     sensor_depth: float = Field(
         0.01, gt=0.0005, le=0.03, description="gap to the front that still counts [m]"
     )
+    jaws: JawSettings | None = Field(None, description="beside a mouth that lies back; none without")
 
 
 class WheelSettings(Settings):
@@ -77,9 +86,11 @@ class DribblerSettings(Settings):
     ball is lost when holding it would take more: turning at w with the ball's
     centre at distance L needs w^2 L, driving backwards needs the robot's own
     acceleration. ``glue`` carries the ball rigidly, as grSim's hinge does.
+    ``roller`` does not pull: a driven roller spins the ball backwards, and the
+    ground drives the spinning ball against it, as in ER-Force's simulator.
     """
 
-    kind: Literal["force", "glue"] = "force"
+    kind: Literal["force", "glue", "roller"] = "force"
     pull: float = Field(4.0, ge=0, le=200, description="largest pull towards the front [m/s^2]")
     side: float = Field(6.0, ge=0, le=200, description="largest sideways acceleration [m/s^2]")
     reach: float = Field(0.012, gt=0, le=0.1, description="gap up to which it pulls [m]")
@@ -89,6 +100,14 @@ class DribblerSettings(Settings):
         ge=0,
         le=200,
         description="as pull and side, with the dribbler off and the robot not backing away [m/s^2]",
+    )
+    roller_speed: float = Field(1.05, gt=0, le=20, description="of a roller's surface [m/s]")
+    roller_friction: float = Field(1.5, ge=0, le=5, description="coefficient of ball and roller")
+    roller_restitution: float = Field(
+        0.1, ge=0, le=1, description="of ball and driven roller; an idle one has the front's"
+    )
+    ground_friction: float = Field(
+        0.35, ge=0, lt=1, description="coefficient of the ground and a ball at a roller"
     )
 
 

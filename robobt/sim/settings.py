@@ -16,6 +16,7 @@ from robobt.config.validation import Settings
 from robobt.sim.robot_settings import (
     BodySettings,
     DribblerSettings,
+    JawSettings,
     KickerSettings,
     ShellSettings,
     WheelSettings,
@@ -168,7 +169,7 @@ PRESETS: dict[str, SimSettings] = {
     ),
     "erforce": SimSettings(
         ball=BallSettings(mass=0.046, slide_deceleration=3.9, switch_share=0.645, roll_deceleration=0.36),
-        body=BodySettings(mass=1.5, face=0.0635, mouth_width=0.07, sensor_depth=0.0015),
+        body=BodySettings(mass=1.5, face=0.064, mouth_width=0.07, sensor_depth=0.0015, jaws=JawSettings()),
         limits=RobotLimits(
             max_speed=3.0,
             acceleration=6.6,
@@ -177,12 +178,22 @@ PRESETS: dict[str, SimSettings] = {
             side_braking=6.0,
             max_turn=10.0,
             turn_acceleration=60.0,
-            catch_speed=0.3,
-            hold_acceleration=0.55,
+            catch_speed=0.5,
+            hold_acceleration=0.35,
+            reaction=0.02,
         ),
-        dribbler=DribblerSettings(kind="force", pull=0.74, side=3.0, reach=0.02),
+        dribbler=DribblerSettings(kind="roller"),
         kicker=KickerSettings(max_speed=6.5),
-        contact=ContactSettings(front_restitution=0.2, hull_restitution=0.6, wall_restitution=0.3),
+        contact=ContactSettings(
+            front_restitution=0.2,
+            hull_restitution=0.6,
+            wall_restitution=0.3,
+            wall_friction=0.35,
+            robot_restitution=0.36,
+            robot_friction=0.05,
+        ),
+        # Commands take effect after 47 ms, of which pilots plan with 20: with more they brake too early.
+        realism=RealismSettings(command_delay=0.027),
     ),
     "sumatra": SimSettings(
         ball=BallSettings(slide_deceleration=2.46, switch_share=0.64, roll_deceleration=0.29),

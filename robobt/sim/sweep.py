@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-from robobt.sim.columns import BALL_R, FACE, ROBOT_R, SOLID
+from robobt.sim.columns import BALL_R, FACE, HALF_OPENING, JAW, ROBOT_R, SOLID
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 
@@ -60,7 +60,7 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
 @compiled
 def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
     """Return when in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
-    radius, round_, face = p[BALL_R], p[ROBOT_R], p[FACE]
+    radius, round_, face, inner = p[BALL_R], p[ROBOT_R], p[JAW], p[HALF_OPENING]
     if p[SOLID] > 0.0:
         t_in, t_out = _meets_disc(x, y, dx, dy, p[SOLID] + radius)
         return t_in if 0.0 < t_in <= t_out and t_in < 1.0 else 1.0
@@ -68,16 +68,22 @@ def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> flo
     first = 1.0
     if dx < 0.0 and x > face + radius:
         t = (x - face - radius) / -dx
-        if t < first and abs(y + t * dy) <= half:
+        if t < first and inner <= abs(y + t * dy) <= half:
+            first = t
+    if inner > 0.0 and dx < 0.0 and x > p[FACE] + radius:
+        # Between the jaws, the ball goes on to where the mouth lies back.
+        t = (x - p[FACE] - radius) / -dx
+        if t < first and abs(y + t * dy) <= inner:
             first = t
     t_in, t_out = _meets_disc(x, y, dx, dy, round_ + radius)
     # The disc counts only where it is not cut off.
     if 0.0 < t_in <= t_out and t_in < first and x + t_in * dx <= face * (round_ + radius) / round_:
         first = t_in
-    for corner in (half, -half):
-        t_in, t_out = _meets_disc(x - face, y - corner, dx, dy, radius)
-        if 0.0 < t_in <= t_out and t_in < first:
-            first = t_in
+    for edge in (half, inner):
+        for corner in (edge, -edge):
+            t_in, t_out = _meets_disc(x - face, y - corner, dx, dy, radius)
+            if edge > 0.0 and 0.0 < t_in <= t_out and t_in < first:
+                first = t_in
     return first
 
 

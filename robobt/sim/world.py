@@ -143,6 +143,10 @@ class SimWorld(World):
         if self._delayed or self._noisy or self._lossy:
             self._report = self._perceive()
 
+    def seen_kicks(self) -> list[tuple[RobotId, float]] | None:
+        """See :meth:`robobt.world.World.seen_kicks`; a kick that comes ticks after its command is told."""
+        return [(robot, self.time) for robot in self.kicks] if self._arenas.late else None
+
     def step_bare(self) -> None:
         """Step the physics engine through one period without frames or commands, for benchmarks."""
         self._arenas.step_bare()

@@ -54,6 +54,14 @@ def ball_offset(world: SimWorld) -> tuple[float, float]:
     return hypot(dx, dy), degrees(wrap_angle(atan2(dy, dx) - me.heading))
 
 
+def kick(world: SimWorld, speed: float) -> None:
+    """Command a kick for one period, and go on until it has happened; robots may react late."""
+    world.act({ME: RobotCommand(kick_speed=speed)})
+    while not world.kicks:
+        assert world.time < 1.0, "it never kicked"
+        world.act({})
+
+
 def time_lost(world: SimWorld, command: RobotCommand, seconds: float = 3.0) -> float | None:
     """When the ball, held at first, is more than 30 mm or 45 degrees from its place; None when it is kept."""
     place = world.settings.body.face + BALL_RADIUS

@@ -96,18 +96,6 @@ def test_rsim_loses_the_ball_without_dribbler_at_any_spin() -> None:
     assert time_lost(holding("rsim"), RobotCommand(omega=5)) is not None
 
 
-@pytest.mark.parametrize(("rate", "lost"), [(1, None), (2, None), (3, 0.7), (5, 0.35)])
-def test_erforce_holds_and_loses_the_ball_as_measured(rate: float, lost: float | None) -> None:
-    when = time_lost(holding("erforce"), turning(rate))
-    assert when == (None if lost is None else pytest.approx(lost, rel=0.2))
-
-
-def test_erforce_loses_the_ball_when_reversing() -> None:
-    when = time_lost(holding("erforce"), RobotCommand(vx=-0.5, dribbler=True))
-    assert when is not None
-    assert when <= 0.2
-
-
 def test_a_stronger_dribbler_wins_the_ball() -> None:
     # Two robots face each other with the ball between; blue backs away and pulls, yellow does not pull.
     settings = preset("default")

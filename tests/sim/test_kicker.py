@@ -10,20 +10,17 @@ from hypothesis import strategies as st
 
 from robobt.sim import preset
 from robobt.world import BALL_RADIUS, KickTrigger, RobotCommand
-from tests.sim.rig import ME, holding, one_robot
+from tests.sim.rig import ME, holding, kick, one_robot
 
 NOW, ON_CONTACT = KickTrigger.NOW, KickTrigger.ON_CONTACT
-
-
-def kicked_speed(world: object, command: RobotCommand) -> float:
-    world.act({ME: command})
-    return world.truth().ball.speed
 
 
 @pytest.mark.parametrize("name", ["default", "erforce", "sumatra", "robobulls", "grsim", "rsim"])
 def test_no_kick_is_faster_than_the_presets_cap(name: str) -> None:
     cap = preset(name).kicker.max_speed
-    speed = kicked_speed(holding(name), RobotCommand(kick_speed=50.0))
+    world = holding(name)
+    kick(world, 50.0)
+    speed = world.truth().ball.speed
     assert speed <= cap
     assert speed == pytest.approx(cap, rel=0.02)
 

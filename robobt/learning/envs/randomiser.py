@@ -32,7 +32,6 @@ class Randomiser:
         self._robot_parameters = arenas.robot_parameters.copy()
         self._grip = arenas.wheel_parameters[:, sim.MU_TANGENT].copy()
         self._mass = settings.simulator.body.mass
-        self._own_delay = settings.simulator.realism.command_delay
         longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
         self._delay: IntArray = np.zeros(n, dtype=np.int64)
         # Whole periods of delay wait here; the rest is the arenas' own switch.
@@ -63,7 +62,7 @@ class Randomiser:
             for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):
                 arenas.weigh(arena, self._mass * factor)
         if ranges.control_delay != (0.0, 0.0):
-            sub_steps = np.rint((delay + self._own_delay % arenas.period) / arenas.dt).astype(np.int64)
+            sub_steps = np.rint((delay + arenas.delay % arenas.period) / arenas.dt).astype(np.int64)
             arenas.switch[which] = sub_steps % arenas.sub_steps
             self._delay[which] = sub_steps // arenas.sub_steps
             self._waiting[:, which] = 0.0

@@ -91,7 +91,9 @@ def script(task: ArenaTask) -> Teacher:
     """Return the script that does this task."""
     if isinstance(task, ShootTask):
         dribbler = task.settings.simulator.dribbler
-        pull = np.inf if dribbler.kind == "glue" else _CAREFUL * dribbler.pull
+        kind, simulator = dribbler.kind, task.settings.simulator
+        held = dribbler.pull if kind == "force" else simulator.limits.hold_acceleration
+        pull = np.inf if kind == "glue" else _CAREFUL * held
         return _Script(lambda observation: turn_and_kick(observation, task.action, pull))
     return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
 
