@@ -13,7 +13,7 @@ from robobt.cli.common import Json, console, errors, print_json, say, table, war
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robobt.models.file import ModelFile
+    from robobt.models.file import Format, ModelFile
 
 
 def export(
@@ -25,7 +25,10 @@ def export(
     onnx: Annotated[
         bool, typer.Option("--onnx", help="Write an ONNX file beside the TorchScript one.")
     ] = False,
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("models"),
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder to write to; by default that of the run.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a model that is there already.")] = False,
     as_json: Json = False,
 ) -> None:
     """Write the best policy of a training run as a model file that skills load.
@@ -33,7 +36,8 @@ def export(
     The file holds the network, which takes the raw observation in SI units and
     answers an action in [-1, 1], and its model card. It is loaded again and
     compared with the network before it takes its place, and its checksum is
-    entered in the folder's manifest.
+    entered in the folder's manifest. By its name alone it is found in the working folder, in its
+    folder 'models' and in those that ROBOBT_MODELS lists.
 
     Keys of --json: files, a list as 'robobt models --json' prints it.
     """
@@ -41,7 +45,8 @@ def export(
     from robobt.models.file import read_model_file
 
     with errors.status(f"exporting {escape(str(run))}"):
-        files = export_run(run, name, out, ("torchscript", "onnx") if onnx else ("torchscript",))
+        formats: tuple[Format, ...] = ("torchscript", "onnx") if onnx else ("torchscript",)
+        files = export_run(run, name, run if out is None else out, formats, force=force)
     read = [read_model_file(path) for path in files]
     if as_json:
         print_json({"files": [_data(file) for file in read]})
@@ -61,7 +66,7 @@ def models(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """List the models: those that ship, and those of other folders.
+    """List the models: those that ship, those in the working folder and in ROBOBT_MODELS, and further ones.
 
     Files are checked as far as that goes without running them: checksums, archive, card.
 
@@ -69,15 +74,16 @@ def models(
     the manifest beside it lists it) and card; problems: a line for each file that is no
     intact model.
     """
-    from robobt.config.resources import models_folder
-    from robobt.models.file import ModelError, find_model, list_models, read_model_file
+    from robobt.models.file import ModelError, find_model, list_models, model_folders, read_model_file
 
     if name is not None:
         paths = [find_model(name)]
     else:
-        paths = list_models(models_folder())
-        for extra in path or ():
+        paths = []
+        # What else lies in the working folder need not be a model.
+        for extra in (*[folder for folder in model_folders() if folder != Path()], *(path or ())):
             paths += list_models(extra) if extra.is_dir() else [extra]
+        paths = list({path.resolve(): path for path in paths}.values())
     found: list[ModelFile] = []
     problems: list[str] = []
     for each in paths:
@@ -113,7 +119,7 @@ def _data(file: ModelFile) -> dict[str, object]:
 
 
 def _print_table(files: list[ModelFile]) -> None:
-    listed = table("model", "kind", "skill", "observation", "KiB", "held-out results")
+    listed = table("model", "skill", "algorithm", "observation", "KiB", "held-out results")
     listed.columns[0].no_wrap = True
     for file in files:
         card = file.card
@@ -122,8 +128,8 @@ def _print_table(files: list[ModelFile]) -> None:
         ][:2]
         listed.add_row(
             escape(card.name),
-            card.kind.replace("_", " "),
             escape(card.skill),
+            escape(card.algorithm),
             escape(f"{card.observation.name} v{card.observation.version}"),
             f"{file.size / 1024:.0f}",
             escape(", ".join(figures)),
@@ -138,6 +144,7 @@ def _print_whole(file: ModelFile) -> None:
         "file": f"{file.path} ({file.format}, {file.size} bytes)",
         "SHA-256": file.sha256,
         "skill": f"{card.skill} ({card.kind.replace('_', ' ')})",
+        "algorithm": card.algorithm,
         "observation": f"{card.observation.name} version {card.observation.version}: "
         + ", ".join(card.observation.features),
         "outputs": ", ".join([f"{one.name} ({_figure(one.scale, one.unit)})" for one in card.outputs]),

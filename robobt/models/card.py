@@ -107,6 +107,7 @@ class ModelCard(Settings):
     action: ActionScaling | None = Field(None, description="how a policy's output becomes a command")
     period: float | None = Field(None, gt=0, le=1, description="control period in training [s]")
     limits: RobotLimits | None = Field(None, description="limits of the robot it was trained on")
+    algorithm: str = Field("", max_length=64, description='what it was trained with ("ddpg", "d4pg+td3")')
     environment: dict[str, object] = Field({}, description="settings of the environment, or of the data")
     training: dict[str, object] = Field({}, description="settings of the learner")
     seed: int | None = Field(None, description="what training's randomness followed from")

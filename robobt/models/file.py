@@ -10,6 +10,7 @@ with a card among its extra files, has no such seal; its members' CRCs have to d
 
 from __future__ import annotations
 
+import os
 import re
 import stat
 import zipfile
@@ -118,19 +119,37 @@ def read_model_file(path: str | Path) -> ModelFile:
 def find_model(name_or_path: str | Path) -> Path:
     """Return the file of a model.
 
+    A name without a suffix is looked for among the shipped models, in the working folder, in its
+    folder ``models`` and in those that the environment variable ``ROBOBT_MODELS`` lists.
+
     Raises:
-        UnknownModelError: no shipped model has that name.
+        UnknownModelError: there is no model with that name.
+        ModelError: there are several.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
         return Path(name_or_path)
-    folder = models_folder()
-    for suffix in SUFFIXES.values():
-        path = folder / f"{text}{suffix}"
-        if path.is_file():
-            return path
-    there = ", ".join(sorted({path.stem for path in list_models(folder)})) or "none"
+    folders = model_folders()
+    found: dict[Path, Path] = {}
+    for folder in folders:
+        for suffix in SUFFIXES.values():
+            path = folder / f"{text}{suffix}"
+            if path.is_file():
+                found.setdefault(folder.resolve(), path)
+    if len(found) > 1:
+        several = ", ".join(map(str, found.values()))
+        raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
+    for path in found.values():
+        return path
+    there = ", ".join(sorted({path.stem for folder in folders for path in list_models(folder)})) or "none"
     raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+
+
+def model_folders() -> list[Path]:
+    """Return the folders in which models are found by their names, the shipped ones first."""
+    named = os.environ.get("ROBOBT_MODELS", "")
+    extra = [Path(part) for part in named.split(os.pathsep) if part]
+    return [models_folder(), Path(), Path("models"), *extra]
 
 
 def list_models(folder: Path) -> list[Path]:

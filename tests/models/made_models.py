@@ -121,9 +121,9 @@ def write_model(
             path = write_model(folder, module, card, formats)
             load_policy(path)
             return path
-    return export_model(
-        network() if module is None else module, go_to_ball_card() if card is None else card, folder, formats
-    )[0]
+    module = network() if module is None else module
+    card = go_to_ball_card() if card is None else card
+    return export_model(module, card, folder, formats, force=True)[0]
 
 
 def sealed(folder: Path, members: dict[str, bytes]) -> Path:

@@ -17,7 +17,7 @@ from robobt.learning.agents.networks import Actor
 from robobt.models import export
 from robobt.models.export import export_model
 from robobt.models.file import MANIFEST, Format, ModelError, list_models, read_manifest, read_model_file
-from robobt.models.policy import load_policy
+from robobt.models.policy import Policy, load_policy
 from tests.models.made_models import go_to_ball_card, network, predictor_card
 
 SCALE = (1.0, 1.0, 3.0, 1.5, 1.5, 1.4)
@@ -129,9 +129,50 @@ def test_what_was_there_stays_when_an_export_fails(tmp_path: Path, monkeypatch: 
 
     monkeypatch.setattr(export, "_onnx", full)
     with pytest.raises(OSError, match="No space"):
-        export_model(network(seed=4), go_to_ball_card(), tmp_path, ("torchscript", "onnx"))
+        export_model(network(seed=4), go_to_ball_card(), tmp_path, ("onnx",), force=True)
     assert {name: (tmp_path / name).read_bytes() for name in os.listdir(tmp_path)} == before
     assert load_policy(path).card.name == "small"
+
+
+def test_a_model_is_never_replaced_without_being_told_to(tmp_path: Path) -> None:
+    (path,) = export_model(network(), go_to_ball_card(), tmp_path)
+    before = path.read_bytes()
+    with pytest.raises(ModelError, match=r"small.pt: is there already; .*--force"):
+        export_model(network(seed=4), go_to_ball_card(), tmp_path, ("onnx", "torchscript"))
+    assert path.read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == [MANIFEST, "small.pt"]
+    export_model(network(seed=4), go_to_ball_card(), tmp_path, force=True)
+    assert path.read_bytes() != before
+
+
+@pytest.mark.parametrize("formats", [("torchscript", "onnx"), ("onnx", "torchscript")])
+def test_the_format_that_succeeds_is_written_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, formats: tuple[Format, Format]
+) -> None:
+    def unknown(*_: object) -> bytes:
+        raise RuntimeError("no such operator")
+
+    monkeypatch.setattr(export, "_onnx", unknown)
+    with pytest.raises(ModelError, match=r"small.onnx: .*no such operator; written all the same: .*small.pt"):
+        export_model(network(), go_to_ball_card(), tmp_path, formats)
+    assert load_policy(tmp_path / "small.pt").card.name == "small"
+    assert set(read_manifest(tmp_path)) == {"small.pt"}
+
+
+def test_onnx_may_round_as_single_precision_does_and_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Answers up to 1: an answer 5e-6 off is rounding, one 5e-5 off is another network."""
+    right = Policy.__call__
+
+    def off_by(gap: float) -> None:
+        monkeypatch.setattr(Policy, "__call__", lambda self, inputs: right(self, inputs) + gap)
+
+    off_by(5e-6)
+    export_model(network(), go_to_ball_card("rounded"), tmp_path, ("onnx",))
+    off_by(5e-5)
+    with pytest.raises(ModelError, match="off those of the network"):
+        export_model(network(), go_to_ball_card("other"), tmp_path, ("onnx",))
 
 
 def test_a_full_disk_is_told_with_the_files_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,7 +189,7 @@ def test_a_full_disk_is_told_with_the_files_name(tmp_path: Path, monkeypatch: py
 def test_the_manifest_keeps_the_models_of_other_exports(tmp_path: Path) -> None:
     export_model(network(), go_to_ball_card("first"), tmp_path)
     export_model(network(), go_to_ball_card("second"), tmp_path, ("onnx",))
-    export_model(network(seed=2), go_to_ball_card("first"), tmp_path)
+    export_model(network(seed=2), go_to_ball_card("first"), tmp_path, force=True)
     assert set(read_manifest(tmp_path)) == {"first.pt", "second.onnx"}
     for path in list_models(tmp_path):
         assert read_model_file(path).sha256 == read_manifest(tmp_path)[path.name]

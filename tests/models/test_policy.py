@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 import warnings
 import zipfile
@@ -221,12 +222,31 @@ def test_a_model_trained_on_another_version_of_its_observation_is_refused(tmp_pa
 
 def test_a_name_that_is_none_lists_those_there_are(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(model_file, "models_folder", lambda: tmp_path)
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(UnknownModelError, match="installed: none"):
         load_policy("nobody")
     write_model(tmp_path, network(10, 2), shoot_card("somebody"))
     assert load_policy("somebody").card.skill == "Shoot"
     with pytest.raises(UnknownModelError, match="installed: somebody"):
         load_policy("nobody")
+
+
+@pytest.mark.parametrize("place", ["", "models", "named"])
+def test_a_users_model_is_found_by_its_name(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, place: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROBOBT_MODELS", os.pathsep.join(["", "nowhere", str(tmp_path / "named")]))
+    path = write_model(tmp_path / place, network(), go_to_ball_card("mine"))
+    assert load_policy("mine").path.resolve() == path.resolve()
+
+
+def test_a_name_in_two_places_is_no_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = write_model(tmp_path / "models", network(), go_to_ball_card("go_to_ball_ddpg"))
+    with pytest.raises(ModelError, match=r"several models are called 'go_to_ball_ddpg': .*give the path"):
+        load_policy("go_to_ball_ddpg")
+    assert load_policy(path).card.name == "go_to_ball_ddpg"
 
 
 @pytest.mark.parametrize("training", [True, False])

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.agents.networks import one_thread, policy_of
+from robobt.learning.envs import make_task
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.results import TrainResult
@@ -21,15 +22,11 @@ from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard,
 from robobt.models.export import export_model
 from robobt.models.file import SUFFIXES, Format, ModelError
 from robobt.statistics import mean_interval
-from robobt.world.features import GO_TO_BALL, SHOOT, ObservationSpec
 
 _Floats = NDArray[np.float64]
 
-_SKILLS: dict[str, tuple[str, ObservationSpec]] = {
-    "go_to_ball": ("GoToBall", GO_TO_BALL),
-    "shoot": ("Shoot", SHOOT),
-}
-"""Skill and observation of each task."""
+_SKILLS = {"go_to_ball": "GoToBall", "shoot": "Shoot"}
+"""Skill of each task."""
 
 
 def export_run(
@@ -38,6 +35,7 @@ def export_run(
     folder: str | Path = "models",
     formats: Sequence[Format] = ("torchscript",),
     starts: int | None = None,
+    force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the best actor of a finished run as model files, enter them in the manifest and return them.
 
@@ -51,6 +49,7 @@ def export_run(
         folder: where to.
         formats: "torchscript", "onnx" or both.
         starts: number of held-out starts; None for as many as the run was set to.
+        force: whether files that are there already may be replaced.
 
     Raises:
         RunFolderError: the folder holds no run that has ended.
@@ -67,12 +66,13 @@ def export_run(
     count = settings.evaluation.held_out if starts is None else starts
     with one_thread():
         figures = problem_of(environment).evaluate(policy_of(result.actor), "held_out", count)
-    skill, observation = _SKILLS[settings.task]
+    skill, observation = _SKILLS[settings.task], make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",
         name=name or f"{settings.task}_ddpg",
         skill=skill,
         description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
+        algorithm=settings.algorithm,
         observation=ObservationCard.of(observation),
         outputs=action_outputs(environment.action),
         action=environment.action,
@@ -85,7 +85,7 @@ def export_run(
         code_version=str(result.figures.get("robobt", "")),
         created_by="robobt export",
     )
-    return export_model(result.actor, card, Path(folder), formats)
+    return export_model(result.actor, card, Path(folder), formats, force)
 
 
 def _best_seed(folder: Path) -> Path:

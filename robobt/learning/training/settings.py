@@ -130,6 +130,23 @@ class TrainSettings(Settings):
     checkpoint_seconds: float = Field(20.0, ge=0, le=60, description="time between checkpoints at least [s]")
     tensorboard: bool = Field(True, description="write TensorBoard events beside the log")
 
+    @property
+    def algorithm(self) -> str:
+        """What learns, by the name of the paper whose switches are on; "ddpg" only without any of them.
+
+        ``d4pg`` has a distributional critic, ``td3`` twin critics, a delayed actor or smoothed targets,
+        ``ddpgfd`` keeps demonstrations; ``3-step ddpg`` is DDPG with 3-step returns.
+        """
+        agent, named = self.agent, []
+        if agent.atoms:
+            named.append("d4pg")
+        if agent.twin or agent.actor_every > 1 or agent.smoothing:
+            named.append("td3")
+        if self.replay.demonstrations.keep:
+            named.append("ddpgfd")
+        steps = f"{agent.n_step}-step " if agent.n_step > 1 and not agent.atoms else ""
+        return steps + ("+".join(named) or "ddpg")
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name, every in (

@@ -133,7 +133,11 @@ def test_the_commands_write_list_and_show_models(run: Path, tmp_path: Path) -> N
     written = json.loads(robobt("export", str(run), "--name", "mine", "--onnx", "--out", out, "--json"))
     assert [file["format"] for file in written["files"]] == ["torchscript", "onnx"]
     assert all(file["listed"] for file in written["files"])
-    assert "held-out result" in robobt("export", str(run), "--name", "mine", "--onnx", "--out", out)
+    assert "--force" in robobt("export", str(run), "--name", "mine", "--out", out, code=1)
+    again = robobt("export", str(run), "--name", "mine", "--onnx", "--out", out, "--force")
+    assert "held-out result" in again
+    robobt("export", str(run), "--name", "beside")
+    assert (run / "beside.pt").is_file()
     listed = json.loads(robobt("models", "--path", out, "--json"))
     own = [file for file in listed["models"] if file["card"]["name"] == "mine"]
     assert own == [written["files"][1], written["files"][0]]
