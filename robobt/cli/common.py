@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import asdict
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
@@ -220,8 +221,8 @@ def warn(text: str) -> None:
 
 
 def print_json(data: Mapping[str, object]) -> None:
-    """Print one JSON object; a value that JSON lacks (NaN, infinity) is a ValueError."""
-    sys.stdout.write(json.dumps(data, indent=2, allow_nan=False) + "\n")
+    """Print one JSON object, dataclasses by their fields; what JSON lacks (NaN, infinity) is a ValueError."""
+    sys.stdout.write(json.dumps(data, indent=2, allow_nan=False, default=asdict) + "\n")
 
 
 def table(*columns: str) -> Table:
@@ -257,3 +258,12 @@ class Progress:
     def advance(self, steps: int = 1) -> None:
         """Count more steps as done."""
         self._bars.advance(self._bar, steps)
+
+
+def one_of(given: Iterable[str], known: Iterable[str], option: str) -> None:
+    """Refuse a value of an option that is not known, naming those that are."""
+    known = list(known)
+    for name in given:
+        if name not in known:
+            there = ", ".join([repr(one) for one in known])
+            raise typer.BadParameter(f"must be one of {there}, not {name!r}", param_hint=option)

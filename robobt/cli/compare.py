@@ -192,7 +192,7 @@ def _print(found: dict[str, Compared]) -> None:
         rates.add_row(
             escape(label),
             f"{one.scored.count} of {one.trials}",
-            "-" if one.distinct == 1 < one.trials else f"{one.scored.low:.0%} to {one.scored.high:.0%}",
+            one.scored.interval(),
             "-" if one.to_ball.mean is None else f"{one.to_ball.mean:.3f} s",
             "-" if one.to_kick.mean is None else f"{one.to_kick.mean:.3f} s",
         )

@@ -28,6 +28,7 @@ from robobt.cli.common import (
     print_json,
     say,
     table,
+    warn,
     world_of,
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
@@ -127,8 +128,8 @@ def match(
 
     Ctrl-C stops the run; the trials that are finished are kept and printed.
 
-    Keys of --json: scenario, seed, trials (played), requested, interrupted;
-    outcomes: for each outcome count, rate, low and high (95 % Wilson interval);
+    Keys of --json: scenario, seed, trials (played), distinct (that differ), requested, interrupted;
+    outcomes: for each outcome count, rate, low and high (95 % Wilson interval, null for one trial repeated);
     goals: for blue and yellow total, and trials: in how many it scored (count, rate, low, high);
     time: seconds a trial; in_play: share of the time with the ball in play;
     robots: for each robot go_to_ball, shoot and total (seconds) and kicks, each
@@ -241,9 +242,14 @@ def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: in
             outcome.replace("_", " "),
             str(rate.count),
             f"{rate.rate:.1%}",
-            f"{rate.low:.1%} to {rate.high:.1%}",
+            rate.interval(1),
         )
     console.print(listed)
+    if summary.distinct < summary.trials:
+        warn(
+            f"only {summary.distinct} of {summary.trials} trials differ; vary the starts or add noise, "
+            "as with --set simulator.realism=friendly"
+        )
     console.print(_times(summary) if scenario.referee is None else _goals(summary))
     pace = summary.real_time_factor
     goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
@@ -261,7 +267,7 @@ def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: in
 
 
 def _times(summary: Summary) -> Table:
-    listed = table("robot", "GoToBall, s", "Shoot, s", "total, s", "kicks")
+    listed = table("robot", "to the ball, s", "ball to kick, s", "to the kick, s", "kicks")
     for name, robot in summary.robots.items():
         if robot.go_to_ball.n:
             spreads = [robot.go_to_ball, robot.shoot, robot.total]
@@ -275,7 +281,7 @@ def _goals(summary: Summary) -> Table:
     for team, goals in summary.goals.items():
         own = [robot for name, robot in summary.robots.items() if name.startswith(team)]
         kicks = sum(robot.kicks.mean or 0.0 for robot in own)
-        scored = f"{goals.trials.rate:.0%} ({goals.trials.low:.0%} to {goals.trials.high:.0%})"
+        scored = f"{goals.trials.rate:.0%} ({goals.trials.interval()})"
         listed.add_row(team, f"{goals.total / summary.trials:.2f}", scored, f"{kicks:.1f}")
     return listed
 

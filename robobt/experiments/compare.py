@@ -16,7 +16,7 @@ class Difference:
     """A paired difference to the first variant, with its 95 % interval.
 
     Attributes:
-        n: trials that both have the figure in.
+        n: trials that both have the figure in, those that repeat another pair only once.
         mean: mean difference, this less the first; None without such a trial.
         low, high: its interval; None where the trials, or the differences, are all the same.
     """
@@ -93,7 +93,7 @@ def compare(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, Compared
     found = {first: _figures(baseline, None)}
     for label, pair in pairs.items():
         test = tests[label]
-        alike = _distinct(variants[label]) == 1 and _distinct(baseline) == 1
+        alike = len(pair) == 1
         against = AgainstFirst(
             _share_difference(pair, alike),
             test.only_first,
@@ -111,8 +111,10 @@ def compare(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, Compared
 def _paired(
     results: Sequence[MatchResult], baseline: Sequence[MatchResult]
 ) -> list[tuple[MatchResult, MatchResult]]:
+    """Return the pairs of trials, those that repeat another pair only once: they tell nothing new."""
     by_trial = {result.trial: result for result in baseline}
-    return [(result, by_trial[result.trial]) for result in results if result.trial in by_trial]
+    pairs = [(result, by_trial[result.trial]) for result in results if result.trial in by_trial]
+    return list({(this.trace, first.trace): (this, first) for this, first in pairs}.values())
 
 
 def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Compared:
@@ -120,7 +122,7 @@ def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Co
     return Compared(
         len(results),
         _distinct(results),
-        Rate.of(sum(map(_scores, results)), len(results)),
+        Rate.of([_scores(result) for result in results], [result.trace for result in results]),
         dict(Counter(result.outcome for result in results).most_common()),
         Spread.of(map(_to_ball, results)),
         Spread.of(map(_to_kick, results)),

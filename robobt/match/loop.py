@@ -22,6 +22,7 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.match.views import KeptView
 from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import timing_compilation
 from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
@@ -97,10 +98,10 @@ class Match:
     def play(self) -> MatchResult:
         """Play to the end."""
         started = perf_counter()
-        with self:
+        with self, timing_compilation() as compiling:
             while self.tick():
                 pass
-            return self.result(perf_counter() - started)
+            return self.result(perf_counter() - started - compiling())
 
     def __enter__(self) -> Self:
         return self

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from math import inf
 from typing import TypeVar, cast
 
 import numpy as np
 from numba import njit
+from numba.core.event import TimingListener, install_listener
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+_COMPILING = "numba:compile"
 FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -23,6 +26,14 @@ def compiled(function: Function) -> Function:
     except RuntimeError:
         # A read-only installation, run by somebody without a home: compile anew each time.
         return cast(Function, njit(function))
+
+
+@contextmanager
+def timing_compilation() -> Iterator[Callable[[], float]]:
+    """Yield what tells how long numba has compiled since [s]; loading what it has kept does not count."""
+    listener = TimingListener()  # type: ignore[no-untyped-call]
+    with install_listener(_COMPILING, listener):
+        yield lambda: float(listener.duration) if listener.done else 0.0
 
 
 def compilable(function: Function) -> Function:

@@ -6,9 +6,10 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from numba import njit
 from pydantic import BaseModel
 
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, timing_compilation
 
 
 def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
@@ -39,3 +40,16 @@ def test_compiled_code_reads_settings_by_name() -> None:
     assert _read(numbers_of(_Limits())) == 6.0
     assert _read(numbers_of(_Limits(always=False))) == inf
     assert _read(numbers_of(_Limits(always=False, longest=0.5))) == 0.5
+
+
+def test_compiling_is_timed_and_what_is_compiled_already_is_not() -> None:
+    @njit
+    def grown(x: float) -> float:
+        return x + 1.0
+
+    with timing_compilation() as compiling:
+        assert compiling() == 0.0
+        grown(1.0)
+        first = compiling()
+        grown(2.0)
+        assert compiling() == first > 0.0

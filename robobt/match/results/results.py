@@ -58,7 +58,7 @@ class MatchResult:
         ticks: control periods.
         robots: figures of each robot by its name ("blue 0").
         trace: hash over every true state; equal traces are equal matches.
-        wall_time: how long it took to play [s]; the only figure that may differ between two runs.
+        wall_time: how long it took to play, without compiling [s]; all that may differ between two runs.
     """
 
     __pydantic_config__ = _AS_WRITTEN
@@ -106,19 +106,30 @@ def _adapter() -> TypeAdapter[MatchResult]:
 class Rate:
     """How often something happened.
 
-    It did in ``count`` trials, a share ``rate``, with the Wilson interval of 95 % from ``low`` to ``high``.
+    It did in ``count`` trials, a share ``rate``, with the Wilson interval of 95 % from ``low`` to
+    ``high``. Trials that repeat another one count once for the interval; where all are one and
+    the same there is none.
     """
 
     count: int
     rate: float
-    low: float
-    high: float
+    low: float | None
+    high: float | None
 
     @classmethod
-    def of(cls, count: int, trials: int) -> Rate:
-        """Return the rate of ``count`` in ``trials``; 0 when there are none."""
-        low, high = wilson_interval(count, trials)
-        return cls(count, count / trials if trials else 0.0, low, high)
+    def of(cls, happened: Sequence[bool], traces: Sequence[str]) -> Rate:
+        """Return the rate in trials with these traces; 0 when there are none."""
+        different = list(dict(zip(traces, happened, strict=True)).values())
+        rate = sum(happened) / len(happened) if happened else 0.0
+        if len(different) == 1 < len(happened):
+            return cls(sum(happened), rate, None, None)
+        return cls(sum(happened), rate, *wilson_interval(sum(different), len(different)))
+
+    def interval(self, digits: int = 0) -> str:
+        """Return the interval as text, in percent."""
+        if self.low is None or self.high is None:
+            return "none: one trial, repeated"
+        return f"{self.low:.{digits}%} to {self.high:.{digits}%}"
 
 
 @dataclass(slots=True, frozen=True)
@@ -160,18 +171,20 @@ class Summary:
         scenario: its name.
         seed: the run's seed, from which each trial's follows.
         trials: how many were played.
+        distinct: how many of them differ from each other; the rest repeat one another.
         outcomes: how often each outcome happened; only those that did.
         goals: of each team: ``total``, and ``trials`` in which it scored at all.
         time: how long the trials lasted [s].
         in_play: mean share of the time in which the ball was in play.
         robots: figures by robot.
-        real_time_factor: simulated time over the time spent playing, on one core.
+        real_time_factor: simulated time over the time spent playing, on one core, less that spent compiling.
         trace: hash over the trials' traces in order; equal for equal runs.
     """
 
     scenario: str
     seed: int
     trials: int
+    distinct: int
     outcomes: Mapping[str, Rate]
     goals: Mapping[str, GoalCount]
     time: Spread
@@ -203,16 +216,21 @@ def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
         raise ValueError("no trial was played")
     ordered = sorted(results, key=lambda result: result.trial)
     outcomes = Counter(result.outcome for result in ordered)
+    traces = [result.trace for result in ordered]
     wall_time = sum(result.wall_time for result in ordered)
     simulated = sum(result.time for result in ordered)
     return Summary(
         scenario=ordered[0].scenario,
         seed=seed,
         trials=len(ordered),
-        outcomes={name: Rate.of(count, len(ordered)) for name, count in outcomes.most_common()},
+        distinct=len(set(traces)),
+        outcomes={
+            name: Rate.of([result.outcome == name for result in ordered], traces)
+            for name, _ in outcomes.most_common()
+        },
         goals={
-            "blue": _goals([result.blue_score for result in ordered]),
-            "yellow": _goals([result.yellow_score for result in ordered]),
+            "blue": _goals([result.blue_score for result in ordered], traces),
+            "yellow": _goals([result.yellow_score for result in ordered], traces),
         },
         time=Spread.of(result.time for result in ordered),
         in_play=fmean(result.in_play for result in ordered),
@@ -221,14 +239,12 @@ def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
             for name in ordered[0].robots
         },
         real_time_factor=simulated / wall_time if wall_time > 0.0 else 0.0,
-        trace=hashlib.blake2b(
-            "".join([result.trace for result in ordered]).encode(), digest_size=16
-        ).hexdigest(),
+        trace=hashlib.blake2b("".join(traces).encode(), digest_size=16).hexdigest(),
     )
 
 
-def _goals(scores: Sequence[int]) -> GoalCount:
-    return GoalCount(sum(scores), Rate.of(sum(score > 0 for score in scores), len(scores)))
+def _goals(scores: Sequence[int], traces: Sequence[str]) -> GoalCount:
+    return GoalCount(sum(scores), Rate.of([score > 0 for score in scores], traces))
 
 
 def _robot(results: Sequence[RobotResult]) -> RobotSummary:

@@ -40,6 +40,22 @@ class TestSummary:
         assert summary.goals["blue"].total == summary.goals["blue"].trials.count == 28
         assert summary.goals["yellow"].total == 0
 
+    def test_one_trial_repeated_has_no_interval(self):
+        summary = summarise([trial(i, trace="same") for i in range(20)])
+        goals = summary.outcomes["goal_blue"]
+        assert (summary.distinct, goals.count, goals.rate) == (1, 20, 1.0)
+        assert (goals.low, goals.high) == (None, None)
+        assert goals.interval() == "none: one trial, repeated"
+
+    def test_trials_that_repeat_another_count_once_for_the_interval(self):
+        repeated = summarise(
+            [trial(i, "goal_blue" if i % 2 else "saved", trace=str(i % 4)) for i in range(40)]
+        )
+        once = summarise([trial(i, "goal_blue" if i % 2 else "saved") for i in range(4)])
+        mine, theirs = repeated.outcomes["goal_blue"], once.outcomes["goal_blue"]
+        assert (repeated.distinct, mine.count, mine.rate) == (4, 20, 0.5)
+        assert (mine.low, mine.high) == (theirs.low, theirs.high)
+
     def test_several_goals_in_a_trial_are_one_trial_with_a_goal(self):
         summary = summarise([trial(0, "time", blue_score=3), trial(1, "time")])
         assert summary.goals["blue"].total == 3
