@@ -51,6 +51,14 @@ GO_TO_BALL = _spec(
 )
 """The ball and the robot's velocity, in the robot's frame."""
 
+GO_TO_BALL_TO_SHOOT = _spec(
+    "go_to_ball_to_shoot",
+    1,
+    **dict(GO_TO_BALL.entries),
+    **dict.fromkeys(("sin_goal", "cos_goal"), "1"),
+)
+"""The same, and the direction from the ball to the middle of the attacked goal, in the robot's frame."""
+
 SHOOT = _spec(
     "shoot",
     1,
@@ -91,11 +99,11 @@ SCENE_HEAD = SHOT_SCENE.size - 4 * SCENE_OPPONENTS
 
 _ABSENT = np.array(ABSENT)
 
-OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, SHOOT)}
+OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, GO_TO_BALL_TO_SHOOT, SHOOT)}
 
 
 @compiled
-def _observe_go_to_ball(robot: Row, ball: Row, row: FloatArray) -> None:
+def _observe_go_to_ball(robot: Row, ball: Row, goal_x: float, row: FloatArray) -> None:
     c, s = cos(robot[2]), sin(robot[2])
     dx, dy = ball[0] - robot[0], ball[1] - robot[1]
     distance = hypot(dx, dy)
@@ -110,6 +118,10 @@ def _observe_go_to_ball(robot: Row, ball: Row, row: FloatArray) -> None:
     row[3] = c * robot[3] + s * robot[4]
     row[4] = c * robot[4] - s * robot[3]
     row[5] = robot[5]
+    if len(row) > 6:
+        to_goal = atan2(-ball[1], goal_x - ball[0]) - robot[2]
+        row[6] = sin(to_goal)
+        row[7] = cos(to_goal)
 
 
 @compiled
@@ -186,14 +198,15 @@ def _observe_scene(
 
 
 @compiled
-def go_to_ball_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
-    """Compute the states :data:`GO_TO_BALL` of many arenas, (n, 6).
+def go_to_ball_rows(robots: FloatArray, balls: FloatArray, goal_x: float, size: int) -> FloatArray:
+    """Compute the states of many arenas, (n, size): :data:`GO_TO_BALL` or :data:`GO_TO_BALL_TO_SHOOT`.
 
-    ``robots`` (n, 6) are x, y, heading, vx, vy, omega in field coordinates, ``balls`` (n, 2 or more) x, y.
+    ``robots`` (n, 6) are x, y, heading, vx, vy, omega in field coordinates, ``balls`` (n, 2 or more) x, y;
+    ``goal_x`` is where the attacked goal's line is [m].
     """
-    rows = np.empty((len(robots), 6))
+    rows = np.empty((len(robots), size))
     for i in range(len(robots)):
-        _observe_go_to_ball(robots[i], balls[i], rows[i])
+        _observe_go_to_ball(robots[i], balls[i], goal_x, rows[i])
     return rows
 
 
@@ -257,8 +270,17 @@ def shot_scene(
 
 def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute the Go-To-Ball state of one robot in a frame, (6,)."""
-    row = np.empty(6)
-    _observe_go_to_ball(_kinematics(robot), _motion(frame), row)
+    return _go_to_ball(frame, robot, GO_TO_BALL.size)
+
+
+def go_to_ball_to_shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
+    """Compute that of a robot that goes to the ball in order to shoot, (8,)."""
+    return _go_to_ball(frame, robot, GO_TO_BALL_TO_SHOOT.size)
+
+
+def _go_to_ball(frame: Frame, robot: RobotState, size: int) -> FloatArray:
+    row = np.empty(size)
+    _observe_go_to_ball(_kinematics(robot), _motion(frame), frame.field.half_length, row)
     return row
 
 

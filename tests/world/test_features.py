@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def eq_4(shooter: np.ndarray, target: np.ndarray, opponent: np.ndarray) -> np.nd
 
 
 def go_to_ball(robot: np.ndarray | list[float], ball: np.ndarray | list[float]) -> np.ndarray:
-    return go_to_ball_rows(np.array([robot], dtype=float), np.array([ball], dtype=float))[0]
+    return go_to_ball_rows(np.array([robot], dtype=float), np.array([ball], dtype=float), 4.5, 6)[0]
 
 
 def shoot(robot: np.ndarray | list[float], ball: np.ndarray | list[float]) -> np.ndarray:
@@ -67,6 +67,14 @@ def test_eq_4_does_not_change_when_the_field_is_turned_moved_or_mirrored(
     np.testing.assert_allclose(eq_4(*(points * [1, -1])), base, atol=1e-9)
     assert (base >= [0, 0, 0, -np.inf, 0]).all()
     assert base[0] <= pi
+
+
+def test_going_to_the_ball_to_shoot_shows_the_goal_too() -> None:
+    # Heading up the y axis; from the ball at (2, 2.5) m the goal's middle lies 45 degrees to the right of +x.
+    robot, ball = np.array([[0.0, 0.0, pi / 2, 1.0, 0.0, 0.3]]), np.array([[2.0, 2.5]])
+    (found,) = go_to_ball_rows(robot, ball, 4.5, 8)
+    np.testing.assert_allclose(found[:6], go_to_ball_rows(robot, ball, 4.5, 6)[0])
+    np.testing.assert_allclose(found[6:], [-sqrt(0.5), -sqrt(0.5)])
 
 
 def test_go_to_ball_by_hand() -> None:
@@ -113,7 +121,7 @@ def test_a_skill_sees_what_training_sees() -> None:
     rng = np.random.default_rng(1)
     robots, balls = rng.normal(size=(40, 6)), rng.normal(size=(40, 4))
     robots[0, :2] = balls[0, :2]
-    go, shots = go_to_ball_rows(robots, balls), shoot_rows(robots, balls, 4.5, 0.5)
+    go, shots = go_to_ball_rows(robots, balls, 4.5, 6), shoot_rows(robots, balls, 4.5, 0.5)
     for i in range(40):
         me = RobotState(3, *robots[i].tolist())
         frame = Frame(0.0, DIVISION_B, BallState(*balls[i].tolist()), (me,))
@@ -136,7 +144,7 @@ def test_no_distance_gives_no_nan() -> None:
 
 def test_a_row_has_as_many_entries_as_its_specification() -> None:
     ones = np.ones((1, 6))
-    assert go_to_ball_rows(ones, ones).shape == (1, GO_TO_BALL.size)
+    assert go_to_ball_rows(ones, ones, 4.5, 6).shape == (1, GO_TO_BALL.size)
     assert shoot_rows(ones, ones, 4.5, 0.5).shape == (1, SHOOT.size)
     assert shot_features(np.ones(2), ones, ones).shape == (1, 1, SHOT.size)
     assert shot_scene(ones, ones, ones, ones[None]).shape == (1, SHOT_SCENE.size)

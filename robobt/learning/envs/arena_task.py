@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,10 +28,11 @@ class ArenaTask(ABC):
 
     Attributes:
         arenas: the simulator, from the first ``reset`` on.
+        observation: what is observed.
         ended: the episodes that the last step ended; None without any.
     """
 
-    observation: ClassVar[ObservationSpec]
+    observation: ObservationSpec
 
     def __init__(self, settings: TaskSettings, n: int, seed: int | None) -> None:
         if n < 1:

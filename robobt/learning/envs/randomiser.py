@@ -18,12 +18,14 @@ class Randomiser:
     Attributes:
         kick: (n,) factor on the speed of kicks.
         acceleration: (n,) factor on the robot's accelerations.
+        top_speed: (n,) factor on its top speed.
     """
 
     def __init__(self, settings: TaskSettings, arenas: Arenas, rng: np.random.Generator) -> None:
         n = len(arenas.balls)
         self.kick = np.ones(n)
         self.acceleration = np.ones(n)
+        self.top_speed = np.ones(n)
         self._ranges = settings.randomisation
         self._active = settings.randomisation != RandomisationSettings()
         self._arenas = arenas
@@ -50,6 +52,7 @@ class Randomiser:
         self.kick[which] = self._draw(ranges.kick_speed, count)
         dribbler = self._draw(ranges.dribbler, count)
         delay = self._draw(ranges.control_delay, count)
+        self.top_speed[which] = self._draw(ranges.top_speed, count)
         for column in (sim.SLIDE, sim.ROLL):
             arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * friction
         for column in (sim.PULL, sim.SIDE):
@@ -57,6 +60,8 @@ class Randomiser:
         for column in _ACCELERATIONS:
             own = self._robot_parameters[which, 0, column]
             arenas.robot_parameters[which, 0, column] = own * self.acceleration[which]
+        fastest = self._robot_parameters[which, 0, sim.MAX_SPEED]
+        arenas.robot_parameters[which, 0, sim.MAX_SPEED] = fastest * self.top_speed[which]
         arenas.wheel_parameters[which, sim.MU_TANGENT] = self._grip[which] * self.acceleration[which]
         if ranges.mass != (1.0, 1.0):
             for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):

@@ -16,6 +16,12 @@ _GENTLE_PULL = 1.5
 _INSIDE = 0.6
 """Share of the goal mouth, around its middle, at which the script kicks."""
 
+BEHIND = 0.1
+"""Where a robot that has the ball stands behind it [m]."""
+
+_ROUND = 0.3
+"""How far behind the ball and beside it the way leads round it [m]."""
+
 
 def straight_drive(observation: FloatArray) -> FloatArray:
     """Drive at the ball at full speed, whatever the heading, (n, 6) -> (n, 3): the fastest Go-To-Ball."""
@@ -23,6 +29,24 @@ def straight_drive(observation: FloatArray) -> FloatArray:
     actions[:, 0] = observation[:, 1]
     actions[:, 1] = observation[:, 0]
     return actions
+
+
+def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
+    """Drive at full speed to where the ball is in the mouth, facing the goal; round the ball from before it.
+
+    It takes (n, 8) and answers (n, 3).
+    """
+    sin_ball, cos_ball, distance = observation[:, :3].T
+    sin_goal, cos_goal = observation[:, 6:].T
+    x, y = distance * cos_ball, distance * sin_ball
+    ahead, aside = x * cos_goal + y * sin_goal, x * sin_goal - y * cos_goal
+    round_it = ahead < BEHIND / 2
+    back, left = np.where(round_it, _ROUND, BEHIND), np.where(round_it, np.copysign(_ROUND, aside), 0.0)
+    x += left * -sin_goal - back * cos_goal
+    y += left * cos_goal - back * sin_goal
+    way = np.maximum(np.hypot(x, y), 1e-6)
+    omega = np.clip(AIM_GAIN / max_turn * np.arctan2(sin_goal, cos_goal), -1.0, 1.0)
+    return np.column_stack((x / way, y / way, omega))
 
 
 def turn_and_kick(

@@ -86,6 +86,7 @@ class RandomisationSettings(OrderedSettings):
     acceleration: Span = Field(
         (1.0, 1.0), description="on the robot's accelerations, turning included, and its wheels' grip"
     )
+    top_speed: Span = Field((1.0, 1.0), description="on the robot's top speed")
     mass: Span = Field((1.0, 1.0), description="on the robot's mass")
     kick_speed: Span = Field((1.0, 1.0), description="on the speed of kicks")
     dribbler: Span = Field((1.0, 1.0), description="on the dribbler's pull and side acceleration")
@@ -93,7 +94,7 @@ class RandomisationSettings(OrderedSettings):
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
-        for name in ("friction", "acceleration", "mass", "kick_speed"):
+        for name in ("friction", "acceleration", "top_speed", "mass", "kick_speed"):
             if getattr(self, name)[0] <= 0.0:
                 raise ValueError(f"{name} must be above 0")
         if self.dribbler[0] < 0.0:

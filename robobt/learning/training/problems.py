@@ -54,6 +54,8 @@ def problem_of(environment: TaskSettings) -> Problem:
     smoothed: tuple[bool, ...]
     if isinstance(environment, GoToBallSettings):
         scale, smoothed = (1.0, 1.0, 3.0, speed, speed, turn), (True,) * 3
+        if environment.to_shoot:
+            scale += (1.0, 1.0)
     elif isinstance(environment, ShootSettings):
         # What matters is a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
         scale = (0.1, 0.1, 1.0, 1.0, turn, 3.0, 1.0, 1.0, 1.0, 1.0)

@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs import ArenaTask, GoToBallTask, ShootTask
-from robobt.learning.envs.scripted import AIM_GAIN, straight_drive, turn_and_kick
+from robobt.learning.envs import ArenaTask, GoToBallSettings, GoToBallTask, ShootTask
+from robobt.learning.envs.scripted import AIM_GAIN, drive_to_shoot, straight_drive, turn_and_kick
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.models.actions import ActionScaling
 from robobt.skills import GoToBall, KickToTarget
@@ -95,6 +95,8 @@ def script(task: ArenaTask) -> Teacher:
         held = dribbler.pull if kind == "force" else simulator.limits.hold_acceleration
         pull = np.inf if kind == "glue" else _CAREFUL * held
         return _Script(lambda observation: turn_and_kick(observation, task.action, pull))
+    if isinstance(task.settings, GoToBallSettings) and task.settings.to_shoot:
+        return _Script(lambda observation: drive_to_shoot(observation, task.action.max_turn))
     return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
 
 

@@ -13,12 +13,20 @@ from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
 from robobt.tree import Registry
 from robobt.world.command import RobotCommand
-from robobt.world.features import GO_TO_BALL, SHOOT, go_to_ball_of, shoot_of
+from robobt.world.features import (
+    GO_TO_BALL,
+    GO_TO_BALL_TO_SHOOT,
+    SHOOT,
+    go_to_ball_of,
+    go_to_ball_to_shoot_of,
+    shoot_of,
+)
 from robobt.world.geometry import FloatArray
 from robobt.world.state import Frame, RobotState
 
 OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     GO_TO_BALL.name: go_to_ball_of,
+    GO_TO_BALL_TO_SHOOT.name: go_to_ball_to_shoot_of,
     SHOOT.name: shoot_of,
 }
 """The function that makes each observation from a frame."""

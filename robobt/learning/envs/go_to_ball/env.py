@@ -15,7 +15,8 @@ from robobt.world.state import ROBOT_RADIUS
 def _space(settings: GoToBallSettings) -> Box[np.float32]:
     """Return bounds that follow from walls, limits and noise."""
     limits, starts = settings.robot_limits, settings.starts
-    speed = max(min(limits.max_speed, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+    fastest = limits.max_speed * settings.randomisation.top_speed[1]
+    speed = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
     speed += max(0.0, starts.ball_speed[1])
     turn = max(
         min(limits.max_turn, settings.action.max_turn), abs(starts.robot_turn[0]), abs(starts.robot_turn[1])
@@ -24,6 +25,8 @@ def _space(settings: GoToBallSettings) -> Box[np.float32]:
     turn += speed / ROBOT_RADIUS
     seen = seen_speed(settings, speed, settings.noise.robot_position)
     high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
+    if settings.to_shoot:
+        high += [1.0, 1.0]
     return bounded(high, distances=(2,))
 
 

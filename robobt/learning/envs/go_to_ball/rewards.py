@@ -5,7 +5,7 @@ For a new term add its weight to :class:`GoToBallReward` and the term to :func:`
 
 from __future__ import annotations
 
-from math import atan2, exp, hypot, pi, sqrt
+from math import exp, hypot, pi, sqrt
 
 from pydantic import Field
 
@@ -32,9 +32,12 @@ class GoToBallReward(Settings):
 def reward(
     weights: GoToBallReward,
     robot: FloatArray,
-    ball: FloatArray,
+    ball: FloatArray,  # noqa: ARG001 - for terms to come
     action: FloatArray,  # noqa: ARG001 - for terms to come
     reached: bool,
+    place_x: float,
+    place_y: float,
+    facing: float,
 ) -> float:
     """Compute the reward of a step.
 
@@ -44,10 +47,12 @@ def reward(
         ball: (4,) x, y, vx, vy after it.
         action: (3,) in [-1, 1], taken in it.
         reached: whether the robot has reached the ball.
+        place_x: where it is to drive [m]: the ball, or behind it in order to shoot.
+        place_y: its other coordinate.
+        facing: direction in which it is to face [rad].
     """
-    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
-    distance = hypot(dx, dy)
-    angle = abs(wrap_angle(atan2(dy, dx) - robot[2]))
+    distance = hypot(place_x - robot[0], place_y - robot[1])
+    angle = abs(wrap_angle(facing - robot[2]))
     total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
     total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
     total -= weights.time

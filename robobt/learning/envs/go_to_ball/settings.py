@@ -51,6 +51,11 @@ class GoToBallSettings(TaskSettings):
     action: ActionScaling = GO_TO_BALL_ACTION
     time_limit: int = Field(330, ge=1, le=100_000, description="ticks to the end of an episode")
     contact: ContactRule = ContactRule()
+    to_shoot: bool = Field(
+        False,
+        description="it sees the attacked goal's direction, has reached the ball only when a kick would go "
+        "in, and is rewarded for its orientation to the goal",
+    )
     reward: GoToBallReward = GoToBallReward()
     starts: GoToBallStarts = GoToBallStarts()
 

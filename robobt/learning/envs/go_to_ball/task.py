@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot
-from typing import ClassVar
+from math import atan2, cos, hypot, inf, sin
 
 import numpy as np
 
@@ -13,14 +12,24 @@ from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, reward
 from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings
 from robobt.learning.envs.go_to_ball.starts import go_to_ball_starts
 from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.scripted import BEHIND
 from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
-from robobt.world.features import GO_TO_BALL, ObservationSpec, go_to_ball_rows
+from robobt.world.features import (
+    GO_TO_BALL,
+    GO_TO_BALL_TO_SHOOT,
+    ObservationSpec,
+    go_to_ball_rows,
+)
 from robobt.world.geometry import wrap_angle
 from robobt.world.state import BALL_RADIUS
 
 _RULES = ("distance", "distance_facing", "infrared", "held")
 _DISTANCE, _FACING, _INFRARED, _HELD = range(4)
+_KICK_SPEED = 6.0
+"""Kick that is thought of when the ball is fetched in order to shoot [m/s]; that of the shipped Shoot."""
+_FROM_POST = 0.15
+"""How far inside the posts it has to cross the line [m]."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
 _WEIGHTS = numbers_dtype(GoToBallReward)
 
@@ -28,11 +37,16 @@ _WEIGHTS = numbers_dtype(GoToBallReward)
 class GoToBallTask(ArenaTask):
     """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
 
-    observation: ClassVar[ObservationSpec] = GO_TO_BALL
+    observation: ObservationSpec = GO_TO_BALL
     settings: GoToBallSettings
 
     def __init__(self, settings: GoToBallSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        super().__init__(GoToBallSettings() if settings is None else settings, n, seed)
+        settings = GoToBallSettings() if settings is None else settings
+        self._to_shoot = settings.to_shoot
+        if settings.to_shoot:
+            self.observation = GO_TO_BALL_TO_SHOOT
+        super().__init__(settings, n, seed)
+        self._goal = (self.settings.field.half_length, self.settings.field.goal_width / 2)
         self._contact = numbers_of(self.settings.contact)
         self._rule = _RULES.index(self.settings.contact.rule)
         self._weights = numbers_of(self.settings.reward)
@@ -42,8 +56,8 @@ class GoToBallTask(ArenaTask):
         return go_to_ball_starts(self.settings, rng, count)
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
-        """See :data:`robobt.world.features.GO_TO_BALL`."""
-        return go_to_ball_rows(robots[:, 0], balls)
+        """See :attr:`observation`."""
+        return go_to_ball_rows(robots[:, 0], balls, self._goal[0], self.observation_size)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
         arenas = self.arenas
@@ -53,6 +67,8 @@ class GoToBallTask(ArenaTask):
             self._weights,
             self._rule,
             self.action.dribbler,
+            self._to_shoot,
+            *self._goal,
             actions,
             arenas.robots,
             arenas.balls,
@@ -72,7 +88,18 @@ class GoToBallTask(ArenaTask):
         way = np.maximum(way, 0.0)
         way[np.any(starts[:, (3, 4, 8, 9)] != 0.0, axis=1)] = np.nan
         fastest = max(limits.acceleration, limits.lateral_acceleration) * self._randomiser.acceleration[which]
-        return straight_line_time(way, min(limits.max_speed, settings.action.max_speed), fastest)
+        top_speed = limits.max_speed * self._randomiser.top_speed[which]
+        return straight_line_time(way, np.minimum(top_speed, settings.action.max_speed), fastest)
+
+
+@compiled
+def _would_score(heading: float, ball: FloatArray, goal_x: float, post_y: float) -> bool:
+    """Return whether the ball would go in, kicked now: along the heading, with its sideways velocity."""
+    c, s = cos(heading), sin(heading)
+    sideways = c * ball[3] - s * ball[2]
+    vx, vy = _KICK_SPEED * c - sideways * s, _KICK_SPEED * s + sideways * c
+    crossing = ball[1] + vy / vx * (goal_x - ball[0]) if vx > 0.0 else inf
+    return bool(abs(crossing) <= post_y - _FROM_POST)
 
 
 @compiled
@@ -82,6 +109,9 @@ def _judge(
     weights_: FloatArray,
     rule: int,
     dribbler: bool,
+    to_shoot: bool,
+    goal_x: float,
+    post_y: float,
     actions: FloatArray,
     robots: FloatArray,
     balls: FloatArray,
@@ -109,9 +139,16 @@ def _judge(
             reached = in_mouth[i, 0]
         else:
             reached = episode.ticks_held >= contact.ticks
+        place_x, place_y = ball[0], ball[1]
+        facing = atan2(ball[1] - robot[1], ball[0] - robot[0])
+        if to_shoot:
+            facing = atan2(-ball[1], goal_x - ball[0])
+            place_x -= BEHIND * cos(facing)
+            place_y -= BEHIND * sin(facing)
+            reached = reached and _would_score(robot[2], ball, goal_x, post_y)
         if contact.max_speed is not None:
             reached = reached and hypot(robot[3], robot[4]) <= contact.max_speed
-        rewards[i] = reward(weights, robot, ball, actions[i], reached)
+        rewards[i] = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing)
         episode.total_reward += rewards[i]
         ends[TERMINATED, i] = ends[SUCCESS, i] = reached
         ends[TRUNCATED, i] = not reached and episode.ticks >= settings.time_limit

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import hypot
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,7 +27,7 @@ _ROBOT_BACK_LIMIT = -0.2
 class ShootTask(ArenaTask):
     """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
 
-    observation: ClassVar[ObservationSpec] = SHOOT
+    observation: ObservationSpec = SHOOT
     settings: ShootSettings
 
     def __init__(self, settings: ShootSettings | None = None, n: int = 1, seed: int | None = None) -> None:
