@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +15,7 @@ from robobt.cli.common import (
     Workers,
     console,
     cores,
+    one_of,
     print_json,
     say,
     table,
@@ -23,14 +23,9 @@ from robobt.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from robobt.experiments.deployed import Deployed
+    from collections.abc import Mapping
 
-
-class Style(StrEnum):
-    """How the goalkeeper moves."""
-
-    DEFAULT = "default"
-    ROBOBULLS = "robobulls"
+    from robobt.experiments.deployed import Attacker
 
 
 def deployed(
@@ -41,9 +36,22 @@ def deployed(
         int | None,
         typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="By default the one nothing was tuned on."),
     ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", help="An attacker by its name; may be given often. All by default."),
+    ] = None,
     goalkeeper: Annotated[
-        Style, typer.Option("--goalkeeper", help="default, or robobulls for the paper's own pilot.")
-    ] = Style.DEFAULT,
+        list[str] | None,
+        typer.Option("--goalkeeper", help="default, or robobulls: the paper's pilot. Both by default."),
+    ] = None,
+    starts: Annotated[
+        list[str] | None,
+        typer.Option("--starts", help="'own half', or '2.5 to 4.5 m' from the goal. Both by default."),
+    ] = None,
+    defenders: Annotated[
+        list[int] | None,
+        typer.Option("--defenders", min=0, max=2, help="Besides the goalkeeper. 0, 1 and 2 by default."),
+    ] = None,
     workers: Workers = None,
     picture: Annotated[
         Path | None,
@@ -54,58 +62,81 @@ def deployed(
     world: Where = "sim",
     as_json: Json = False,
 ) -> None:
-    """Attack Main, AttackNN and Attack Expected against the goalkeeper at half and full speed.
+    """Attackers against a goalkeeper at half and full speed, part by part, and against defenders.
 
-    Every play is given the same starts and seeds.
+    From Attack Main to AttackNN one step at a time: its clearance ("wide"), the network, the
+    feint. All face the same starts with the same seeds, in the paper's situations and, with
+    10 s to score, against one and two defenders more.
 
-    Keys of --json: shots, seed, goalkeeper; speeds, by half and full and then by
-    play: goals, rate with its 95 % Wilson interval (low, high) and the exact one
-    (exact_low, exact_high), attempts (trials with a shot), outcomes, time_to_shot
-    [s], waiting (how much longer than attack_main from the same start [s]), errors,
-    mcnemar (against attack_main: only_this, only_first_play, p), paper (goals, shots).
+    Keys of --json: shots, seed; cells, a list with goalkeeper, speed, starts, defenders and
+    attackers, by name: goals, rate with its 95 % Wilson interval (low, high; interval as
+    text), attempts (trials with a shot), distinct (trials that differ), outcomes,
+    time_to_shot [s], waiting (how much longer than the first attacker from the same start
+    [s]), errors, against_first and against_half_speed (McNemar: only_this, only_other, p),
+    paper (goals, shots).
     """
-    from robobt.experiments.deployed import PLAYED, SEED, judged_goal_line
+    from robobt.experiments.deployed import (
+        ATTACKERS,
+        GOALKEEPERS,
+        SEED,
+        SITUATIONS,
+        STARTS,
+        judged_goal_line,
+    )
     from robobt.experiments.deployed import deployed as run
     from robobt.worlds import SIM
 
+    one_of(only or [], ATTACKERS, "--only")
+    one_of(goalkeeper or [], GOALKEEPERS, "--goalkeeper")
+    one_of(starts or [], STARTS, "--starts")
+    situations = [
+        one
+        for one in SITUATIONS
+        if one.goalkeeper in (goalkeeper or GOALKEEPERS)
+        and one.starts in (starts or STARTS)
+        and one.defenders in (defenders or (0, 1, 2))
+    ]
+    if not situations:
+        raise typer.BadParameter("leave nothing to play", param_hint="--goalkeeper, --starts, --defenders")
+    attackers = tuple(only or ATTACKERS)
     used = SEED if seed is None else seed
     if world != SIM and workers not in (None, 1):
         raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
     processes = workers or (cores() if world == SIM else 1)
-    with Progress("deployed", 2 * len(PLAYED) * shots) as progress, world_of(world) as factory:
+    total = len(situations) * len(attackers) * shots
+    with Progress("deployed", total) as progress, world_of(world) as factory:
         result = run(
-            shots, used, processes, goalkeeper=goalkeeper.value, progress=progress.advance, world=factory
+            shots,
+            used,
+            processes,
+            situations=situations,
+            attackers=attackers,
+            progress=progress.advance,
+            world=factory,
         )
         if picture is not None:
-            judged_goal_line("half", used, picture, goalkeeper.value, factory)
+            judged_goal_line(situations[0], used, picture, factory)
     if as_json:
         print_json(result)
         return
-    _print(result)
+    for situation, cell in zip(situations, result["cells"], strict=True):
+        _print(str(situation), cell["attackers"], shots)
     if picture is not None:
         say(f"The judged goal line: {picture}")
 
 
-def _print(result: Deployed) -> None:
-    for speed, plays in result["speeds"].items():
-        listed = table(
-            f"goalkeeper at {speed} speed",
-            "paper",
-            "goals",
-            "95 % interval",
-            "shots",
-            "to the shot",
-            "waiting",
+def _print(title: str, attackers: Mapping[str, Attacker], shots: int) -> None:
+    say(title)
+    listed = table("attacker", "paper", "goals", "95 %", "shots", "to the shot", "p half")
+    for name, one in attackers.items():
+        paper, time, slower = one["paper"], one["time_to_shot"], one["against_half_speed"]
+        listed.add_row(
+            name,
+            "-" if paper is None else f"{paper['goals']} / {paper['shots']}",
+            f"{one['goals']} / {shots}",
+            one["interval"],
+            str(one["attempts"]),
+            "-" if time is None else f"{time:.2f} s",
+            "-" if slower is None else f"{slower['p']:.2g}",
         )
-        for play, one in plays.items():
-            paper, time, waiting = one["paper"], one["time_to_shot"], one["waiting"]
-            listed.add_row(
-                play,
-                "-" if paper is None else f"{paper['goals']} / {paper['shots']}",
-                f"{one['goals']} / {result['shots']}",
-                f"{one['low']:.0%} to {one['high']:.0%}",
-                str(one["attempts"]),
-                "-" if time is None else f"{time:.2f} s",
-                "-" if waiting is None else f"{waiting:+.2f} s",
-            )
-        console.print(listed)
+    console.print(listed)

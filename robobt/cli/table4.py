@@ -7,12 +7,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import Json, Progress, Seed, Where, console, print_json, say, table, world_of
+from robobt.cli.common import (
+    Json,
+    Progress,
+    Seed,
+    Where,
+    console,
+    one_of,
+    print_json,
+    say,
+    table,
+    world_of,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping
 
-    from robobt.experiments.table4_rows import Spread, Trial
+    from robobt.experiments.table4_rows import PaperRow, Spread, Trial
 
 
 def table4(
@@ -27,6 +38,22 @@ def table4(
         str | None,
         typer.Option("--realism", "-r", help="Noise and delays: none, friendly, rc2021 or realistic."),
     ] = None,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--limits",
+            help="What every robot may do: paper (1.5 m/s, grSim's acceleration), pilot (1.5 m/s, "
+            "2.5 m/s^2) or own (the preset's robots). May be given often; all by default.",
+        ),
+    ] = None,
+    starts: Annotated[
+        str,
+        typer.Option(
+            "--starts",
+            help="drawn: around the paper's, 0.1 m and 10 degrees for the robot, 0.05 m for the ball; "
+            "paper: the paper's own in every run.",
+        ),
+    ] = "drawn",
     only: Annotated[
         list[str] | None,
         typer.Option("--only", help="A combination by its name; may be given often. All by default."),
@@ -41,36 +68,45 @@ def table4(
 
     Rows are named by who approaches and who shoots: "kick" is KickToTarget and "shoot"
     the hand-written Shoot; "quick" picks the ball up as fast as after a learned
-    approach. Times are means, with the variance in brackets.
+    approach; learned parts are named by their algorithm. All robots of a table have the
+    same limits, and run n of every row the same start. Approach and pick-up together are
+    the paper's GoToBall; the approach counts until robot and ball are 0.2 m apart.
 
-    Approach and pick-up together are the paper's GoToBall. The approach counts until
-    robot and ball are 0.2 m apart; "x best" is its mean over the time of a straight
-    line at the speed and acceleration that it may use. Goals of ours have their 95 %
-    Wilson interval.
+    The minimum is physical: a straight line with the strongest acceleration and without
+    braking, until the ball is in the mouth, and until it is so in a robot that faces the
+    goal. Goals have their 95 % Wilson interval, differences that of the mean paired
+    difference; the effect is the mean difference over the differences' standard deviation.
 
-    Keys of --json: runs, preset, realism and trials, by trial: paper, its rows; rows, by
-    combination: approach, pick_up, to_ball, shoot and total (n, mean, variance, low and
-    high of the mean's 95 % interval), goals, reached and shots (count, rate, low, high),
-    optimum, optimum_ratio; best_hand_written, the combination without learned parts that
-    is first at the ball; test, the learned one against it (mean difference, variance, t,
-    degrees, p, n), negative where the learned one is faster.
+    Keys of --json: runs, preset, realism, starts; paper, the printed rows by trial; and
+    limits, by name and trial: minimum (to_ball, to_kick); rows, by combination: approach,
+    pick_up, to_ball, shoot and total (n, mean, variance, low and high of the mean's 95 %
+    interval), goals, reached and shots (count, rate, low, high), ball_ratio and kick_ratio
+    (over the minimum), paper_start (to_ball, total, goal of one run from there);
+    best_hand_written, which kicks first; to_ball and to_kick, the learned one against it
+    (n, mean, low, high, effect), negative where the learned one is faster.
     """
     from robobt.experiments.table4 import COMBINATIONS, TRIALS
     from robobt.experiments.table4 import table4 as run
     from robobt.experiments.table4_picture import draw_table4
+    from robobt.experiments.table4_starts import LIMITS
     from robobt.sim.settings import PRESETS, REALISM
 
-    _check([preset], PRESETS, "--preset")
-    _check([] if realism is None else [realism], REALISM, "--realism")
-    _check(only or [], COMBINATIONS, "--only")
-    combinations = tuple(only or COMBINATIONS)
-    with Progress("table 4", runs * len(combinations) * len(TRIALS)) as progress, world_of(world) as factory:
+    one_of([preset], PRESETS, "--preset")
+    one_of([] if realism is None else [realism], REALISM, "--realism")
+    one_of(only or [], COMBINATIONS, "--only")
+    one_of(limits or [], LIMITS, "--limits")
+    one_of([starts], ("drawn", "paper"), "--starts")
+    combinations, chosen = tuple(only or COMBINATIONS), tuple(limits or LIMITS)
+    total = (runs + 1) * len(combinations) * len(chosen) * len(TRIALS)
+    with Progress("table 4", total) as progress, world_of(world) as factory:
         result = run(
             runs,
             seed,
             preset=preset,
             realism=realism,
             combinations=combinations,
+            limits=chosen,
+            starts="drawn" if starts == "drawn" else "paper",
             progress=progress.advance,
             world=factory,
         )
@@ -79,60 +115,67 @@ def table4(
     if as_json:
         print_json(result)
         return
-    for trial, found in result["trials"].items():
-        _print_trial(trial, found, runs)
+    for trial in TRIALS:
+        _print_paper(trial, result["paper"][trial])
+        for name in chosen:
+            _print_trial(
+                f"Trial {trial}, limits: {name}; seconds, x the minimum", result["limits"][name][trial], runs
+            )
     if picture is not None:
         say(f"Picture: {picture}")
 
 
-def _check(given: Iterable[str], known: Iterable[str], option: str) -> None:
-    known = list(known)
-    for name in given:
-        if name not in known:
-            there = ", ".join([repr(one) for one in known])
-            raise typer.BadParameter(f"must be one of {there}, not {name!r}", param_hint=option)
-
-
-def _print_trial(trial: str, found: Trial, runs: int) -> None:
-    times = table(f"trial {trial}, seconds", "to the ball", "shoot", "total", "goals")
-    for name, paper in found["paper"].items():
-        times.add_row(
-            f"paper: {name}",
-            _seconds(paper["to_ball"], paper["to_ball_s2"]),
-            _seconds(paper["shoot"], paper["shoot_s2"]),
-            _seconds(paper["total"], paper["total_s2"]),
-            f"{paper['goals']:.0f} of 25",
-        )
-    for name, row in found["rows"].items():
-        figures = [_spread(part) for part in (row["to_ball"], row["shoot"], row["total"])]
-        times.add_row(name, *figures, f"{row['goals']['count']} of {runs}")
-    console.print(times)
-    parts = table(f"trial {trial}, seconds", "approach", "x best", "pick-up", "reached", "goals, %")
-    for name, row in found["rows"].items():
-        ratio, goals = row["optimum_ratio"], row["goals"]
-        parts.add_row(
+def _print_paper(trial: str, rows: Mapping[str, PaperRow]) -> None:
+    say(f"Trial {trial}, the paper, seconds")
+    printed = table("", "to the ball", "shoot", "total", "goals")
+    for name, row in rows.items():
+        printed.add_row(
             name,
-            _spread(row["approach"]),
-            "-" if ratio is None else f"{ratio:.3f}",
-            _spread(row["pick_up"]),
-            f"{row['reached']['count']} of {runs}",
-            f"{100 * goals['low']:.1f} to {100 * goals['high']:.1f}",
+            _seconds(row["to_ball"], row["to_ball_s2"]),
+            _seconds(row["shoot"], row["shoot_s2"]),
+            _seconds(row["total"], row["total_s2"]),
+            f"{row['goals']:.0f} of 25",
         )
-    console.print(parts)
-    test = found["test"]
-    if test is not None:
-        say(
-            f"The learned skills are {abs(test['mean']):.3f} s {'sooner' if test['mean'] < 0 else 'later'} "
-            f"at the ball than our best hand-written ones ({found['best_hand_written']}): "
-            f"paired t = {test['t']:.1f}, p = {test['p']:.2g}, n = {test['n']}."
+    console.print(printed)
+
+
+def _print_trial(title: str, found: Trial, runs: int) -> None:
+    say(title)
+    times = table("", "to the ball", "to the kick", "goals", "95 %", "paper's start")
+    if found["minimum"] is not None:
+        least = found["minimum"]
+        times.add_row("minimum", _seconds(least["to_ball"]), _seconds(least["to_kick"]))
+    for name, row in found["rows"].items():
+        goals, beside = row["goals"], row["paper_start"]
+        times.add_row(
+            name,
+            _against_minimum(row["to_ball"], row["ball_ratio"]),
+            _against_minimum(row["total"], row["kick_ratio"]),
+            f"{goals.count}/{runs}",
+            goals.interval(),
+            f"{_seconds(beside['to_ball'])}, {_seconds(beside['total'])}",
         )
+    console.print(times)
+    best = found["best_hand_written"]
+    for place, difference in (("ball", found["to_ball"]), ("kick", found["to_kick"])):
+        if difference is None:
+            continue
+        text = f"To the {place}, learned less {best}: {difference['mean']:+.3f} s"
+        if difference["low"] is None:
+            text += f", the same in all {difference['n']} runs."
+        else:
+            text += (
+                f" ({difference['low']:+.3f} to {difference['high']:+.3f}), "
+                f"effect {difference['effect']:+.1f} standard deviations, {difference['n']} pairs."
+            )
+        say(text)
 
 
-def _spread(part: Spread) -> str:
-    return _seconds(part["mean"], part["variance"])
+def _against_minimum(part: Spread, ratio: float | None) -> str:
+    return _seconds(part["mean"]) + ("" if ratio is None else f" x{ratio:.3f}")
 
 
-def _seconds(mean: float | None, variance: float | None) -> str:
+def _seconds(mean: float | None, variance: float | None = None) -> str:
     if mean is None:
         return "-"
     return f"{mean:.3f}" + ("" if variance is None else f" ({variance:.4f})")

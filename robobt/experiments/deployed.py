@@ -1,26 +1,46 @@
-"""The deployed raters: Attack Main, AttackNN and Attack Expected against one goalkeeper, on paired seeds."""
+"""Attackers against a goalkeeper, part by part: what the tolerance, the network and the feint each add."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import pi
 from pathlib import Path
 from statistics import fmean
 from typing import TypedDict
 
 from robobt.experiments.goal_map import draw_goal_line
 from robobt.match.loop import Match, WorldFactory
-from robobt.match.results.results import MatchResult
+from robobt.match.results.results import MatchResult, Rate
 from robobt.match.runner import run_trials, trial_seed
+from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.skills.aim.raters.nn_filtered import NNFiltered
-from robobt.statistics import clopper_pearson_interval, mcnemar, wilson_interval
+from robobt.statistics import mcnemar
 from robobt.worlds import sim_world
 
-PLAYED = ("attack_main", "attack_nn", "attack_expected")
-"""Who attacks, the baseline first."""
+ATTACKERS: dict[str, dict[str, object]] = {
+    "attack_main": {"play": "attack_main"},
+    "attack_main as published": {
+        "play": "attack_main",
+        "kick": "robobulls",
+        "tolerance": 0.1965,
+        "steady": 0.9,
+    },
+    "attack_main, wide": {"play": "attack_main", "tolerance": 0.3645},
+    "attack_nn, no feint": {"play": "attack_nn", "feint": False},
+    "attack_nn": {"play": "attack_nn"},
+    "attack_expected": {"play": "attack_expected"},
+}
+"""Who attacks, the baseline first: changes to the scenario's attacker, by name.
+
+"as published" is Attack Main with RoboBulls' own kick, counters and clearance; "wide" has the clearance of
+AttackNN, so that what the network adds is the step from there to "attack_nn, no feint". Sources: the
+paper, and RoboBulls' published code.
+"""
 
 PAPER: dict[str, dict[str, tuple[int, int]]] = {
     "half": {"attack_main": (28, 100), "attack_nn": (80, 100)},
@@ -28,17 +48,55 @@ PAPER: dict[str, dict[str, tuple[int, int]]] = {
 }
 """The paper's goals and shots, by the goalkeeper's speed and the play."""
 
+GOALKEEPERS = ("default", "robobulls")
+"""Styles of the play ``goalkeeper``: this project's, and the paper's with its own pilot."""
+
+SPEEDS = ("half", "full")
+STARTS = ("own half", "2.5 to 4.5 m")
+"""The paper's collection on the move, and from in front of the goal, where it may shoot at once."""
+
 SEED = 2026
 """Of the shots reported; nothing was tuned on them."""
 
 _SHOOTER, _GOAL = "blue 0", "goal_blue"
+_WALL = (-3.2, 0.4)
+_CLOCK = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What the attackers face.
+
+    Attributes:
+        goalkeeper: one of :data:`GOALKEEPERS`.
+        speed: of the goalkeeper, one of :data:`SPEEDS`.
+        starts: one of :data:`STARTS`.
+        defenders: how many of the play ``defender`` there are besides; with any of them
+            there are 10 s to score.
+    """
+
+    goalkeeper: str = "default"
+    speed: str = "full"
+    starts: str = STARTS[0]
+    defenders: int = 0
+
+    def __str__(self) -> str:
+        others = "" if not self.defenders else f" and {self.defenders} more, 10 s"
+        return f"{self.goalkeeper} goalkeeper, {self.speed} speed{others}; from {self.starts}"
+
+
+SITUATIONS = (
+    *(Situation(who, speed, starts) for who in GOALKEEPERS for starts in STARTS for speed in SPEEDS),
+    *(Situation(defenders=defenders) for defenders in (1, 2)),
+)
+"""All that is played by default: the paper's, and the hard ones."""
 
 
 class Against(TypedDict):
-    """McNemar's test against the first play: trials that only one of them scored in, and two-sided p."""
+    """McNemar's exact test, paired by trial: trials in which only one of both scored, and two-sided p."""
 
     only_this: int
-    only_first_play: int
+    only_other: int
     p: float
 
 
@@ -50,35 +108,47 @@ class Published(TypedDict):
 
 
 class Attacker(TypedDict):
-    """One attacker's figures.
+    """One attacker's figures in a situation.
 
-    The rate has its 95 % Wilson interval (``low``, ``high``) and the exact one. ``attempts`` are
-    the trials in which it shot, ``time_to_shot`` the mean time from the start to the kick [s],
-    ``waiting`` the mean of what that takes longer than the first play's from the same start [s].
+    The rate has its 95 % Wilson interval (``low``, ``high``, and as text). ``attempts`` are the
+    trials in which it shot, ``distinct`` those that differ from each other, ``time_to_shot`` the
+    mean time from the start to the kick [s], ``waiting`` the mean of what that takes longer than
+    the first attacker's from the same start [s]. ``against_first`` compares with the first
+    attacker, ``against_half_speed`` with the same one against the goalkeeper at half speed.
     """
 
     goals: int
     rate: float
-    low: float
-    high: float
-    exact_low: float
-    exact_high: float
+    low: float | None
+    high: float | None
+    interval: str
     attempts: int
+    distinct: int
     outcomes: dict[str, int]
     time_to_shot: float | None
     waiting: float | None
     errors: int
-    mcnemar: Against | None
+    against_first: Against | None
+    against_half_speed: Against | None
     paper: Published | None
 
 
+class Cell(TypedDict):
+    """One situation and all attackers in it."""
+
+    goalkeeper: str
+    speed: str
+    starts: str
+    defenders: int
+    attackers: dict[str, Attacker]
+
+
 class Deployed(TypedDict):
-    """All attackers, by the goalkeeper's speed and then by play."""
+    """All of it."""
 
     shots: int
     seed: int
-    goalkeeper: str
-    speeds: dict[str, dict[str, Attacker]]
+    cells: list[Cell]
 
 
 def deployed(
@@ -86,83 +156,129 @@ def deployed(
     seed: int = SEED,
     workers: int = 1,
     *,
-    speeds: Sequence[str] = ("half", "full"),
-    plays: Sequence[str] = PLAYED,
-    goalkeeper: str = "default",
+    situations: Sequence[Situation] = SITUATIONS,
+    attackers: Sequence[str] = tuple(ATTACKERS),
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
 ) -> Deployed:
-    """Play every attacker against the goalkeeper at every speed.
+    """Play every attacker in every situation.
 
-    Trial n of every play starts from the same places with the same seed.
+    Trial n of every attacker starts from the same places with the same seed, against
+    the goalkeeper at half and at full speed alike.
 
     Args:
         shots: number of trials of each.
         seed: seed of the trials.
         workers: number of processes.
-        speeds: speeds of the goalkeeper, "half" and "full" (scenarios ``deployed_half``, ``deployed_full``).
-        plays: names of plays that take ``max_distance`` and ``shot_speed``.
-        goalkeeper: its style: "default" moves as fast as its robot can and covers the
-            angle; "robobulls" with the paper's own pilot.
+        situations: what they face.
+        attackers: some of :data:`ATTACKERS`.
         progress: called after every trial.
         world: where it is played; one of the league takes one worker.
 
     Raises:
-        ScenarioError: a play does not take those parameters.
+        ScenarioError: a play cannot be made, as where a model is missing.
     """
 
     def played(_: MatchResult) -> None:
         progress()
 
-    found: dict[str, dict[str, Attacker]] = {}
-    for speed in speeds:
+    cells: list[Cell] = []
+    at_half_speed: dict[tuple[object, ...], list[MatchResult]] = {}
+    for situation in situations:
         first: list[MatchResult] | None = None
-        found[speed] = {}
-        for play in plays:
-            scenario = deployed_scenario(speed, play, goalkeeper)
+        found: dict[str, Attacker] = {}
+        for name in attackers:
+            scenario = deployed_scenario(situation, name)
             results = run_trials(scenario, world, shots, workers, seed, on_result=played).results
             first = results if first is None else first
-            found[speed][play] = _figures(results, first, PAPER.get(speed, {}).get(play))
-    return {"shots": shots, "seed": seed, "goalkeeper": goalkeeper, "speeds": found}
+            published = PAPER[situation.speed].get(name) if not situation.defenders else None
+            match = (name, situation.goalkeeper, situation.starts, situation.defenders)
+            if situation.speed == "half":
+                at_half_speed[match] = results
+            slower = at_half_speed.get(match) if situation.speed == "full" else None
+            found[name] = _figures(results, first, slower, published)
+        cells.append(
+            Cell(
+                goalkeeper=situation.goalkeeper,
+                speed=situation.speed,
+                starts=situation.starts,
+                defenders=situation.defenders,
+                attackers=found,
+            )
+        )
+    return {"shots": shots, "seed": seed, "cells": cells}
 
 
-def deployed_scenario(speed: str, play: str, goalkeeper: str = "default") -> Scenario:
-    """Return the shipped scenario with another attacker and goalkeeper's style."""
-    scenario = load_scenario(f"deployed_{speed}")
-    return scenario.with_robot("yellow 0", style=goalkeeper).with_robot(_SHOOTER, play=play)
+def deployed_scenario(situation: Situation, attacker: str) -> Scenario:
+    """Return the shipped scenario with another attacker, goalkeeper, start and defenders."""
+    scenario = load_scenario(f"deployed_{situation.speed}")
+    scenario = scenario.with_robot("yellow 0", style=situation.goalkeeper)
+    if situation.starts == STARTS[1]:
+        start = {"around": "their goal", "distance": (2.5, 4.5), "bearing": (0.65 * pi, 1.35 * pi)}
+        scenario = scenario.with_robot(
+            _SHOOTER, start={"position": start, "heading": "towards goal"}, max_distance=None
+        )
+    if situation.defenders:
+        scenario = _defended(scenario, situation.defenders)
+    return scenario.with_robot(_SHOOTER, **ATTACKERS[attacker])
+
+
+def _defended(scenario: Scenario, count: int) -> Scenario:
+    x, y = _WALL
+    defenders = [
+        RobotSetup.model_validate(
+            {
+                "number": place + 1,
+                "play": "defender",
+                "params": {"place": place, "size": count},
+                "start": {"position": (x, y * (count - 1 - 2 * place)), "heading": "towards ball"},
+            }
+        )
+        for place in range(count)
+    ]
+    robots = scenario.robots.model_copy(update={"yellow": (*scenario.robots.yellow, *defenders)})
+    return scenario.model_copy(update={"robots": robots}).lasting(_CLOCK)
 
 
 def _figures(
-    results: list[MatchResult], baseline: list[MatchResult], paper: tuple[int, int] | None
+    results: Sequence[MatchResult],
+    baseline: Sequence[MatchResult],
+    slower: Sequence[MatchResult] | None,
+    paper: tuple[int, int] | None,
 ) -> Attacker:
-    goals = [result.outcome == _GOAL for result in results]
-    interval = wilson_interval(sum(goals), len(goals))
-    exact = clopper_pearson_interval(sum(goals), len(goals))
+    goals = _goals(results)
+    interval = Rate.of(goals, [result.trace for result in results])
     times = [result.robots[_SHOOTER].total for result in results]
     longer = [
         time - before
         for time, before in zip(times, [one.robots[_SHOOTER].total for one in baseline], strict=True)
         if time is not None and before is not None
     ]
-    against: Against | None = None
-    if results is not baseline:
-        test = mcnemar(goals, [result.outcome == _GOAL for result in baseline])
-        against = {"only_this": test.only_first, "only_first_play": test.only_second, "p": test.p}
     return {
         "goals": sum(goals),
         "rate": sum(goals) / len(goals),
         "low": interval.low,
         "high": interval.high,
-        "exact_low": exact.low,
-        "exact_high": exact.high,
+        "interval": interval.interval(),
         "attempts": sum(time is not None for time in times),
+        "distinct": len({result.trace for result in results}),
         "outcomes": dict(Counter(result.outcome for result in results).most_common()),
         "time_to_shot": _mean(time for time in times if time is not None),
         "waiting": _mean(longer),
         "errors": sum(result.robots[_SHOOTER].errors for result in results),
-        "mcnemar": against,
+        "against_first": None if results is baseline else _against(goals, _goals(baseline)),
+        "against_half_speed": None if slower is None else _against(goals, _goals(slower)),
         "paper": None if paper is None else {"goals": paper[0], "shots": paper[1]},
     }
+
+
+def _goals(results: Iterable[MatchResult]) -> list[bool]:
+    return [result.outcome == _GOAL for result in results]
+
+
+def _against(this: Sequence[bool], other: Sequence[bool]) -> Against:
+    test = mcnemar(this, other)
+    return {"only_this": test.only_first, "only_other": test.only_second, "p": test.p}
 
 
 def _mean(values: Iterable[float]) -> float | None:
@@ -170,15 +286,13 @@ def _mean(values: Iterable[float]) -> float | None:
     return fmean(listed) if listed else None
 
 
-def judged_goal_line(
-    speed: str, seed: int, path: Path, goalkeeper: str = "default", world: WorldFactory = sim_world
-) -> None:
+def judged_goal_line(situation: Situation, seed: int, path: Path, world: WorldFactory = sim_world) -> None:
     """Play ``attack_expected`` until its first shot and draw the goal line as judged at that moment.
 
     Raises:
         RuntimeError: it takes no shot in the first of its trials.
     """
-    scenario = deployed_scenario(speed, "attack_expected", goalkeeper)
+    scenario = deployed_scenario(situation, "attack_expected")
     with Match(scenario, trial_seed(seed, 0), world) as match:
         store = match.players[0].store
         while match.tick():

@@ -4,17 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot
-from statistics import fmean
+from statistics import fmean, stdev
 
-from robobt.experiments.table4_rows import PAPER, Comparison, Row, Share, Spread, Table4, Trial
-from robobt.learning.envs.episodes import straight_line_time
+from robobt.experiments.table4_rows import (
+    PAPER,
+    Comparison,
+    Minimum,
+    PaperStart,
+    Row,
+    Spread,
+    Table4,
+    Trial,
+)
+from robobt.experiments.table4_starts import (
+    LIMITS,
+    SHOOTER,
+    Starts,
+    drawn_starts,
+    gap,
+    minimum_times,
+    table4_scenario,
+)
 from robobt.match.loop import Match, WorldFactory
+from robobt.match.results.results import Rate
 from robobt.match.runner import trial_seed
-from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.match.scenario.scenario import Scenario
+from robobt.sim.settings import settings_from
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
-from robobt.statistics import corrected_resampled_t_test, mean_interval, wilson_interval
-from robobt.world.state import Frame
+from robobt.statistics import mean_interval
 from robobt.worlds import sim_world
 
 TRIALS = ("1", "2")
@@ -25,10 +42,10 @@ COMBINATIONS: dict[str, dict[str, str | None]] = {
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
     "geometric, kick, quick": {"policy": "geometric", "shoot": "kick_to_target", "pickup_speed": None},
     "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},
-    "geometric, ddpg": {"policy": "geometric", "shoot": "ddpg"},
-    "ddpg, kick": {"policy": "ddpg", "shoot": "kick_to_target", "pickup_speed": None},
-    "ddpg, shoot": {"policy": "ddpg", "shoot": "geometric", "pickup_speed": None},
-    "ddpg, ddpg": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
+    "geometric, d4pg+td3": {"policy": "geometric", "shoot": "ddpg"},
+    "3-step ddpg, kick": {"policy": "ddpg", "shoot": "kick_to_target", "pickup_speed": None},
+    "3-step ddpg, shoot": {"policy": "ddpg", "shoot": "geometric", "pickup_speed": None},
+    "3-step ddpg, d4pg+td3": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
 }
 """Parameters of the play go_to_ball_and_shoot, by who approaches and who shoots.
 
@@ -39,9 +56,9 @@ dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
 """
 
 LEARNED = "ddpg, ddpg"
-HAND_WRITTEN = tuple(name for name in COMBINATIONS if "ddpg" not in name)
+HAND_WRITTEN = ("robobulls", "geometric, kick", "geometric, kick, quick", "geometric, shoot")
 
-_SHOOTER, _GOAL = "blue 0", "goal_blue"
+_GOAL = "goal_blue"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +70,8 @@ class Attempt:
         to_ball: start until the ball first lies in the mouth, as the paper counts [s].
         shoot: from then until the kick [s].
         goal: whether it went in.
+        minimum: the shortest possible times from this start; None where the start was not seen.
+        trace: hash over all that happened; equal for runs that repeat each other.
 
     Times are None for what never happened.
     """
@@ -61,6 +80,8 @@ class Attempt:
     to_ball: float | None
     shoot: float | None
     goal: bool
+    minimum: Minimum | None
+    trace: str
 
     @property
     def pick_up(self) -> float | None:
@@ -80,13 +101,16 @@ def table4(
     preset: str = "robobulls",
     realism: str | None = None,
     combinations: Sequence[str] = tuple(COMBINATIONS),
+    limits: Sequence[str] = tuple(LIMITS),
+    starts: Starts = "drawn",
     trials: Sequence[str] = TRIALS,
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
 ) -> Table4:
     """Play both trials with every combination.
 
-    Run n of every combination has the same seed, so that differences are paired.
+    Run n of every combination has the same seed and start, so that differences are paired.
+    Each combination has one run more, from the paper's start.
 
     Args:
         runs: number of runs of each.
@@ -94,40 +118,35 @@ def table4(
         preset: preset of the simulator.
         realism: level of noise, losses and delays; by default the scenarios' own little noise.
         combinations: some of :data:`COMBINATIONS`.
+        limits: some of :data:`LIMITS`.
+        starts: where runs start.
         trials: some of :data:`TRIALS`.
         progress: called after every run.
         world: where it is played.
 
     Raises:
-        KeyError: no such preset, realism level or combination.
+        KeyError: no such preset, realism level, combination or limits.
         ScenarioError: a play cannot be made, as where a model is missing.
     """
-    found: dict[str, Trial] = {}
-    for trial in trials:
-        attempts: dict[str, list[Attempt]] = {}
-        rows: dict[str, Row] = {}
-        for name in combinations:
-            scenario = table4_scenario(trial, COMBINATIONS[name], preset, realism)
-            first = scenario.seed if seed is None else seed
-            attempts[name] = []
-            for run in range(runs):
-                attempts[name].append(play_attempt(scenario, trial_seed(first, run), world))
+    found: dict[str, dict[str, Trial]] = {}
+    for name in limits:
+        found[name] = {}
+        for trial in trials:
+            attempts: dict[str, list[Attempt]] = {}
+            rows: dict[str, Row] = {}
+            for combination in combinations:
+                scenario = table4_scenario(trial, COMBINATIONS[combination], preset, realism, LIMITS[name])
+                first = scenario.seed if seed is None else seed
+                drawn = drawn_starts(scenario) if starts == "drawn" else scenario
+                attempts[combination] = []
+                for run in range(runs):
+                    attempts[combination].append(play_attempt(drawn, trial_seed(first, run), world))
+                    progress()
+                beside = play_attempt(scenario, trial_seed(first, 0), world)
                 progress()
-            rows[name] = _row_of(attempts[name], _optimum(scenario, name))
-        best, test = _compared(attempts)
-        found[trial] = {"paper": PAPER[trial], "rows": rows, "best_hand_written": best, "test": test}
-    return {"runs": runs, "preset": preset, "realism": realism, "trials": found}
-
-
-def table4_scenario(
-    trial: str, params: Mapping[str, object], preset: str = "robobulls", realism: str | None = None
-) -> Scenario:
-    """Return a trial's bundled scenario with another play's parameters, simulator or noise."""
-    scenario = load_scenario(f"table4_trial{trial}")
-    simulator = {**scenario.simulator, "preset": preset}
-    if realism is not None:
-        simulator["realism"] = realism
-    return scenario.model_copy(update={"simulator": simulator}).with_robot(_SHOOTER, params=dict(params))
+                rows[combination] = _row_of(attempts[combination], beside)
+            found[name][trial] = _trial_of(attempts, rows)
+    return Table4(runs=runs, preset=preset, realism=realism, starts=starts, paper=PAPER, limits=found)
 
 
 def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world) -> Attempt:
@@ -135,98 +154,78 @@ def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world)
     approach: float | None = None
     with Match(scenario, seed, world) as match:
         before = match.world.truth()
+        minimum = minimum_times(before, settings_from(scenario.simulator)) if before.own else None
         while match.tick():
             now = match.world.truth()
-            if not now.own:
+            if not (now.own and before.own):
                 # Over a network robots may be out of sight.
+                before = now
                 continue
-            if approach is None and _gap(now) <= HANDOVER_DISTANCE:
-                way, left = _gap(before) - _gap(now), _gap(before) - HANDOVER_DISTANCE
+            if approach is None and gap(now) <= HANDOVER_DISTANCE:
+                way, left = gap(before) - gap(now), gap(before) - HANDOVER_DISTANCE
                 share = min(1.0, max(0.0, left / way)) if way > 0.0 else 1.0
                 approach = before.time + share * (now.time - before.time)
             before = now
         result = match.result()
-    figures = result.robots[_SHOOTER]
-    return Attempt(approach, figures.go_to_ball, figures.shoot, result.outcome == _GOAL)
+    figures = result.robots[SHOOTER]
+    goal = result.outcome == _GOAL
+    return Attempt(approach, figures.go_to_ball, figures.shoot, goal, minimum, result.trace)
 
 
-def _gap(frame: Frame) -> float:
-    robot, ball = frame.own[0], frame.ball
-    return hypot(ball.x - robot.x, ball.y - robot.y)
-
-
-def _row_of(attempts: Sequence[Attempt], optimum: float) -> Row:
-    approach = _spread(attempt.approach for attempt in attempts)
+def _row_of(attempts: Sequence[Attempt], beside: Attempt) -> Row:
+    traces = [attempt.trace for attempt in attempts]
     return Row(
-        approach=approach,
+        approach=_spread(attempt.approach for attempt in attempts),
         pick_up=_spread(attempt.pick_up for attempt in attempts),
         to_ball=_spread(attempt.to_ball for attempt in attempts),
         shoot=_spread(attempt.shoot for attempt in attempts),
         total=_spread(attempt.total for attempt in attempts),
-        goals=_share([attempt.goal for attempt in attempts]),
-        reached=_share([attempt.to_ball is not None for attempt in attempts]),
-        shots=_share([attempt.shoot is not None for attempt in attempts]),
-        optimum=optimum,
-        optimum_ratio=None if approach["mean"] is None else approach["mean"] / optimum,
+        goals=Rate.of([attempt.goal for attempt in attempts], traces),
+        reached=Rate.of([attempt.to_ball is not None for attempt in attempts], traces),
+        shots=Rate.of([attempt.shoot is not None for attempt in attempts], traces),
+        ball_ratio=_ratio((one.to_ball, one.minimum and one.minimum["to_ball"]) for one in attempts),
+        kick_ratio=_ratio((one.total, one.minimum and one.minimum["to_kick"]) for one in attempts),
+        paper_start=PaperStart(to_ball=beside.to_ball, total=beside.total, goal=beside.goal),
     )
 
 
-def _share(happened: Sequence[bool]) -> Share:
-    low, high = wilson_interval(sum(happened), len(happened))
-    return {"count": sum(happened), "rate": sum(happened) / len(happened), "low": low, "high": high}
+def _ratio(pairs: Iterable[tuple[float | None, float | None]]) -> float | None:
+    known = [(time, least) for time, least in pairs if time is not None and least is not None]
+    return sum(time for time, _ in known) / sum(least for _, least in known) if known else None
 
 
 def _spread(given: Iterable[float | None]) -> Spread:
     values = [value for value in given if value is not None]
     mean = fmean(values) if values else None
-    low, high = mean_interval(values) if len(values) > 1 else (None, None)
-    variance = None
-    if mean is not None and len(values) > 1:
-        variance = sum((value - mean) ** 2 for value in values) / (len(values) - 1)
+    # Runs that are all the same tell nothing of others.
+    low, high = mean_interval(values) if len(set(values)) > 1 else (None, None)
+    variance = stdev(values) ** 2 if len(values) > 1 else None
     return {"n": len(values), "mean": mean, "variance": variance, "low": low, "high": high}
 
 
-def _optimum(scenario: Scenario, name: str) -> float:
-    """Return the straight line's time at what the approach may use; a model's top speed is on its card."""
-    frame = sim_world(scenario)
-    with Match(scenario, 0, lambda _: frame) as match:
-        start = match.world.truth()
-    limits = start.own[0].limits
-    fastest = limits.max_speed
-    if COMBINATIONS[name].get("policy") == "ddpg":
-        fastest = min(fastest, _model_speed())
-    elif "style" in COMBINATIONS[name]:
-        from robobt.motion.pilot import ROBOBULLS_LIMITS
-
-        limits, fastest = ROBOBULLS_LIMITS, ROBOBULLS_LIMITS.max_speed
-    strongest = max(limits.acceleration, limits.lateral_acceleration)
-    return float(straight_line_time(_gap(start) - HANDOVER_DISTANCE, fastest, strongest))
-
-
-def _model_speed() -> float:
-    from robobt.models.policy import load_policy
-    from robobt.skills.ball.go_to_ball import SHIPPED
-
-    action = load_policy(SHIPPED["ddpg"], skill="GoToBall").card.action
-    assert action is not None
-    return action.max_speed
+def _trial_of(attempts: Mapping[str, Sequence[Attempt]], rows: dict[str, Row]) -> Trial:
+    """Compare the learned combination with the best hand-written one: most goals, then the first kick."""
+    minima = [one.minimum for played in attempts.values() for one in played if one.minimum is not None]
+    minimum = None
+    if minima:
+        to_ball, to_kick = (fmean(one[key] for one in minima) for key in ("to_ball", "to_kick"))
+        minimum = Minimum(to_ball=to_ball, to_kick=to_kick)
+    times = {name: rows[name]["total"]["mean"] for name in HAND_WRITTEN if name in rows}
+    kicked = {name: (-rows[name]["goals"].count, time) for name, time in times.items() if time is not None}
+    best = min(kicked, key=kicked.__getitem__) if kicked else None
+    found = Trial(minimum=minimum, rows=rows, best_hand_written=best, to_ball=None, to_kick=None)
+    if best is not None and LEARNED in rows:
+        pairs = list(zip(attempts[LEARNED], attempts[best], strict=True))
+        found["to_ball"] = _compared((ours.to_ball, theirs.to_ball) for ours, theirs in pairs)
+        found["to_kick"] = _compared((ours.total, theirs.total) for ours, theirs in pairs)
+    return found
 
 
-def _compared(attempts: Mapping[str, Sequence[Attempt]]) -> tuple[str | None, Comparison | None]:
-    """Test the learned combination against the hand-written one that is first at the ball."""
-    times = {name: [attempt.to_ball for attempt in played] for name, played in attempts.items()}
-    means = {
-        name: fmean([time for time in times[name] if time is not None])
-        for name in HAND_WRITTEN
-        if name in times and any(time is not None for time in times[name])
-    }
-    best = min(means, key=lambda name: means[name]) if means else None
-    if best is None or LEARNED not in times:
-        return best, None
-    pairs = zip(times[LEARNED], times[best], strict=True)
+def _compared(pairs: Iterable[tuple[float | None, float | None]]) -> Comparison | None:
     differences = [ours - theirs for ours, theirs in pairs if ours is not None and theirs is not None]
-    if len(differences) < 2:
-        return best, None
-    # A share of 0 to correct for leaves the plain paired t-test.
-    mean, variance, t, degrees, p = corrected_resampled_t_test(differences, 0.0)
-    return best, Comparison(mean=mean, variance=variance, t=t, degrees=degrees, p=p, n=len(differences))
+    if not differences:
+        return None
+    mean, vary = fmean(differences), len(set(differences)) > 1
+    low, high = mean_interval(differences) if vary else (None, None)
+    effect = mean / stdev(differences) if vary else None
+    return Comparison(n=len(differences), mean=mean, low=low, high=high, effect=effect)

@@ -16,17 +16,21 @@ _PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
 
 
 def draw_table4(result: Table4, path: Path) -> None:
-    """Draw the times of every row, one panel a trial; the path's ending decides the format.
+    """Draw the times of every row, a panel for each trial and set of limits.
 
     Bars are means, in parts; whiskers the 95 % interval of the mean total. The paper's
-    rows, whose approach and pick-up are one figure, are hatched.
+    rows, whose approach and pick-up are one figure, are hatched. A dashed line is the
+    physical minimum to the kick. The path's ending decides the format.
     """
-    trials = result["trials"]
-    figure = new_figure(6.5 * len(trials), 5.5)
-    for i, (trial, found) in enumerate(trials.items()):
-        axes = figure.add_subplot(1, len(trials), i + 1)
+    panels = [
+        (limits, trial, found) for limits, by in result["limits"].items() for trial, found in by.items()
+    ]
+    columns = len(panels) // len(result["limits"])
+    figure = new_figure(6.5 * columns, 5.5 * len(result["limits"]))
+    for i, (limits, trial, found) in enumerate(panels):
+        axes = figure.add_subplot(len(result["limits"]), columns, i + 1)
         labels: list[str] = []
-        for name, printed in found["paper"].items():
+        for name, printed in result["paper"][trial].items():
             at, left = len(labels), printed["to_ball"]
             axes.barh(at, left, color="0.75", hatch="//", edgecolor="white")
             axes.barh(at, printed["shoot"], left=left, color="C1", alpha=0.5, hatch="//", edgecolor="w")
@@ -42,10 +46,12 @@ def draw_table4(result: Table4, path: Path) -> None:
             mean, low, high = total["mean"], total["low"], total["high"]
             if mean is not None and low is not None and high is not None:
                 axes.errorbar(mean, at, xerr=[[mean - low], [high - mean]], color="black", capsize=3)
-            labels.append(f"{name}\n{row['goals']['count']} of {result['runs']} goals")
+            labels.append(f"{name}\n{row['goals'].count} of {result['runs']} goals")
         axes.set_yticks(range(len(labels)), labels, fontsize=8)
         axes.invert_yaxis()
-        axes.set(xlabel="time [s]", title=f"Trial {trial}, {result['preset']}")
+        if found["minimum"] is not None:
+            axes.axvline(found["minimum"]["to_kick"], color="black", linestyle="--", linewidth=1)
+        axes.set(xlabel="time [s]", title=f"Trial {trial}, limits: {limits}, {result['preset']}")
         for _, title, color in _PARTS:
             axes.barh(0, 0, color=color, label=title)
         axes.barh(0, 0, color="0.75", hatch="//", edgecolor="white", label="to the ball (paper)")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TypedDict, cast
 
+from robobt.match.results.results import Rate
+
 
 class PaperRow(TypedDict):
     """A printed row: means [s], variances [s^2] and goals of 25."""
@@ -46,20 +48,23 @@ class Spread(TypedDict):
     high: float | None
 
 
-class Share(TypedDict):
-    """How many runs did it, with the 95 % Wilson interval of the rate."""
+class Minimum(TypedDict):
+    """The physical minimum of the runs' starts [s]: a straight line at top speed and strongest acceleration.
 
-    count: int
-    rate: float
-    low: float
-    high: float
+    ``to_ball`` ends with the ball in the mouth, from whatever side; ``to_kick`` with the ball in
+    the mouth of a robot that faces the goal. The robot need not stop, and can turn on its way.
+    """
+
+    to_ball: float
+    to_kick: float
 
 
 class Row(TypedDict):
     """A combination's figures.
 
-    ``optimum`` is the straight line's time for the approach at the speed and acceleration
-    that it may use [s], ``optimum_ratio`` the mean approach over that.
+    ``ball_ratio`` and ``kick_ratio`` are mean times to the ball and to the kick over the means
+    of their physical minimum, of the runs that got so far; None without one.
+    ``paper_start`` is one run from the paper's own start.
     """
 
     approach: Spread
@@ -67,41 +72,56 @@ class Row(TypedDict):
     to_ball: Spread
     shoot: Spread
     total: Spread
-    goals: Share
-    reached: Share
-    shots: Share
-    optimum: float
-    optimum_ratio: float | None
+    goals: Rate
+    reached: Rate
+    shots: Rate
+    ball_ratio: float | None
+    kick_ratio: float | None
+    paper_start: PaperStart
+
+
+class PaperStart(TypedDict):
+    """Times from the paper's own start [s]; None for what never happened."""
+
+    to_ball: float | None
+    total: float | None
+    goal: bool
 
 
 class Comparison(TypedDict):
-    """A paired t-test of ``n`` differences [s]."""
+    """Paired differences of ``n`` starts, learned less hand-written [s].
 
-    mean: float
-    variance: float
-    t: float
-    degrees: int
-    p: float
+    ``low`` and ``high`` are the 95 % interval of the mean difference, ``effect`` is the mean over
+    the differences' standard deviation; None where all differences are the same, or only one is known.
+    """
+
     n: int
+    mean: float
+    low: float | None
+    high: float | None
+    effect: float | None
 
 
 class Trial(TypedDict):
-    """The table of one trial.
+    """One trial at one set of limits.
 
-    ``best_hand_written`` is the hand-written combination that is first at the ball, and
-    ``test`` compares the learned one's time to the ball with it.
+    ``best_hand_written`` is the hand-written combination that kicks first, of those with the
+    most goals. ``to_ball`` and ``to_kick`` compare the learned one with it.
     """
 
-    paper: dict[str, PaperRow]
+    minimum: Minimum | None
     rows: dict[str, Row]
     best_hand_written: str | None
-    test: Comparison | None
+    to_ball: Comparison | None
+    to_kick: Comparison | None
 
 
 class Table4(TypedDict):
-    """All of Table 4, by trial."""
+    """All of Table 4: by limits, then by trial."""
 
     runs: int
     preset: str
     realism: str | None
-    trials: dict[str, Trial]
+    starts: str
+    paper: dict[str, dict[str, PaperRow]]
+    limits: dict[str, dict[str, Trial]]

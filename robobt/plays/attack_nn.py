@@ -27,6 +27,7 @@ def attack_nn(
     speed: float = 1.0,
     dribble_speed: float = 2.0,
     steady: float = 0.1,
+    feint: bool = True,
 ) -> Behaviour:
     """Attack Main without passes, its shots filtered by a network; without a shot it goes on dribbling.
 
@@ -45,7 +46,9 @@ def attack_nn(
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
         steady: how long a shot must have been open before it is begun [s].
+        feint: draw the goalkeeper; the paper's play does not, and waits where it has dribbled to.
     """
+    draw = (DrawGoalkeeper(),) if feint else ()
     rater = NNFiltered(model=model, threshold=threshold, tolerance=tolerance)
     return first_of(
         "attack nn",
@@ -55,6 +58,6 @@ def attack_nn(
             ShotIsSteady(rise=steady, fall=steady),
             KickToTarget(kick_speed=shot_speed, speed=speed),
         ),
-        when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed), DrawGoalkeeper()),
+        when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed), *draw),
         when("get the ball", GoToBall(speed=speed), PickUpBall()),
     )

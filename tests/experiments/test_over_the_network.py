@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.experiments.deployed import deployed, deployed_scenario
+from robobt.experiments.deployed import SITUATIONS, deployed, deployed_scenario
 from robobt.experiments.table4 import COMBINATIONS, table4, table4_scenario
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import Endpoints
@@ -32,22 +32,28 @@ def test_table_4_is_played_on_a_served_field() -> None:
         result = table4(
             1,
             combinations=("geometric, kick",),
+            limits=("own",),
+            starts="paper",
             trials=("1",),
             world=world_from(address(endpoints, 2.0)),
         )
-    row = result["trials"]["1"]["rows"]["geometric, kick"]
-    assert row["reached"]["count"] == row["shots"]["count"] == 1
-    assert row["optimum_ratio"] > 0.9
+    row = result["limits"]["own"]["1"]["rows"]["geometric, kick"]
+    assert row["reached"].count == row["shots"].count == 1
+    assert row["ball_ratio"] > 0.9
 
 
 @pytest.mark.slow
 def test_the_deployed_attackers_play_on_a_served_field() -> None:
     endpoints = free_endpoints()
-    with served(served_scenario(deployed_scenario("full", "attack_main")), endpoints, speed=2.0):
+    situation = SITUATIONS[0]
+    with served(served_scenario(deployed_scenario(situation, "attack_main")), endpoints, speed=2.0):
         result = deployed(
-            1, speeds=("full",), plays=("attack_main",), world=world_from(address(endpoints, 2.0))
+            1,
+            situations=[situation],
+            attackers=["attack_main"],
+            world=world_from(address(endpoints, 2.0)),
         )
-    assert result["speeds"]["full"]["attack_main"]["attempts"] == 1
+    assert result["cells"][0]["attackers"]["attack_main"]["attempts"] == 1
 
 
 def test_over_the_network_there_is_one_worker() -> None:
