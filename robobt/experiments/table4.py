@@ -55,7 +55,7 @@ The learned approach hands over at full speed and the pick-up goes on as fast as
 dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
 """
 
-LEARNED = "ddpg, ddpg"
+LEARNED = "3-step ddpg, d4pg+td3"
 HAND_WRITTEN = ("robobulls", "geometric, kick", "geometric, kick, quick", "geometric, shoot")
 
 _GOAL = "goal_blue"
