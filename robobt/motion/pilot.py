@@ -50,7 +50,9 @@ def drive(
 
     An acceleration in ``limits`` at or above the robot's own is left to the
     robot, which knows its velocity without delay; a lower one is kept here, by
-    asking for no velocity that lies too far from the present one.
+    asking for no velocity that lies too far from the present one. So is the
+    robot's own where it reacts late: the wheels of such a robot take a command at
+    its word, and slip.
 
     Args:
         me: the robot.
@@ -98,11 +100,23 @@ def command(
     if squared > limits.max_speed * limits.max_speed:
         scale = limits.max_speed / sqrt(squared)
         vx, vy = vx * scale, vy * scale
-    if limits is not me.limits:
+    if limits is not me.limits or me.limits.reaction > 0.0:
         vx, vy = _gentle(me, vx, vy, limits, period)
     heading = me.heading + 0.5 * omega * period
     c, s = cos(heading), sin(heading)
     return RobotCommand(c * vx + s * vy, c * vy - s * vx, omega)
+
+
+def roughly(heading: float, wanted: float, slack: float) -> float:
+    """Return the heading nearest to the present one that is within ``slack`` of the wanted one [rad].
+
+    A robot that only has to look somewhere thereabouts stays as it is while that moves a little, where it
+    would swing to and fro at exactly so.
+    """
+    error = wrap_angle(wanted - heading)
+    if abs(error) <= slack:
+        return heading
+    return wanted - slack if error > 0.0 else wanted + slack
 
 
 def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float) -> float:
@@ -220,11 +234,14 @@ def _gentle(me: RobotState, vx: float, vy: float, limits: RobotLimits, period: f
     own = me.limits
     bearing = atan2(dy, dx) - me.heading
     rate = along(limits.acceleration, limits.lateral_acceleration, bearing)
+    lead = own.reaction
     if rate >= along(own.acceleration, own.lateral_acceleration, bearing):
-        rate = inf
+        lead *= 2.0
+        if lead == 0.0:
+            rate = inf
     if vx * vx + vy * vy < me.vx * me.vx + me.vy * me.vy:
         rate = max(rate, along(limits.braking, limits.lateral_braking, bearing))
-    most = rate * (period + own.reaction)
+    most = rate * (period + lead)
     if change <= most:
         return (vx, vy)
     share = most / change

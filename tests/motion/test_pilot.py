@@ -16,6 +16,7 @@ from robobt.motion.pilot import (
     approach_speed,
     command,
     drive,
+    roughly,
     travel_time,
     turn_rate,
 )
@@ -241,3 +242,35 @@ def test_a_robot_that_reacts_late_and_says_so_settles_without_swinging(delay: in
 
 def test_one_that_does_not_say_so_swings() -> None:
     assert reverses(driven_late(0.0, 2)) > 10
+
+
+@given(heading=st.floats(-pi, pi), wanted=st.floats(-pi, pi), slack=st.floats(0.0, 1.0))
+def test_roughly_there_is_the_nearest_heading_within_the_slack(
+    heading: float, wanted: float, slack: float
+) -> None:
+    error = wrap_angle(wanted - heading)
+    rough = roughly(heading, wanted, slack)
+    assert abs(wrap_angle(rough - heading)) == pytest.approx(max(0.0, abs(error) - slack), abs=1e-9)
+    assert abs(wrap_angle(rough - wanted)) == pytest.approx(min(abs(error), slack), abs=1e-9)
+
+
+@given(speed=st.floats(0.0, 3.0), course=st.floats(-pi, pi), bearing=st.floats(-pi, pi))
+def test_a_robot_that_reacts_late_is_asked_for_no_velocity_far_from_its_own(
+    speed: float, course: float, bearing: float
+) -> None:
+    # Its wheels would slip: grSim takes the direction of a command as it is.
+    limits = RobotLimits(acceleration=4.0, braking=4.0, reaction=1 / 60)
+    me = robot(0.0, velocity=(speed * cos(course), speed * sin(course), 0.0), limits=limits)
+    asked = drive(me, (2.0 * cos(bearing), 2.0 * sin(bearing)), 0.0, limits, 1 / 60)
+    assert hypot(asked.vx - me.vx, asked.vy - me.vy) <= 4.0 * 3 / 60 + 1e-9
+
+
+def test_grsims_robot_keeps_its_heading_when_it_is_sent_elsewhere_on_its_way() -> None:
+    places = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.3), (0.5, -1.0)]
+    skill = GoToPose(heading=0.0)
+    trial = Trial({blue(0): skill}, {blue(0): (0.0, 0.0, 0.0)}, ball=(3.0, 2.5), settings="grsim")
+    for k in range(16):
+        skill.target = places[k % len(places)]
+        trial.run(0.4)
+    # With jumps of its command it is 0.1 rad off.
+    assert max(abs(frame.own[0].heading) for frame in trial.frames) < 0.05
