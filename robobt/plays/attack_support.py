@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import radians
+
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.ball.face_ball import FaceBall
 from robobt.skills.ball.intercept import Intercept
@@ -25,5 +27,5 @@ def attack_support(*, speed: float = 1.0) -> Behaviour:
         "attack support",
         when("receive", PassIsComing(), Intercept(speed=speed)),
         when("expect", MateAimsAtMe(), FaceBall(dribbler=True)),
-        when("position", SelectSupportPosition(), GoToPose(face_ball=True)),
+        when("position", SelectSupportPosition(), GoToPose(face_ball=True, heading_tolerance=radians(15.0))),
     )

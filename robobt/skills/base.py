@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import atan2, radians
 from typing import TypeVar, dataclass_transform
 
 from robobt.motion.path_planner import travel
+from robobt.motion.pilot import roughly
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
-from robobt.world.geometry import Point, direction
+from robobt.world.geometry import Point, direction, distance
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BallState, Frame, RobotState
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
+
+_FACING = radians(15.0)
+"""How far off a robot looks at most that has to look there roughly."""
 
 
 @dataclass(eq=False, repr=False)
@@ -55,13 +60,23 @@ class Skill(Leaf[Store]):
         avoid_robots: bool = True,
         avoid_ball: bool = False,
         goalkeeper: bool = False,
+        thereabouts: bool = False,
     ) -> None:
-        """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`."""
+        """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.
+
+        With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball.
+        """
+        me = self.me
+        heading = direction(me.position, facing)
+        if thereabouts:
+            # What is close passes by quickly, and the robot itself covers more of the view.
+            slack = _FACING + atan2(ROBOT_RADIUS, distance(me.position, facing))
+            heading = roughly(me.heading, heading, slack)
         self.store.command = travel(
             self.frame,
-            self.me,
+            me,
             target,
-            direction(self.me.position, facing),
+            heading,
             self.drive_limits,
             avoid_robots=avoid_robots,
             avoid_ball=avoid_ball,

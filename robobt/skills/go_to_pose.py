@@ -6,11 +6,13 @@ from dataclasses import field
 from math import hypot, radians
 
 from robobt.motion.path_planner import allowed_target, travel
+from robobt.motion.pilot import roughly
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
 
+_SLACK = 0.9
 _STANDING = 0.1
 """Speed below which a robot has arrived [m/s]."""
 
@@ -27,7 +29,7 @@ class GoToPose(DrivingSkill):
     Args:
         target: where to [m]; None takes ``store.target``.
         heading: where the mouth is to point [rad]; None keeps the present heading.
-        face_ball: turn to the ball instead of to ``heading``.
+        face_ball: turn to the ball instead of to ``heading``, no nearer than ``heading_tolerance`` asks.
         tolerance: distance that counts as there [m].
         heading_tolerance: angle that counts as there [rad].
         limits: how to drive; None is the robot's own.
@@ -78,5 +80,6 @@ class GoToPose(DrivingSkill):
 
     def _heading(self) -> float:
         if self.face_ball:
-            return direction(self.me.position, self.ball.position)
+            wanted = direction(self.me.position, self.ball.position)
+            return roughly(self.me.heading, wanted, _SLACK * self.heading_tolerance)
         return self._kept_heading if self.heading is None else self.heading

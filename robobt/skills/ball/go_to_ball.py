@@ -9,7 +9,7 @@ from typing import Literal
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.path_planner import allowed_target, travel
-from robobt.motion.pilot import travel_time
+from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
 from robobt.skills.base import skill
@@ -34,6 +34,8 @@ _ARRIVAL_SPEED = 0.5
 _REACHABLE = 0.03
 _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
+_LOOKING = radians(10.0)
+"""How far off a robot may look that is still on its way."""
 _SURE = 0.8
 """Share of its braking that is relied on."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
@@ -158,7 +160,10 @@ def geometric(store: Store, approach: Approach) -> RobotCommand:
     bearing = direction(me.position, meeting)
     heading = direction(me.position, frame.ball.position)
     round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
-    if facing is not None and distance(me.position, meeting) < _TURN_DISTANCE:
+    far = distance(me.position, meeting) >= _TURN_DISTANCE
+    if far:
+        heading = roughly(me.heading, heading, _LOOKING)
+    elif facing is not None:
         heading = facing
     return travel(
         frame,

@@ -8,7 +8,7 @@ from typing import Literal
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
-from robobt.motion.pilot import ROBOBULLS_LIMITS
+from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
@@ -41,6 +41,8 @@ _NEAR = 0.25
 _GOT_AWAY = 0.7
 _CREEP = 0.5
 _TURN_DISTANCE = 1.2
+_FACING = radians(10.0)
+"""How far off a robot may look that is still on its way behind the ball."""
 _REACHABLE = 0.03
 _LEFT_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
@@ -195,6 +197,8 @@ class KickToTarget(DrivingSkill):
             heading = direction(me.position, (x, y))
             place = (x - _BEHIND * cos(heading), y - _BEHIND * sin(heading))
             final_speed = _CREEP
+        if not (in_line and near):
+            heading = roughly(me.heading, heading, _FACING)
         self.store.command = travel(
             frame,
             me,

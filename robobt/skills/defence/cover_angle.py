@@ -52,5 +52,6 @@ class CoverAngle(DrivingSkill):
             # Inside nobody else may stand; a new goalkeeper from outside goes round its own wall.
             avoid_robots=not in_own_defense_area(field, me.x, me.y, ROBOT_RADIUS),
             goalkeeper=True,
+            thereabouts=True,
         )
         return self.run("covering the angle")

@@ -38,5 +38,5 @@ class CoverNearPost(DrivingSkill):
             abs(place[1]) > field.defense_width / 2
         ):
             return self.fail("too far out")
-        self.drive_to(place, ball, avoid_robots=False, goalkeeper=True)
+        self.drive_to(place, ball, avoid_robots=False, goalkeeper=True, thereabouts=True)
         return self.run("covering the near post")

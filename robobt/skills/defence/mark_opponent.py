@@ -39,5 +39,5 @@ class MarkOpponent(Skill):
         dx, dy = ball.x - opponent.x, ball.y - opponent.y
         share = self.gap / max(self.gap, (dx * dx + dy * dy) ** 0.5)
         target = (opponent.x + dx * share, opponent.y + dy * share)
-        self.drive_to(target, ball.position, avoid_ball=True)
+        self.drive_to(target, ball.position, avoid_ball=True, thereabouts=True)
         return self.run(f"marking {opponent.id}")

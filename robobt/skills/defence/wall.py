@@ -46,7 +46,7 @@ class Wall(Skill):
         middle = edge.towards(frame.ball.position)
         middle = min(edge.length - spread, max(spread, middle))
         target = edge.point(middle + offset)
-        self.drive_to(target, frame.ball.position, avoid_ball=True)
+        self.drive_to(target, frame.ball.position, avoid_ball=True, thereabouts=True)
         return self.run("in the wall")
 
 

@@ -47,7 +47,7 @@ class KeepDistance(Skill):
             return self.succeed("far enough")
         # Aimed farther than needed, so that the robot does not creep up to the limit.
         target = way_out(frame, me, near[0], keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
-        self.drive_to(target, near[0], goalkeeper=self.goalkeeper)
+        self.drive_to(target, near[0], goalkeeper=self.goalkeeper, thereabouts=True)
         return self.run("clearing the ball")
 
 

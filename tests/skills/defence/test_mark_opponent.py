@@ -16,6 +16,14 @@ def test_it_stands_beside_the_opponent_towards_the_ball() -> None:
     assert segment_distance(end.position, opponent.position, (0.0, 0.0)) < 0.03
 
 
+def test_it_looks_only_roughly_at_the_ball() -> None:
+    opponent = robot(-2.0, 0.0, number=4)
+    for ball, turns in (((0.0, 0.3), False), ((0.0, -0.3), False), ((-1.0, 1.5), True)):
+        alone = Alone(MarkOpponent())
+        alone.tick(frame(robot(-1.75, 0.0, number=1), ball, opponents=(opponent,), game=OPEN), 1)
+        assert (alone.command.omega != 0.0) == turns
+
+
 def test_opponents_far_from_the_own_half_are_left_alone() -> None:
     far = robot(3.0, 1.0, number=4)
     drive = Drive(MarkOpponent(), robot(0, 0), OPEN, (0.0, 0.0), opponents=(far,), seconds=0.1)
