@@ -51,6 +51,7 @@ class Fouls:
         self._last_foul: dict[Team, float] = {}
         self._reported: set[RobotId] = set()
         self._crashing: set[tuple[RobotId, RobotId]] = set()
+        self._before: Frame | None = None
         self._kicker: RobotId | None = None
         self._kicker_left = False
         self._kick_spot: Point = (0.0, 0.0)
@@ -67,6 +68,7 @@ class Fouls:
         """
         self._kicker, self._kicker_left, self._kick_spot = kicker, False, spot
         self._crashing.clear()
+        self._before = None
         self._reported.clear()
         self._rest_point, self._rest_since = frame.ball.position, frame.time
         self._area_since = None
@@ -148,14 +150,21 @@ class Fouls:
         limit = self._settings.crash_speed
         if limit is None:
             return
+        before, self._before = self._before, frame
         reach = 2.0 * ROBOT_RADIUS + 0.01
         for blue in frame.own:
             for yellow in frame.opponents:
                 dx, dy = yellow.x - blue.x, yellow.y - blue.y
-                if abs(dx) < reach and abs(dy) < reach and 0.0 < (gap := hypot(dx, dy)) < reach:
-                    closing = ((blue.vx - yellow.vx) * dx + (blue.vy - yellow.vy) * dy) / gap
-                    if closing > limit:
-                        yield from self._crash(frame, blue, yellow)
+                if abs(dx) < reach and abs(dy) < reach and hypot(dx, dy) < reach:
+                    # In the frame in which they are seen to touch they may have stopped each other already.
+                    coming = blue, yellow
+                    known = {} if before is None else before.robots()
+                    one = known.get(RobotId(Team.BLUE, blue.id), blue)
+                    other = known.get(RobotId(Team.YELLOW, yellow.id), yellow)
+                    if _closing(one, other) > _closing(*coming):
+                        coming = one, other
+                    if _closing(*coming) > limit:
+                        yield from self._crash(frame, *coming)
 
     def _crash(self, frame: Frame, blue: RobotState, yellow: RobotState) -> Iterator[Foul]:
         pair = (RobotId(Team.BLUE, blue.id), RobotId(Team.YELLOW, yellow.id))
@@ -183,6 +192,12 @@ class Fouls:
         """Return a foul that gives the other team a free kick where the ball is."""
         resumption = free_kick(self._field, offender.team.other, *frame.ball.position)
         return Foul(kind, offender.team, offender, resumption)
+
+
+def _closing(one: RobotState, other: RobotState) -> float:
+    dx, dy = other.x - one.x, other.y - one.y
+    gap = hypot(dx, dy)
+    return ((one.vx - other.vx) * dx + (one.vy - other.vy) * dy) / gap if gap > 0.0 else 0.0
 
 
 def _robot(frame: Frame, identity: RobotId) -> RobotState:

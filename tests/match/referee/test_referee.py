@@ -540,6 +540,14 @@ def test_both_are_at_fault_when_they_meet_at_like_speeds(story: Story) -> None:
     assert {team for _, team in story.events} == {story.us, story.them}
 
 
+def test_a_crash_counts_at_the_speeds_before_it(story: Story) -> None:
+    # From one frame to the next they have met and stopped each other.
+    story.ours(1, 0.0, 1.0, vx=1.6).theirs(1, 0.21, 1.0).tick()
+    assert story.events == []
+    story.ours(1, 0.026, 1.0, vx=0.6).theirs(1, 0.21, 1.0, vx=0.5).tick()
+    assert story.events == [(EventKind.CRASH, story.us)]
+
+
 @pytest.mark.parametrize(("vx", "vy"), [(1.4, 0.0), (0.0, 3.0)], ids=["slow", "passing"])
 def test_a_slow_or_passing_contact_is_no_crash(story: Story, vx: float, vy: float) -> None:
     assert story.ours(1, 0.0, 1.0, vx=vx, vy=vy).theirs(1, 0.18, 1.0).tick().events == []
