@@ -10,6 +10,8 @@ from robobt.world.features import ABSENT, SCENE_HEAD, SCENE_OPPONENTS, SHOT_SCEN
 from robobt.world.geometry import FloatArray
 
 _KINEMATICS = ("x", "y", "heading", "field_vx", "field_vy", "omega")
+_HELD = 0.11
+"""Shooter's centre to a ball in its mouth [m]."""
 _OPPONENT = ("x", "y", "heading", "vx", "vy", "omega")
 
 
@@ -29,6 +31,28 @@ def shot_inputs(table: pa.Table) -> FloatArray:
     for count in np.unique(counts[placed & moving]):
         rows = np.flatnonzero(placed & moving & (counts == count))
         scenes[rows] = _from_field(table.take(pa.array(rows)), int(count))
+    return scenes
+
+
+def asked_inputs(table: pa.Table) -> FloatArray:
+    """Return the scenes (n, 34) as a rater in play asks about them; only unknown velocities stay unknown.
+
+    Where it was not recorded, the shooter points at its target with the ball before it, which
+    moves with it.
+    """
+    scenes = shot_inputs(table)
+    index = {name: i for i, (name, _) in enumerate(SHOT_SCENE.entries)}
+    along, across = scenes[:, index["shooter_v_along"]], scenes[:, index["shooter_v_across"]]
+    for name, otherwise in (
+        ("target_offset", 0.0),
+        ("turn", 0.0),
+        ("ball_along", _HELD),
+        ("ball_across", 0.0),
+        ("ball_v_along", along),
+        ("ball_v_across", across),
+    ):
+        column = scenes[:, index[name]]
+        scenes[:, index[name]] = np.where(np.isnan(column), otherwise, column)
     return scenes
 
 

@@ -1,0 +1,122 @@
+"""The race of ball and goalkeeper: how likely a shot scores, without a simulator.
+
+The goalkeeper is the paper's. It drives to the nearest point of the line from the ball to
+where the shot would cross, and ends that line a robot's radius before the goal's, as
+RoboBulls' published code does: on a slanting shot it so takes its place a little beside the
+ball's way, too far out on a shot to the far post and too far in on one to the near post.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, erf, sin, sqrt
+
+import numpy as np
+import pyarrow as pa
+
+from robobt.sim.settings import PRESETS
+from robobt.world.compiled import compiled
+from robobt.world.field import DIVISION_B
+from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_BALL = PRESETS["robobulls"].ball
+SLIDING, SWITCH, ROLLING = _BALL.slide_deceleration, _BALL.switch_share, _BALL.roll_deceleration
+GOAL_LINE, POST = DIVISION_B.half_length, DIVISION_B.goal_width / 2.0 - 0.01
+REACH = ROBOT_RADIUS + BALL_RADIUS
+"""A ball whose centre comes nearer than this to the goalkeeper's is saved [m]."""
+
+STEP = 0.01
+THERE = 0.005
+LEAST_OFFSET = 0.002
+_COLUMNS = (
+    *("angle_to_goal", "distance_to_goal", "target_y", "robot_x", "robot_y", "ball_x", "ball_y"),
+    *("opp_x", "opp_y", "opp_vx", "opp_vy"),
+)
+
+HELD = 0.11
+"""Ball to robot's centre where the ball was not recorded [m]."""
+
+
+def race_inputs(table: pa.Table) -> FloatArray:
+    """Return what the race starts from, (n, 8).
+
+    Ball x, y, target y, goalkeeper x, y, vx, vy in field coordinates [m, m/s], and the ball's
+    bearing off the line shooter -> target as the shooter sees it [rad].
+    """
+    column = {name: np.asarray(table.column(name).to_numpy(), dtype=np.float64) for name in _COLUMNS}
+    angle, length = column["angle_to_goal"], column["distance_to_goal"]
+    c, s = np.cos(angle), np.sin(angle)
+    target = np.nan_to_num(column["target_y"])
+    # Rows without field coordinates still say where everybody is in the frame of the shot.
+    x, y = GOAL_LINE - length * c, target - length * s
+    dx, dy = column["ball_x"] - column["robot_x"], column["ball_y"] - column["robot_y"]
+    dx, dy = np.where(np.isnan(dx), HELD * c, dx), np.where(np.isnan(dy), HELD * s, dy)
+    across = c * dy - s * dx
+    ox, oy = column["opp_x"], column["opp_y"]
+    vx, vy = np.nan_to_num(column["opp_vx"]), np.nan_to_num(column["opp_vy"])
+    return np.stack(
+        [
+            *(x + dx, y + dy, target),
+            *(x + c * ox - s * oy, y + s * ox + c * oy, c * vx - s * vy, s * vx + c * vy),
+            np.arctan2(across, c * dx + s * dy),
+        ],
+        axis=1,
+    )
+
+
+@compiled
+def _nearest(shot: FloatArray, traits: FloatArray, c: float, s: float) -> float:
+    """Return how near the ball, kicked along (c, s), comes to the goalkeeper before the goal line [m]."""
+    px, py, _, kx, ky, vx, vy, _ = shot
+    max_speed, acceleration, braking, delay, _, speed, _ = traits
+    end_x, end_y = GOAL_LINE - ROBOT_RADIUS, py + (GOAL_LINE - px) * s / c
+    rolling, most = SWITCH * speed, acceleration * STEP
+    time, nearest, gap = 0.0, 99.0, 99.0
+    while px < GOAL_LINE + BALL_RADIUS and gap <= nearest + REACH and speed > 0.0:
+        if time >= delay:
+            # To the nearest point of what is left of the ball's way, by the root of the distance.
+            dx, dy = end_x - px, end_y - py
+            squared = dx * dx + dy * dy
+            share = ((kx - px) * dx + (ky - py) * dy) / squared if squared > 0.0 else 0.0
+            share = min(1.0, max(0.0, share))
+            gx, gy = px + share * dx - kx, py + share * dy - ky
+            left = sqrt(gx * gx + gy * gy) + 1e-9
+            scale = min(max_speed, sqrt(2.0 * braking * max(left - THERE, 0.0))) / left
+            ax, ay = scale * gx - vx, scale * gy - vy
+            squared = ax * ax + ay * ay
+            if squared > most * most:
+                scale = most / sqrt(squared)
+                ax, ay = scale * ax, scale * ay
+        else:
+            ax, ay = 0.0, 0.0
+        kx, ky = kx + (vx + 0.5 * ax) * STEP, ky + (vy + 0.5 * ay) * STEP
+        vx, vy = vx + ax, vy + ay
+        slower = (SLIDING if speed > rolling else ROLLING) * STEP
+        px, py = px + c * (speed - 0.5 * slower) * STEP, py + s * (speed - 0.5 * slower) * STEP
+        speed -= slower
+        time += STEP
+        gap = sqrt((px - kx) * (px - kx) + (py - ky) * (py - ky))
+        nearest = min(nearest, gap)
+    return nearest
+
+
+@compiled
+def goal_chances(shots: FloatArray, traits: FloatArray, offset: float, follows: float) -> FloatArray:
+    """Compute the probability of a goal of every shot, (n,), over a sample of goalkeepers.
+
+    Args:
+        shots: (n, 8) of :func:`race_inputs`.
+        traits: (m, 7) rows of :class:`~robobt.shots.keepers.population.Traits`; their offset is left out.
+        offset: standard deviation of the offset, over which the chance is worked out exactly [m].
+        follows: share of the ball's bearing off the aim by which the kick goes astray.
+    """
+    chances = np.zeros(len(shots))
+    blur = sqrt(2.0) * max(offset, LEAST_OFFSET)
+    for i in range(len(shots)):
+        aim = atan2(shots[i, 2] - shots[i, 1], GOAL_LINE - shots[i, 0]) + follows * shots[i, 7]
+        for j in range(len(traits)):
+            c, s = cos(aim + traits[j, 6]), sin(aim + traits[j, 6])
+            if abs(c * shots[i, 1] + s * (GOAL_LINE - shots[i, 0])) < POST * c:
+                room = _nearest(shots[i], traits[j], c, s) - REACH
+                chances[i] += 0.5 * (1.0 + erf(room / blur))
+    return chances / len(traits)
