@@ -50,6 +50,14 @@ def shots(
             "--opponents", min=1, max=6, help="Most opponents; half the shots have the keeper alone."
         ),
     ] = 1,
+    goalkeepers: Annotated[
+        str,
+        typer.Option(
+            "--goalkeepers",
+            help="own: ours, at half and at full speed; real: drawn from those fitted to the paper's real "
+            "shots; or a file of 'robobt shots goalkeepers'.",
+        ),
+    ] = "own",
     workers: Workers = None,
     seed: Annotated[
         int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="What all randomness follows from.")
@@ -70,9 +78,17 @@ def shots(
     """
     from robobt.shots.collect.collect import PAPER_COUNT, collect_shots
     from robobt.shots.collect.plan import CollectionSettings
+    from robobt.shots.keepers.population import REAL, read_population
 
+    population = None
+    if goalkeepers != "own":
+        population = read_population(REAL if goalkeepers == "real" else Path(goalkeepers))
     settings = CollectionSettings(
-        scenario=scenario.value, protocol=protocol.value, opponents=opponents, seed=seed
+        scenario=scenario.value,
+        protocol=protocol.value,
+        opponents=opponents,
+        seed=seed,
+        goalkeepers=population,
     )
     total = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)
     with Progress("shots", total) as progress:

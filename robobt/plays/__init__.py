@@ -10,6 +10,7 @@ from robobt.plays.attack_support import attack_support as attack_support
 from robobt.plays.base import PLAYS as PLAYS
 from robobt.plays.base import Play as Play
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball_and_shoot
+from robobt.plays.goalkeeper import fitted_goalkeeper as fitted_goalkeeper
 from robobt.plays.goalkeeper import goalkeeper as goalkeeper
 from robobt.plays.take_shot import take_shot as take_shot
 from robobt.plays.team import defender as defender

@@ -45,21 +45,7 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
             RoboBulls' accelerations, and clears with RoboBulls' kick.
     """
     if style == "robobulls":
-        quick, calm = robobulls_limits(1.5 * speed), robobulls_limits(speed)
-        return first_of(
-            "goalkeeper",
-            when("aim", BallAimedAtGoal(), BlockShot(limits=quick, dribbler=False, dive=False)),
-            when("shot", ShotComing(min_speed=0.01), BlockShot(limits=quick, dribbler=False, dive=False)),
-            when("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
-            when(
-                "clear",
-                BallRestsInDefense(),
-                where_to_clear(),
-                KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
-            ),
-            CoverNearPost(limits=quick),
-            ReturnToGoal(limits=calm),
-        )
+        return _robobulls(robobulls_limits(1.5 * speed), robobulls_limits(speed))
     return first_of(
         "goalkeeper",
         when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
@@ -68,6 +54,50 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
         when("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
         CoverAngle(speed=speed),
         ReturnToGoal(speed=speed),
+    )
+
+
+@PLAYS.register("fitted_goalkeeper")
+def fitted_goalkeeper(
+    *,
+    max_speed: float = 2.25,
+    acceleration: float = ROBOBULLS_LIMITS.acceleration,
+    braking: float = ROBOBULLS_LIMITS.braking,
+    offset: float = 0.0,
+) -> Behaviour:
+    """Keep the goal as the paper's goalkeeper does, with traits that were fitted to recorded shots.
+
+    The tree is that of ``goalkeeper`` in the style "robobulls"; there is one pace, danger or not.
+
+    Args:
+        max_speed: top speed [m/s].
+        acceleration: how fast it speeds up [m/s^2].
+        braking: it drives so that it could stop at this rate [m/s^2].
+        offset: how far beside the line of a shot it stands, to the left as the ball flies [m].
+    """
+    limits = ROBOBULLS_LIMITS.model_copy(
+        update={"max_speed": max_speed, "acceleration": acceleration, "braking": braking}
+    )
+    return _robobulls(limits, limits, offset)
+
+
+def _robobulls(quick: RobotLimits, calm: RobotLimits, offset: float = 0.0) -> Behaviour:
+    def block() -> BlockShot:
+        return BlockShot(limits=quick, dribbler=False, dive=False, offset=offset)
+
+    return first_of(
+        "goalkeeper",
+        when("aim", BallAimedAtGoal(), block()),
+        when("shot", ShotComing(min_speed=0.01), block()),
+        when("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
+        when(
+            "clear",
+            BallRestsInDefense(),
+            where_to_clear(),
+            KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
+        ),
+        CoverNearPost(limits=quick),
+        ReturnToGoal(limits=calm),
     )
 
 

@@ -18,6 +18,7 @@ def take_shot(
     dribble_speed: float = 2.0,
     tolerance: float = 0.0175,
     shot_speed: float | None = None,
+    max_turn: float = 4.0,
 ) -> Behaviour:
     """Carry the ball to a place and shoot from there at a point of the goal line, whatever the chance.
 
@@ -31,6 +32,7 @@ def take_shot(
         dribble_speed: top speed with the ball [m/s].
         tolerance: angle by which the kick may be off [rad]; the default is RoboBulls' degree.
         shot_speed: kick speed of the shot [m/s]; None is the kick's own.
+        max_turn: turning rate with the ball [rad/s].
     """
     return Sequence(
         "take shot",
@@ -38,6 +40,6 @@ def take_shot(
         children=[
             AimAtGoalPoint(y=target_y),
             FailureIsSuccess("carry", DribbleTo(target=(place_x, place_y), max_speed=dribble_speed)),
-            KickToTarget(kick_speed=shot_speed, tolerance=tolerance),
+            KickToTarget(kick_speed=shot_speed, tolerance=tolerance, max_turn=max_turn),
         ],
     )

@@ -70,7 +70,11 @@ class SimWorld(World):
     def reset(self, placement: Placement, seed: int) -> None:
         """See :meth:`robobt.world.World.reset`; every robot needs a pose."""
         check_placement(placement, self.field, self._ids)
-        poses = np.array([placement.robots[robot] for robot in self._ids], dtype=float).reshape(-1, 3)
+        still = (0.0, 0.0)
+        poses = np.array(
+            [(*placement.robots[robot], *placement.velocities.get(robot, still), 0.0) for robot in self._ids],
+            dtype=float,
+        ).reshape(-1, 6)
         # A new space: the old one remembers the contacts of its last steps and would act on them.
         self._arenas = self._make_arenas()
         self._arenas.place(poses[None], np.array([placement.ball]))

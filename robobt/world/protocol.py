@@ -15,12 +15,14 @@ class Placement:
     """Where everything stands at a start, in world coordinates (blue defends -x).
 
     Attributes:
-        robots: (x, y, heading) of each robot [m, m, rad]; all at rest.
+        robots: (x, y, heading) of each robot [m, m, rad].
         ball: (x, y, vx, vy) [m, m, m/s, m/s].
+        velocities: (vx, vy) of the robots that are not at rest [m/s]; only the simulator heeds it.
     """
 
     robots: dict[RobotId, tuple[float, float, float]] = field(default_factory=dict)
     ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    velocities: dict[RobotId, tuple[float, float]] = field(default_factory=dict)
 
 
 @runtime_checkable

@@ -70,7 +70,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
         heading = direction(ball, target) + (0.02 * turn if at_once else turn)
     # While the attacker turns or comes, the goalkeeper moves to the line; it starts the farther off.
     widest = OFFSET if kind == "still" and at_once else 2.0 * OFFSET
-    keeper = _keeper(field, ball, target, widest * (2.0 * even[2] - 1.0), even[3])
+    keeper = keeper_start(field, ball, target, widest * (2.0 * even[2] - 1.0), even[3])
     shooter = (start[0] - HELD_DISTANCE * cos(heading), start[1] - HELD_DISTANCE * sin(heading))
     speed = (0.5, 1.0)[int(rng.integers(2))]
     params: dict[str, float] = {
@@ -83,14 +83,14 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     }
     blue, yellow = base.robots.blue[0], base.robots.yellow
     taken = [shooter, start, keeper]
-    opponents = [_moved(yellow[0], keeper, direction(keeper, start), flip=True, speed=speed)]
+    opponents = [moved(yellow[0], keeper, direction(keeper, start), flip=True, speed=speed)]
     for setup in yellow[1:]:
         place = _blocker(field, ball, target, taken, rng)
         taken.append(place)
-        opponents.append(_moved(setup, place, direction(place, start), flip=True))
+        opponents.append(moved(setup, place, direction(place, start), flip=True))
     robots = base.robots.model_copy(
         update={
-            "blue": (_moved(blue, shooter, heading).model_copy(update={"params": params}),),
+            "blue": (moved(blue, shooter, heading).model_copy(update={"params": params}),),
             "yellow": tuple(opponents),
         }
     )
@@ -168,7 +168,7 @@ def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Po
     return (field.half_length - reach * away, reach * sin(bearing))
 
 
-def _keeper(field: FieldGeometry, ball: Point, target: Point, offset: float, out: float) -> Point:
+def keeper_start(field: FieldGeometry, ball: Point, target: Point, offset: float, out: float) -> Point:
     """Place a goalkeeper beside the line of the shot by ``offset``, ``out`` of the way out of its goal."""
     x = field.half_length - (_OUT[0] + out * (_OUT[1] - _OUT[0]))
     beside = offset
@@ -216,7 +216,7 @@ def _blocker(
             return (x, y)
 
 
-def _moved(
+def moved(
     setup: RobotSetup, place: Point, heading: float, *, flip: bool = False, speed: float | None = None
 ) -> RobotSetup:
     """Start a robot elsewhere; a start is in the own team's view, so yellow's is turned round."""

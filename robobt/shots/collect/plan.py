@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from typing import Literal
 
 from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.match.scenario.scenario import MAX_SEED, Scenario
+from robobt.shots.keepers.population import Population
+from robobt.world.state import RobotId
 
 MID_RANGE, CLOSE_RANGE = 3.5, 2.5
 """From how far the attacker on the move shoots in its two variants: ball to goal centre at most [m].
@@ -40,6 +43,9 @@ class CollectionSettings(Settings):
     opponents: int = Field(
         1, ge=1, le=6, description="most opponents on the field, the goalkeeper among them"
     )
+    goalkeepers: Population | None = Field(
+        None, description="fitted goalkeepers to draw one from for each shot; our own without"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +53,13 @@ class Attempt:
     """One trial of a collection.
 
     ``labels`` are columns of its row that are known beforehand; ``section`` is x and y, from and to, that the
-    attacker has to shoot from, None anywhere [m].
+    attacker has to shoot from, None anywhere [m]; ``delay`` is how late yellow's first robot acts [s];
+    ``velocities`` are those of robots that move at the start, (vx, vy) in the field's frame [m/s].
     """
 
     scenario: Scenario
     seed: int
     labels: Mapping[str, object]
     section: Section | None = None
+    delay: float = 0.0
+    velocities: Mapping[RobotId, tuple[float, float]] = dataclass_field(default_factory=dict)

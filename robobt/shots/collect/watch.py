@@ -8,6 +8,7 @@ from math import atan2, cos, hypot, sin
 from robobt.match.ends import Outcome
 from robobt.match.loop import Match
 from robobt.match.scenario.scenario import Scenario
+from robobt.shots.collect.late import LateWorld
 from robobt.shots.collect.plan import Attempt, Section
 from robobt.shots.data.schema import Row
 from robobt.skills.store import Shot, Store
@@ -60,29 +61,44 @@ def take_shot(attempt: Attempt, trial: int) -> tuple[Row | None, float]:
     The shot is recorded columns of the table of shots, None when it took none.
     """
     shooter = next(iter(attempt.scenario.robots))[0]
+    keeper = attempt.scenario.robots.yellow[0].number
     watched: list[WatchedWorld] = []
 
     def factory(played: Scenario) -> World:
-        watched.append(WatchedWorld(sim_world(played), shooter))
+        world = sim_world(played)
+        if attempt.delay > 0.0:
+            goalkeeper = RobotId(shooter.team.other, keeper)
+            world = LateWorld(world, goalkeeper, attempt.delay, played.period, attempt.velocities)
+        watched.append(WatchedWorld(world, shooter))
         return watched[0]
 
     with Match(attempt.scenario, attempt.seed, factory, trial=trial) as match:
         world = watched[0]
+        saved = False
         world.store = next(player.store for player in match.players if player.robot == shooter)
         while match.tick():
             if attempt.section is not None and world.shot is None and _outside(attempt.section, world.store):
+                break
+            if attempt.delay > 0.0 and world.shot is not None and _turned_back(world.truth(), shooter):
+                saved = True
                 break
         result = match.result()
         touched = world.truth().last_touch
     shot = world.shot
     if shot is not None:
-        outcome = _OUTCOMES.get(Outcome(result.outcome), result.outcome)
+        outcome = "saved" if saved else _OUTCOMES.get(Outcome(result.outcome), result.outcome)
         if outcome in ("wide", "stopped") and touched is not None and touched.team is not shooter.team:
             outcome = "blocked"
         shot.update(attempt.labels)
         shot["outcome"], shot["success"] = outcome, int(outcome == "goal")
         shot["trial"] = trial
     return shot, result.time
+
+
+def _turned_back(frame: Frame, shooter: RobotId) -> bool:
+    """Return whether an opponent has turned the ball back: what becomes of it then is another story."""
+    touched = frame.last_touch
+    return touched is not None and touched.team is not shooter.team and frame.ball.vx <= 0.0
 
 
 def _outside(section: Section, store: Store) -> bool:

@@ -38,7 +38,13 @@ COLUMNS = (
     Column("schema_version", "int", "1", "version of this table"),
     # Where the row comes from.
     Column("scenario", "text", "", "collection scenario: motion, still, or the name of another"),
-    Column("variant", "text", "", "range the attacker shoots from (mid_range, close_range) or its section"),
+    Column(
+        "variant",
+        "text",
+        "",
+        "range the attacker shoots from (mid_range, close_range) or its section; at_kick, recorded: the "
+        "trial begins with the kick, from anywhere or from where recorded shots come from",
+    ),
     Column("seed", "int", "1", "seed of the collection; -1 where not recorded"),
     Column("trial", "int", "1", "trial of the collection that the shot was taken in; -1 where not recorded"),
     Column("early_stop_split", "text", "", "train, valid (for early stopping) or test; may be empty"),
@@ -114,6 +120,9 @@ RECORDED = frozenset(
 
 Row = dict[str, Any]
 """A shot: values by column, of the types that :data:`COLUMNS` says."""
+
+AS_RECORDED = "recorded"
+"""The ``variant`` of simulated shots whose scenes are distributed as those of the paper's real shots."""
 
 UNKNOWN: Row = {"text": "", "int": -1, "real": math.nan, "reals": ()}
 """What stands for an unknown value, by a column's type."""

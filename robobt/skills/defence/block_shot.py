@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import sqrt
+from math import cos, sin, sqrt
 
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
@@ -36,12 +36,14 @@ class BlockShot(DrivingSkill):
         speed: factor on the top speed.
         dribbler: whether to catch the ball with the dribbler.
         dive: whether it may drive through.
+        offset: how far beside the line it takes its place, to the left as the ball flies [m].
     """
 
     reads = ("target",)
 
     dribbler: bool = True
     dive: bool = True
+    offset: float = 0.0
     _watch: BallWatch = field(default_factory=BallWatch, init=False)
 
     def on_running(self) -> Status:
@@ -51,6 +53,9 @@ class BlockShot(DrivingSkill):
             return self.fail("no target to block the way to")
         me, ball = self.me, self.ball
         place = closest_point_on_segment(me.position, ball.position, target)
+        if self.offset != 0.0:
+            course = direction(ball.position, target)
+            place = (place[0] - self.offset * sin(course), place[1] + self.offset * cos(course))
         limits = self.drive_limits
         final_speed = self._dive_speed(place, limits) if self.dive else 0.0
         facing = direction(me.position, ball.position)

@@ -9,6 +9,7 @@ import pytest
 
 from robobt.shots.collect.balanced import balanced_attempt
 from robobt.shots.collect.collect import PAPER_COUNT, CollectionError, collect_shots
+from robobt.shots.collect.late import LateWorld
 from robobt.shots.collect.paper import PARTS, SECTIONS, paper_attempt, splits
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.collect.trial import play_trial
@@ -16,6 +17,11 @@ from robobt.shots.collect.watch import take_shot
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS
+from robobt.shots.keepers.population import REAL, read_population
+from robobt.sim import SimWorld, preset
+from robobt.world import RobotCommand, RobotId, Team
+from robobt.world.field import DIVISION_B
+from robobt.world.protocol import Placement
 from tests.conftest import StartPython
 
 pytestmark = pytest.mark.integration
@@ -92,6 +98,43 @@ def test_several_opponents_are_there_when_asked_for():
     settings = CollectionSettings(seed=5, opponents=4)
     counts = {len(balanced_attempt(settings, i).scenario.robots.yellow) for i in range(40)}
     assert counts == {1, 2, 3, 4}
+
+
+@pytest.fixture(scope="module")
+def recorded() -> list[dict]:
+    settings = CollectionSettings(seed=5, goalkeepers=read_population(REAL))
+    return [play_trial(settings, trial).row for trial in range(60)]
+
+
+def test_shots_against_fitted_goalkeepers_are_those_of_their_seed(recorded: list[dict]):
+    settings = CollectionSettings(seed=5, goalkeepers=read_population(REAL))
+    assert [repr(play_trial(settings, trial).row) for trial in range(8)] == [
+        repr(row) for row in recorded[:8]
+    ]
+
+
+def test_most_shots_against_fitted_goalkeepers_begin_with_the_kick(recorded: list[dict]):
+    at_kick = [row for row in recorded if row is not None and row["variant"] in ("at_kick", "recorded")]
+    assert len(at_kick) > 0.6 * len(recorded)
+    assert np.mean([row["time"] == 0.0 for row in at_kick]) > 0.9
+    assert np.mean([row["v_towards_ball"] for row in at_kick]) > 0.3
+    goals = np.mean([row["success"] for row in at_kick])
+    assert 0.2 < goals < 0.8
+
+
+def test_a_goalkeeper_that_acts_late_goes_on_as_it_moves_until_then():
+    keeper = RobotId(Team.YELLOW, 0)
+    bare = SimWorld(DIVISION_B, {keeper: None}, preset("robobulls"), 0.03)
+    world = LateWorld(bare, keeper, 0.075, 0.03, {keeper: (0.0, 0.5)})
+    world.reset(Placement({keeper: (4.0, 0.0, 0.0)}), 0)
+    speeds = []
+    for _ in range(6):
+        speeds.append(world.truth().opponents[0].vy)
+        world.act({keeper: RobotCommand(0.0, 0.0)})
+    assert speeds[:3] == pytest.approx([0.5] * 3, abs=0.02)
+    # Two periods and a half: the first command that counts is half of the old one.
+    assert 0.2 < speeds[3] < 0.45
+    assert speeds[5] < 0.2
 
 
 def test_a_collection_that_was_cut_off_goes_on_where_it_was(collected: Path, tmp_path: Path):
