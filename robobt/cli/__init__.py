@@ -44,8 +44,13 @@ _GROUPS = {
     ),
     "collect": ("Collect data from simulated play.", {"shots": "collect:shots"}),
     "shots": (
-        "Predictors of shots: train them, draw their map.",
-        {"train": "shots:train", "map": "shots:draw"},
+        "Predictors of shots: train them, judge them, draw their map; fit goalkeepers to recorded shots.",
+        {
+            "train": "shots:train",
+            "score": "shots:score",
+            "goalkeepers": "goalkeepers:goalkeepers",
+            "map": "shots:draw",
+        },
     ),
     "paper": (
         "The tables of the paper, its figures beside ours.",

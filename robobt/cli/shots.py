@@ -1,66 +1,147 @@
-"""``robobt shots``: train the shipped shot predictors, and draw what they think of the field."""
+"""``robobt shots``: train shot predictors, judge them, and draw what they think of the field."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from math import isnan
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say
 
+if TYPE_CHECKING:
+    from robobt.models.card import Measured
+
 
 class Model(StrEnum):
-    """The shipped predictors."""
+    """The predictors that can be trained."""
 
     NN = "shot_nn"
     EXPECTED = "shot_expected"
+    BEST = "shot_best"
+
+
+class Part(StrEnum):
+    """Which of the author's shots."""
+
+    TRAIN = "train"
+    TEST = "test"
 
 
 def train(
     data: Annotated[
-        list[Path], typer.Option("--data", help="Shots of 'robobt collect shots'; may be given again.")
+        list[Path],
+        typer.Option(
+            "--data", help="Shots of 'robobt collect shots', or the author's file; may be given again."
+        ),
     ],
-    model: Annotated[Model, typer.Option("--model", help="Which of the shipped predictors.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="The folder to write it to.")] = Path("models"),
+    model: Annotated[
+        Model,
+        typer.Option("--model", help="What to train; shot_best is made for a few hundred recorded shots."),
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The folder to write it to.")] = Path("out/models"),
+    name: Annotated[str, typer.Option("--name", help="What to call it; the predictor's name without.")] = "",
+    real: Annotated[
+        Path | None,
+        typer.Option(
+            "--real", help="Folder of the author's shots: how it does on the tests goes on the card."
+        ),
+    ] = None,
     epochs: Annotated[int, typer.Option("--epochs", min=1, max=10_000, help="Of shot_expected.")] = 40,
     seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of the training.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Write over a model that is there.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Train a shot predictor on shots of our own and write it with its model card.
+    """Train a shot predictor and write it with its model card.
 
-    A tenth of the shots is held out and measured on.
+    A tenth of the shots is held out and measured on; shot_best is cross-validated.
 
-    Keys of --json: file, shots (held out), accuracy, log_loss, calibration_error.
+    Keys of --json: file, and of each figure by name: value, low, high, n and interval.
     """
     import pyarrow as pa
     import torch
 
+    from robobt.experiments.shot_sets import load_shot_sets
+    from robobt.models.file import SUFFIXES, ModelError
     from robobt.shots.data.files import read_shots
     from robobt.shots.predict.shipped import train_shipped
 
+    target = out / f"{name or model.value}{SUFFIXES['torchscript']}"
+    if target.exists() and not force:
+        raise ModelError(f"{target}: is there already; give another --out or --name, or --force")
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])
+    recorded = None if real is None else load_shot_sets(real).test
     with Progress(model.value, epochs) as progress:
         file, figures = train_shipped(
-            model.value, table, out, seed=seed, epochs=epochs, on_epoch=lambda _: progress.advance()
+            model.value,
+            table,
+            out,
+            called=name,
+            seed=seed,
+            epochs=epochs,
+            real=recorded,
+            force=force,
+            on_epoch=lambda _: progress.advance(),
         )
     if as_json:
-        print_json(
-            {
-                "file": str(file),
-                "shots": figures.shots,
-                "accuracy": figures.accuracy,
-                "log_loss": figures.log_loss,
-                "calibration_error": figures.calibration_error,
-            }
-        )
+        print_json({"file": str(file), **{key: figure.model_dump() for key, figure in figures.items()}})
         return
-    say(
-        f"{file}: on {figures.shots} shots that training never saw {figures.accuracy:.2%} right, log-loss "
-        f"{figures.log_loss:.3f}, calibration error {figures.calibration_error:.3f}."
+    what = "cross-validated" if model is Model.BEST else "on shots that training never saw"
+    say(f"{file}: {what}: {_figures(figures)}.")
+    if recorded is not None:
+        say(f"On the real shots: {_figures(figures, 'real_')}.")
+
+
+def score(
+    model: Annotated[str, typer.Option("--model", help="A shipped shot predictor or a file.")],
+    data: Annotated[
+        Path,
+        typer.Option(
+            "--data",
+            help="Folder with the author's train.csv and test.csv, or one file of any shots.",
+        ),
+    ],
+    part: Annotated[
+        Part, typer.Option("--part", help="Which of the author's; of one file all shots are judged.")
+    ] = Part.TEST,
+    as_json: Json = False,
+) -> None:
+    """Judge a shot predictor on recorded shots.
+
+    Keys of --json: model, data, shots, goals, predicted (goals that it expects), and of
+    accuracy, log_loss and calibration_error each: value, low, high, n and interval.
+    """
+    from robobt.experiments.shot_sets import load_shot_sets
+    from robobt.shots.data.files import read_shots
+    from robobt.shots.data.inputs import goals
+    from robobt.shots.predict.score import measured, predicted_by
+
+    if data.is_dir():
+        sets = load_shot_sets(data)
+        table = sets.test if part is Part.TEST else sets.train
+    else:
+        table = read_shots(data)
+    scored, expected = goals(table), predicted_by(model, table)
+    figures = measured(expected, scored)
+    if as_json:
+        counts = {"shots": len(scored), "goals": int(scored.sum()), "predicted": float(expected.sum())}
+        found = {key: figure.model_dump() for key, figure in figures.items()}
+        print_json({"model": model, "data": str(data), **counts, **found})
+        return
+    say(f"{model}: {len(scored)} shots, {scored.sum()} goals, {expected.sum():.1f} predicted.")
+    say(f"{_figures(figures)}.")
+
+
+def _figures(figures: Mapping[str, Measured], prefix: str = "") -> str:
+    right, loss, off = [figures[prefix + name] for name in ("accuracy", "log_loss", "calibration_error")]
+    return (
+        f"{right.n} shots, {right.value:.1%} right ({right.low:.1%} to {right.high:.1%}), "
+        f"log-loss {loss.value:.3f} ({loss.low:.3f} to {loss.high:.3f}), "
+        f"calibration error {off.value:.3f} ({off.low:.3f} to {off.high:.3f})"
     )
 
 

@@ -18,7 +18,7 @@ from robobt.tree import Behaviour
 @PLAYS.register("attack_expected")
 def attack_expected(
     *,
-    model: str = "shot_expected",
+    model: str = "shot_expected_strong",
     threshold: float = 0.9,
     last_resort: float = 0.3,
     patience: float = 10.0,
@@ -35,7 +35,8 @@ def attack_expected(
     patience is at an end it takes what there is.
 
     Args:
-        model: predictor of the ``expected_goal`` rater: a shipped model or a file.
+        model: predictor of the ``expected_goal`` rater: a shipped model or a file. The default
+            knows our own goalkeeper; ``shot_expected`` knows the weaker one of the paper's real shots.
         threshold: least probability of a goal, 0 to 1.
         last_resort: the same once its patience is at an end.
         patience: longest time to draw the goalkeeper for [s].

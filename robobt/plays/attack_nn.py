@@ -19,7 +19,7 @@ from robobt.tree import Behaviour, FailureIsSuccess
 @PLAYS.register("attack_nn")
 def attack_nn(
     *,
-    model: str = "shot_nn",
+    model: str = "shot_nn_strong",
     threshold: float = 0.5,
     tolerance: float = 0.3645,
     max_distance: float | None = None,
@@ -38,7 +38,8 @@ def attack_nn(
     AttackNN.
 
     Args:
-        model: predictor of the ``nn_filtered`` rater: a shipped model or a file.
+        model: predictor of the ``nn_filtered`` rater: a shipped model or a file. The default knows
+            our own goalkeeper; ``shot_nn`` knows the weaker one of the paper's real shots.
         threshold: least chance of a goal that a robot has to leave, 0 to 1.
         tolerance: a robot nearer to the line of the shot blocks it [m].
         max_distance: no shots from farther than this from the goal [m]; None is any.

@@ -1,4 +1,5 @@
 import json
+from math import pi
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,14 @@ from robobt.shots.data.files import write_shots
 from robobt.shots.data.inputs import shot_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.scene_network import SceneNetwork
+from robobt.shots.predict.score import measured_on
 from robobt.shots.predict.shipped import train_shipped
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.world import BallState, Frame, RobotState, Team
 from robobt.world.features import SCENE_HEAD
+from robobt.world.field import DIVISION_B
 from tests.shots.made_up import made_up_table, train_quickly
+from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 
 @pytest.mark.integration
@@ -26,15 +32,71 @@ def test_a_predictor_ships_with_a_card_that_says_how_good_it_is(
     file, figures = train_shipped(name, made_up_table(600), tmp_path, epochs=8)
     card = load_policy(file).card
     assert card.kind == "shot_predictor"
-    assert card.held_out["accuracy"].value == figures.accuracy > 0.6
-    assert card.held_out["accuracy"].n == figures.shots == 60
+    assert card.held_out == figures
+    assert figures["accuracy"].value > 0.6
+    assert figures["accuracy"].n == 60
 
 
-@pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
+@pytest.mark.parametrize("name", ["shot_nn", "shot_expected", "shot_nn_strong", "shot_expected_strong"])
 def test_the_shipped_predictors_are_calibrated_and_trained_on_our_own_shots(name: str):
     card = load_policy(name).card
     assert card.held_out["calibration_error"].value < 0.05
     assert card.environment["shots"] >= 20_000
+
+
+def test_the_cards_of_the_shipped_predictors_say_how_they_do_on_the_real_shots():
+    for name, right, loss in (("shot_nn", 0.84, 0.42), ("shot_expected", 0.86, 0.38)):
+        figures = load_policy(name).card.held_out
+        assert figures["real_accuracy"].n == 201
+        assert figures["real_accuracy"].value >= right
+        assert figures["real_log_loss"].value <= loss
+
+
+@needs_real_shots
+@pytest.mark.parametrize("name", ["shot_nn", "shot_expected"])
+def test_the_command_finds_what_the_card_says_about_the_real_shots(name: str):
+    said = CliRunner().invoke(app, ["shots", "score", "--model", name, "--data", str(REAL_SHOTS), "--json"])
+    assert said.exit_code == 0, said.output
+    figures, card = json.loads(said.output), load_policy(name).card.held_out
+    assert figures["shots"] == 201
+    for figure in ("accuracy", "log_loss", "calibration_error"):
+        assert figures[figure]["value"] == pytest.approx(card[f"real_{figure}"].value, abs=1e-5)
+
+
+def test_a_predictor_for_a_few_shots_rates_shots_in_play(tmp_path: Path):
+    table = made_up_table(300)
+    file, figures = train_shipped("shot_best", table, tmp_path, called="mine", real=made_up_table(80, seed=1))
+    assert figures["accuracy"].n == 300
+    assert figures["real_accuracy"].value > 0.8
+    assert measured_on(file, table)["log_loss"].value < figures["log_loss"].value
+    frame = Frame(
+        0.0,
+        DIVISION_B,
+        BallState(2.0, 0.0),
+        (RobotState(0, 1.9, 0.0),),
+        (RobotState(0, 4.2, 0.3, pi),),
+        Team.BLUE,
+        0.03,
+    )
+    shot = ExpectedGoal(model=str(file)).rate(frame, frame.ball.position, frame.own[0])
+    assert shot is not None
+    assert shot.target[1] < 0.0
+    assert shot.score > 0.5
+
+
+@pytest.mark.integration
+def test_a_model_that_is_there_is_not_written_over_unless_told(tmp_path: Path):
+    data = tmp_path / "shots.parquet"
+    write_shots(made_up_table(200), data)
+    command = ["shots", "train", "--data", str(data), "--model", "shot_best", "--out", str(tmp_path)]
+    assert CliRunner().invoke(app, command).exit_code == 0
+    before = (tmp_path / "shot_best.pt").read_bytes()
+    refused = CliRunner().invoke(app, [*command, "--seed", "1"])
+    assert refused.exit_code == 1
+    assert "shot_best.pt: is there already" in refused.output
+    assert (tmp_path / "shot_best.pt").read_bytes() == before
+    assert CliRunner().invoke(app, [*command, "--seed", "1", "--force"]).exit_code == 0
+    assert (tmp_path / "shot_best.pt").read_bytes() != before
 
 
 @pytest.mark.integration

@@ -25,7 +25,7 @@ def test_it_lets_only_shots_pass_that_are_clear_as_well():
 
 def test_a_threshold_nobody_reaches_vetoes_every_shot():
     scene = frame(ME, BALL, opponents=(robot(4.2, 0.35, pi),))
-    assert NNFiltered(threshold=1.0).rate_all(scene, BALL, ME) == []
+    assert NNFiltered(model="shot_nn_strong", threshold=1.0).rate_all(scene, BALL, ME) == []
 
 
 def test_a_threshold_of_nothing_is_the_clearance_test_alone():

@@ -147,7 +147,7 @@ def test_a_ball_kicked_at_the_target_past_a_keeper_at_rest_is_a_goal(
 
 
 def test_the_learned_veto_lets_fewer_shots_pass_the_likelier_they_are_to_fail() -> None:
-    rater = make_rater("nn_filtered")
+    rater = NNFiltered(model="shot_nn_strong")
     spared = rated_by(rater, (2.0, 0.0), (robot(4.3, 0.3, pi),))
     assert spared
     # In the middle the goalkeeper reaches either side.
