@@ -1,6 +1,6 @@
 import pytest
 
-from robobt.experiments.deployed import deployed_scenario
+from robobt.experiments.deployed import Situation, deployed_scenario
 from robobt.match import run_trials, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import sim_world
@@ -17,8 +17,8 @@ def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
 @pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
 @pytest.mark.parametrize("speed", ["half", "full"])
 def test_it_scores_nearly_always_where_attack_main_seldom_does(play: str, speed: str):
-    assert goals(deployed_scenario(speed, play), 8) >= 7
-    assert goals(deployed_scenario(speed, "attack_main"), 8) <= 5
+    assert goals(deployed_scenario(Situation(speed=speed), play), 8) >= 7
+    assert goals(deployed_scenario(Situation(speed=speed), "attack_main"), 8) <= 5
 
 
 @pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
@@ -30,7 +30,7 @@ def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
 
 
 def test_without_patience_it_takes_what_there_is():
-    impatient = deployed_scenario("half", "attack_expected").with_robot(
+    impatient = deployed_scenario(Situation(speed="half"), "attack_expected").with_robot(
         "blue 0", threshold=1.0, patience=0.5, last_resort=0.2
     )
     results = run_trials(impatient, sim_world, 3, seed=4).results
