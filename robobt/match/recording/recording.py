@@ -141,7 +141,10 @@ class Recording:
         }
 
     def written_at(self, owner: RobotId | Team, tick: int) -> dict[str, JsonValue]:
-        """Return what skills have written into a robot's store, or into what a team shares, by entry."""
+        """Return what skills have written into a robot's store, or into what a team shares, by entry.
+
+        Places and directions are in the view of that team, its own goal at -x.
+        """
         if not isinstance(owner, Team):
             self.slot(owner)
         return _gathered(self.written.get(str(owner), []), tick)

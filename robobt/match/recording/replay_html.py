@@ -24,6 +24,7 @@ from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stores import plain
 from robobt.skills.store import GoalLine
 from robobt.world.game import GameState
+from robobt.world.rules import own_side
 
 MOST_FRAMES = 36_000
 """Frames a page holds, ten minutes at 60 Hz; of a longer recording every second, third, ... is shown."""
@@ -69,8 +70,10 @@ def _for_script(data: dict[str, object]) -> str:
 def page_data(recording: Recording) -> dict[str, object]:
     """Return what the page is given, as JSON can hold it.
 
-    Arrays are little-endian and in base64: ``times`` float32 [s]; ``ball`` int16 x, y [mm],
-    speed [mm/s]; a robot's ``rows`` int16 x, y [mm], heading [mrad], speed [mm/s]; -32768 off
+    All places are in world coordinates; times a robot's ``view``, 1 or -1, they are in that of its own
+    team, in which its outputs are. Arrays are little-endian and in base64: ``times`` float32 [s];
+    ``ball`` int16 x, y [mm], speed [mm/s]; a robot's ``rows`` int16 x, y [mm], heading [mrad], speed
+    [mm/s]; -32768 off
     the field. Changes are flat lists whose frame numbers count from the change before.
     """
     header = recording.header
@@ -88,6 +91,7 @@ def page_data(recording: Recording) -> dict[str, object]:
         robots.append(
             {
                 "team": robot.team,
+                "view": int(-own_side(robot.id.team)),
                 "number": robot.number,
                 "play": robot.play,
                 "radius": robot.radius,

@@ -83,6 +83,13 @@ def test_the_page_holds_the_positions_to_the_millimetre(recording: Recording) ->
         assert unroll(robot["flags"], 120, 0) == (recording.flags[:, slot] & 7).tolist()
 
 
+def test_a_robot_is_shown_in_the_view_of_its_own_team_as_its_outputs_are(recording: Recording) -> None:
+    """Times its view, a robot's place is where its own team sees it: the frame its skills write in."""
+    robots = page_data(recording)["robots"]
+    assert {(robot["team"], robot["view"]) for robot in robots} == {("blue", 1), ("yellow", -1)}
+    assert "own goal at" in replay_html(recording)
+
+
 def test_the_page_holds_every_status_and_every_word(recording: Recording) -> None:
     data = page_data(recording)
     for slot, robot in ((0, BLUE_1), (2, YELLOW_0)):

@@ -25,6 +25,9 @@ class GoToBallReward(Settings):
     orientation: float = Field(
         1.0, ge=0, le=100, description="times 1/sqrt(2 pi) exp(-2 |theta|/pi^2), Eq. 9"
     )
+    closing: float = Field(
+        0.0, ge=0, le=100, description="times the speed at which it closes in on its place [m/s]"
+    )
     time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
 
 
@@ -55,6 +58,9 @@ def reward(
     angle = abs(wrap_angle(facing - robot[2]))
     total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
     total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
+    if distance > 0.0:
+        closing = (place_x - robot[0]) * robot[3] + (place_y - robot[1]) * robot[4]
+        total += weights.closing * closing / distance
     total -= weights.time
     if reached:
         total += weights.contact  # Eq. 7
