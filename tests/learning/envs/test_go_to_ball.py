@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import GoToBallSettings, GoToBallTask, run_starts, straight_line_time
-from robobt.learning.envs.scripted import straight_drive
+from robobt.learning.envs.scripted import drive_to_shoot, straight_drive
 from robobt.world import RobotLimits
 from robobt.world.geometry import wrap_angle
 
@@ -279,3 +279,58 @@ def test_there_is_no_straight_line_to_a_ball_that_moves() -> None:
     episodes = run_starts(made, straight_drive, [[0, 0, 0, 0, 0, 0, 1, 0, 0.3, 0], start()])
     assert np.isfinite(episodes.optimum).tolist() == [False, True]
     assert episodes.time_ratio == pytest.approx(episodes.time[1] / episodes.optimum[1])
+
+
+SHOOTING: dict[str, Any] = {"to_shoot": True, "contact": {"rule": "infrared"}, "simulator": "rsim"}
+HELD = 0.1035
+"""Distance of a ball in the mouth of that simulator's robot [m]."""
+
+
+def test_a_robot_that_is_to_shoot_has_reached_the_ball_only_facing_the_goal() -> None:
+    """At rest 4.4 m from the goal: its posts lie 6.5 degrees to each side, of which 0.15 m do not count."""
+    angles = np.radians([0.0, 3.0, -3.0, 6.5, -30.0, 180.0])
+    starts = [start(0, 0, angle, (HELD * cos(angle), HELD * sin(angle))) for angle in angles]
+    result = task(starts, **SHOOTING).step(standing(len(angles)))
+    assert result.success.tolist() == [True, True, True, False, False, False]
+    assert result.observation.shape == (len(angles), 8)
+
+
+def test_a_ball_that_moves_sideways_with_the_robot_misses_the_goal() -> None:
+    """Kicked at 6 m/s with 1.5 m/s sideways it leaves 14 degrees off the heading."""
+    row = start(0, 0, 0.0, (HELD, 0.0))
+    row[4] = row[9] = 1.5
+    drive = np.array([[0.0, 1.0, 0.0]])
+    assert not task([row], **SHOOTING).step(drive).success[0]
+    row[2] = -atan2(1.5, 6.0)
+    row[6:8] = [HELD * cos(row[2]), HELD * sin(row[2])]
+    made = task([row], **SHOOTING, action={"kind": "drive", "max_speed": 1.5, "max_turn": 1.0})
+    assert made.step(np.array([[sin(row[2]), cos(row[2]), 0.0]])).success[0]
+
+
+def test_it_is_rewarded_for_the_speed_towards_the_place_behind_the_ball() -> None:
+    """The place lies 0.1 m behind the ball on the line to the goal."""
+    weights = {"contact": 0, "distance": 0, "orientation": 0, "closing": 2.0}
+    row = start(0, 0, 0.0, (1.0, 0.0))
+    row[3] = 1.0
+    made = task([row], **SHOOTING, reward=weights)
+    reward = made.step(np.array([[1.0, 0.0, 0.0]])).reward[0]
+    assert reward == pytest.approx(2.0 * made.arenas.robots[0, 0, 3], abs=1e-9)
+    assert reward > 2.0
+
+
+def test_top_speeds_differ_from_episode_to_episode() -> None:
+    starts = [start(-2.0, 0.0, 0.0, (2.0, 0.0))] * 40
+    made = task(starts, randomisation={"top_speed": (0.5, 1.0)}, limits={"max_speed": 1.0})
+    for _ in range(40):
+        made.step(np.tile([1.0, 0.0, 0.0], (40, 1)))
+    speeds = np.hypot(made.arenas.robots[:, 0, 3], made.arenas.robots[:, 0, 4])
+    assert 0.45 < speeds.min() < 0.6
+    assert 0.9 < speeds.max() <= 1.0 + 1e-9
+
+
+def test_the_script_that_is_to_shoot_comes_from_behind() -> None:
+    starts = [start(-2.0, 0.2, 0.3, (0.0, 0.0)), start(-1.0, -0.5, -2.0, (0.5, 0.0))]
+    made = task(starts, **SHOOTING)
+    episodes = run_starts(made, lambda seen: drive_to_shoot(seen, made.action.max_turn), np.array(starts), 0)
+    assert episodes.success.all()
+    assert episodes.time_ratio < 1.15

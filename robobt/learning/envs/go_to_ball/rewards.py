@@ -26,7 +26,10 @@ class GoToBallReward(Settings):
         1.0, ge=0, le=100, description="times 1/sqrt(2 pi) exp(-2 |theta|/pi^2), Eq. 9"
     )
     closing: float = Field(
-        0.0, ge=0, le=100, description="times the speed at which it closes in on its place [m/s]"
+        0.0,
+        ge=0,
+        le=100,
+        description="times the speed at which it closes in on its place, relative to the ball [m/s]",
     )
     time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
 
@@ -35,7 +38,7 @@ class GoToBallReward(Settings):
 def reward(
     weights: GoToBallReward,
     robot: FloatArray,
-    ball: FloatArray,  # noqa: ARG001 - for terms to come
+    ball: FloatArray,
     action: FloatArray,  # noqa: ARG001 - for terms to come
     reached: bool,
     place_x: float,
@@ -59,7 +62,8 @@ def reward(
     total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
     total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
     if distance > 0.0:
-        closing = (place_x - robot[0]) * robot[3] + (place_y - robot[1]) * robot[4]
+        # Relative to the ball: who pushes it along comes no closer.
+        closing = (place_x - robot[0]) * (robot[3] - ball[2]) + (place_y - robot[1]) * (robot[4] - ball[3])
         total += weights.closing * closing / distance
     total -= weights.time
     if reached:
