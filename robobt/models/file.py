@@ -124,7 +124,7 @@ def find_model(name_or_path: str | Path) -> Path:
 
     Raises:
         UnknownModelError: there is no model with that name.
-        ModelError: there are several.
+        ModelError: there are several, and they are not the same.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
@@ -136,7 +136,7 @@ def find_model(name_or_path: str | Path) -> Path:
             path = folder / f"{text}{suffix}"
             if path.is_file():
                 found.setdefault(folder.resolve(), path)
-    if len(found) > 1:
+    if len({sha256(_read(path)).digest() for path in found.values()}) > 1:
         several = ", ".join(map(str, found.values()))
         raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
     for path in found.values():

@@ -249,6 +249,13 @@ def test_a_name_in_two_places_is_no_name(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert load_policy(path).card.name == "go_to_ball_ddpg"
 
 
+def test_a_copy_of_a_shipped_model_is_the_same_model(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    shipped = model_file.models_folder() / "go_to_ball_ddpg.pt"
+    (tmp_path / shipped.name).write_bytes(shipped.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    assert load_policy("go_to_ball_ddpg").path == shipped
+
+
 @pytest.mark.parametrize("training", [True, False])
 def test_a_scripted_network_saved_by_torch_itself_is_loaded(tmp_path: Path, training: bool) -> None:
     layers = nn.Sequential(
