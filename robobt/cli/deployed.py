@@ -81,9 +81,9 @@ def deployed(
         SEED,
         SITUATIONS,
         STARTS,
-        judged_goal_line,
     )
     from robobt.experiments.deployed import deployed as run
+    from robobt.experiments.judged_goal_line import judged_goal_line
     from robobt.worlds import SIM
 
     one_of(only or [], ATTACKERS, "--only")

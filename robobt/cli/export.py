@@ -74,7 +74,8 @@ def models(
     the manifest beside it lists it) and card; problems: a line for each file that is no
     intact model.
     """
-    from robobt.models.file import ModelError, find_model, list_models, model_folders, read_model_file
+    from robobt.models.file import ModelError, read_model_file
+    from robobt.models.find import find_model, list_models, model_folders
 
     if name is not None:
         paths = [find_model(name)]

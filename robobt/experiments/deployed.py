@@ -6,19 +6,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
-from pathlib import Path
 from statistics import fmean
 from typing import TypedDict
 
-from robobt.experiments.goal_map import draw_goal_line
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import WorldFactory
 from robobt.match.results.results import MatchResult, Rate
-from robobt.match.runner import run_trials, trial_seed
+from robobt.match.runner import run_trials
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
-from robobt.skills.aim.raters.expected_goal import ExpectedGoal
-from robobt.skills.aim.raters.goal_line import goal_candidates
-from robobt.skills.aim.raters.nn_filtered import NNFiltered
 from robobt.statistics import mcnemar
 from robobt.worlds import sim_world
 
@@ -284,25 +279,3 @@ def _against(this: Sequence[bool], other: Sequence[bool]) -> Against:
 def _mean(values: Iterable[float]) -> float | None:
     listed = list(values)
     return fmean(listed) if listed else None
-
-
-def judged_goal_line(situation: Situation, seed: int, path: Path, world: WorldFactory = sim_world) -> None:
-    """Play ``attack_expected`` until its first shot and draw the goal line as judged at that moment.
-
-    Raises:
-        RuntimeError: it takes no shot in the first of its trials.
-    """
-    scenario = deployed_scenario(situation, "attack_expected")
-    with Match(scenario, trial_seed(seed, 0), world) as match:
-        store = match.players[0].store
-        while match.tick():
-            if store.command.kick_speed > 0.0:
-                break
-        else:
-            raise RuntimeError("attack_expected takes no shot in this trial")
-        frame, me = store.frame, store.me
-    points = goal_candidates(frame.field)
-    expected = ExpectedGoal().chances(frame, frame.ball.position, me, points)
-    assert expected is not None
-    network = NNFiltered().chances(frame, me, points)
-    draw_goal_line(frame, me, {"expected_goal": expected, "nn_filtered": network}, path)

@@ -10,7 +10,6 @@ with a card among its extra files, has no such seal; its members' CRCs have to d
 
 from __future__ import annotations
 
-import os
 import re
 import stat
 import zipfile
@@ -22,7 +21,6 @@ from pathlib import Path
 from typing import Literal
 
 from robobt.config.errors import RobobtError, one_line
-from robobt.config.resources import models_folder
 from robobt.models.card import ModelCard, read_card
 from robobt.models.protobuf import field, fields
 
@@ -114,47 +112,6 @@ def read_model_file(path: str | Path) -> ModelFile:
     except ValueError as error:
         raise ModelError(f"{path}: {one_line(str(error), 400)}") from error
     return ModelFile(path, kind, checksum, len(data), card, content)
-
-
-def find_model(name_or_path: str | Path) -> Path:
-    """Return the file of a model.
-
-    A name without a suffix is looked for among the shipped models, in the working folder, in its
-    folder ``models`` and in those that the environment variable ``ROBOBT_MODELS`` lists.
-
-    Raises:
-        UnknownModelError: there is no model with that name.
-        ModelError: there are several, and they are not the same.
-    """
-    text = str(name_or_path)
-    if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
-        return Path(name_or_path)
-    folders = model_folders()
-    found: dict[Path, Path] = {}
-    for folder in folders:
-        for suffix in SUFFIXES.values():
-            path = folder / f"{text}{suffix}"
-            if path.is_file():
-                found.setdefault(folder.resolve(), path)
-    if len({sha256(_read(path)).digest() for path in found.values()}) > 1:
-        several = ", ".join(map(str, found.values()))
-        raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
-    for path in found.values():
-        return path
-    there = ", ".join(sorted({path.stem for folder in folders for path in list_models(folder)})) or "none"
-    raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
-
-
-def model_folders() -> list[Path]:
-    """Return the folders in which models are found by their names, the shipped ones first."""
-    named = os.environ.get("ROBOBT_MODELS", "")
-    extra = [Path(part) for part in named.split(os.pathsep) if part]
-    return [models_folder(), Path(), Path("models"), *extra]
-
-
-def list_models(folder: Path) -> list[Path]:
-    """Return the model files of a folder, in the order of their names."""
-    return sorted([path for path in folder.glob("*") if path.suffix in _ENDINGS and path.is_file()])
 
 
 def read_manifest(folder: Path) -> dict[str, str]:
@@ -307,5 +264,4 @@ _UNNEEDED = re.compile(
     re.ASCII,
 )
 """Members that only serve debugging, or whoever saved the file; they are left out."""
-_ENDINGS = tuple(SUFFIXES.values())
 _LISTED = re.compile(r"([0-9a-f]{64}) [ *]([^/\\\s][^/\\]*)")

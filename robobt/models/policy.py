@@ -21,11 +21,11 @@ from robobt.models.file import (
     Format,
     ModelError,
     ModelFile,
-    find_model,
     pack_archive,
     read_model_file,
     unpack_archive,
 )
+from robobt.models.find import find_model
 from robobt.world.features import ObservationSpec
 
 if TYPE_CHECKING:

@@ -201,8 +201,7 @@ def _observe_scene(
 def go_to_ball_rows(robots: FloatArray, balls: FloatArray, goal_x: float, size: int) -> FloatArray:
     """Compute the states of many arenas, (n, size): :data:`GO_TO_BALL` or :data:`GO_TO_BALL_TO_SHOOT`.
 
-    ``robots`` (n, 6) are x, y, heading, vx, vy, omega in field coordinates, ``balls`` (n, 2 or more) x, y;
-    ``goal_x`` is where the attacked goal's line is [m].
+    Arguments as for :func:`shoot_rows`; of the balls only x and y count.
     """
     rows = np.empty((len(robots), size))
     for i in range(len(robots)):
@@ -274,7 +273,7 @@ def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:
 
 
 def go_to_ball_to_shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
-    """Compute that of a robot that goes to the ball in order to shoot, (8,)."""
+    """Compute that of one that is to shoot, (8,)."""
     return _go_to_ball(frame, robot, GO_TO_BALL_TO_SHOOT.size)
 
 

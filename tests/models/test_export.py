@@ -16,7 +16,8 @@ from torch import Tensor, nn
 from robobt.learning.agents.networks import Actor
 from robobt.models import export
 from robobt.models.export import export_model
-from robobt.models.file import MANIFEST, Format, ModelError, list_models, read_manifest, read_model_file
+from robobt.models.file import MANIFEST, Format, ModelError, read_manifest, read_model_file
+from robobt.models.find import list_models
 from robobt.models.policy import Policy, load_policy
 from tests.models.made_models import go_to_ball_card, network, predictor_card
 

@@ -13,16 +13,16 @@ import pytest
 import torch
 
 from robobt.models import file as model_file
+from robobt.models import find
 from robobt.models.file import (
     MANIFEST,
     ModelError,
     UnknownModelError,
-    find_model,
-    list_models,
     manifest_text,
     read_manifest,
     read_model_file,
 )
+from robobt.models.find import find_model, list_models
 from tests.models.made_models import go_to_ball_card, network, write_model
 
 
@@ -223,7 +223,7 @@ def test_a_manifest_that_is_none_is_an_error_with_its_line(tmp_path: Path, line:
 
 
 def test_names_are_those_of_installed_models(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(model_file, "models_folder", lambda: folder)
+    monkeypatch.setattr(find, "models_folder", lambda: folder)
     assert find_model("small") == folder / "small.pt"
     assert find_model("a/b.pt") == Path("a/b.pt")
     assert find_model(Path("small")) == Path("small")

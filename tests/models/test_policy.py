@@ -16,8 +16,7 @@ import torch
 from onnx import helper
 from torch import Tensor, nn
 
-from robobt.models import file as model_file
-from robobt.models import policy
+from robobt.models import find, policy
 from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
@@ -221,7 +220,7 @@ def test_a_model_trained_on_another_version_of_its_observation_is_refused(tmp_pa
 
 
 def test_a_name_that_is_none_lists_those_there_are(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(model_file, "models_folder", lambda: tmp_path)
+    monkeypatch.setattr(find, "models_folder", lambda: tmp_path)
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UnknownModelError, match="installed: none"):
         load_policy("nobody")
@@ -250,7 +249,7 @@ def test_a_name_in_two_places_is_no_name(monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 
 def test_a_copy_of_a_shipped_model_is_the_same_model(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    shipped = model_file.models_folder() / "go_to_ball_ddpg.pt"
+    shipped = find.models_folder() / "go_to_ball_ddpg.pt"
     (tmp_path / shipped.name).write_bytes(shipped.read_bytes())
     monkeypatch.chdir(tmp_path)
     assert load_policy("go_to_ball_ddpg").path == shipped

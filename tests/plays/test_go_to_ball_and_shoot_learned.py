@@ -24,7 +24,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:  # type: ignore[m
     write_model(folder, Straight(), go_to_ball_card("go_to_ball_ddpg"))
     write_model(folder, Aimed(), shoot_card("shoot_ddpg"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("robobt.models.file.model_folders", lambda: [folder])
+        patch.setattr("robobt.models.find.model_folders", lambda: [folder])
         yield folder
 
 

@@ -33,7 +33,7 @@ def test_a_model_of_another_skill_is_refused(tmp_path: Path) -> None:
 def test_the_shipped_policy_is_asked_for_when_the_leaf_is_made(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robobt.models.file.model_folders", lambda: [tmp_path])
+    monkeypatch.setattr("robobt.models.find.model_folders", lambda: [tmp_path])
     with pytest.raises(ModelError, match="no model is called 'shoot_ddpg'"):
         Shoot(policy="ddpg")
     write_model(tmp_path, Aimed(), shoot_card("shoot_ddpg"))
