@@ -65,13 +65,13 @@ def train(
     import torch
 
     from robobt.experiments.shot_sets import load_shot_sets
-    from robobt.models.file import SUFFIXES, ModelError
+    from robobt.models.export import refuse_to_replace
+    from robobt.models.file import SUFFIXES
     from robobt.shots.data.files import read_shots
     from robobt.shots.predict.shipped import train_shipped
 
     target = out / f"{name or model.value}{SUFFIXES['torchscript']}"
-    if target.exists() and not force:
-        raise ModelError(f"{target}: is there already; give another --out or --name, or --force")
+    refuse_to_replace(target, force)
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])
     recorded = None if real is None else load_shot_sets(real).test

@@ -80,9 +80,8 @@ def export_model(
     listed = read_manifest(folder)
     module = _copy(module)
     files = [folder / f"{card.name}{SUFFIXES[format_]}" for format_ in formats]
-    there = [path for path in files if path.exists()]
-    if there and not force:
-        raise ModelError(f"{there[0]}: is there already; force replaces it (--force), or choose another name")
+    for path in files:
+        refuse_to_replace(path, force)
     problems: list[ModelError] = []
     written: list[Path] = []
     for format_, path in zip(formats, files, strict=True):
@@ -101,6 +100,16 @@ def export_model(
         told = f"; written all the same: {', '.join(map(str, written))}" if written else ""
         raise ModelError(f"{problems[0]}{told}") from problems[0]
     return tuple(files)
+
+
+def refuse_to_replace(path: Path, force: bool) -> None:
+    """Refuse to write a model where one is, unless by ``force``; to be asked before long work as well.
+
+    Raises:
+        ModelError: the file is there.
+    """
+    if path.exists() and not force:
+        raise ModelError(f"{path}: is there already; force replaces it (--force), or choose another name")
 
 
 def _data(module: nn.Module, card: ModelCard, format_: Format, path: Path) -> bytes:

@@ -290,10 +290,8 @@ def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
     return row
 
 
-# Whole numbers would make numba compile a version of their own.
-
-
 def _kinematics(r: RobotState) -> Row:
+    # Whole numbers would make numba compile a version of their own.
     return (float(r.x), float(r.y), float(r.heading), float(r.vx), float(r.vy), float(r.omega))
 
 

@@ -19,7 +19,7 @@ from robobt.learning.training.results import TrainResult
 from robobt.learning.training.run_folder import RESULT, load_run
 from robobt.learning.training.settings import environment_of
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
-from robobt.models.export import export_model
+from robobt.models.export import export_model, refuse_to_replace
 from robobt.models.file import SUFFIXES, Format, ModelError
 from robobt.statistics import mean_interval
 
@@ -62,6 +62,9 @@ def export_run(
         )
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
+    called = name or f"{settings.task}_ddpg"
+    for format_ in formats:
+        refuse_to_replace(Path(folder) / f"{called}{SUFFIXES[format_]}", force)
     environment = environment_of(settings, str(run))
     count = settings.evaluation.held_out if starts is None else starts
     with one_thread():
@@ -69,7 +72,7 @@ def export_run(
     skill, observation = _SKILLS[settings.task], make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",
-        name=name or f"{settings.task}_ddpg",
+        name=called,
         skill=skill,
         description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
         algorithm=settings.algorithm,

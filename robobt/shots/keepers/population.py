@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from pydantic import Field, ValidationError
 
+from robobt.config.atomic import write_atomically
 from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml, write_yaml
@@ -81,7 +82,7 @@ class Population(Settings):
     def write(self, path: Path) -> None:
         """Write it as YAML that :func:`read_population` reads."""
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(write_yaml(self.model_dump()))
+        write_atomically(path, write_yaml(self.model_dump()))
 
 
 DIMENSIONS = 6

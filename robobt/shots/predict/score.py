@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from robobt.models.card import Measured
 from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
-from robobt.shots.data.inputs import asked_inputs, goals
+from robobt.shots.data.inputs import asked_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.validation import judge
@@ -66,8 +66,3 @@ def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> d
         prefix + name: Measured(value=value, low=low, high=high, n=judged.shots, interval=kind)
         for name, (value, low, high, kind) in figures.items()
     }
-
-
-def measured_on(model: str | Path, table: pa.Table) -> dict[str, Measured]:
-    """Return :func:`measured` of a model file on the shots of a table."""
-    return measured(predicted_by(model, table), goals(table))

@@ -10,10 +10,10 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.models.policy import load_policy
 from robobt.shots.data.files import write_shots
-from robobt.shots.data.inputs import shot_inputs
+from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.scene_network import SceneNetwork
-from robobt.shots.predict.score import measured_on
+from robobt.shots.predict.score import measured, predicted_by
 from robobt.shots.predict.shipped import train_shipped
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.world import BallState, Frame, RobotState, Team
@@ -68,7 +68,7 @@ def test_a_predictor_for_a_few_shots_rates_shots_in_play(tmp_path: Path):
     file, figures = train_shipped("shot_best", table, tmp_path, called="mine", real=made_up_table(80, seed=1))
     assert figures["accuracy"].n == 300
     assert figures["real_accuracy"].value > 0.8
-    assert measured_on(file, table)["log_loss"].value < figures["log_loss"].value
+    assert measured(predicted_by(file, table), goals(table))["log_loss"].value < figures["log_loss"].value
     frame = Frame(
         0.0,
         DIVISION_B,
