@@ -225,7 +225,9 @@ class Match:
         for event in decision.events:
             self._trace.event(f"{event.kind} {event.robot}")
             if self._recorder is not None:
-                self._recorder.event(event.kind, event.time, team=event.team, robot=event.robot)
+                self._recorder.event(
+                    event.kind, event.time, team=event.team, robot=event.robot, text=event.text
+                )
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
 

@@ -97,8 +97,10 @@ class GameState:
         may_touch: whether ``restart_team`` may take the restart now.
         placement: where the ball has to be placed or lies for the restart,
             in the coordinates of the frame that holds this state [m].
+        penalty: whose penalty kick it is, from its preparation to its end; ``restart`` is None once the ball
+            has moved, but everybody but kicker and goalkeeper has to stay behind it.
         blue, yellow: the teams, as a game controller reports them.
-        events: game events since play was stopped, by the league's names, oldest first.
+        events: game events since play was stopped, by the league's names in lower case, oldest first.
         action_time: time left for the present action, None without a limit [s]. Two states that
             differ only in their times are equal.
         stage_time: time left in this stage, negative in overtime; None without a game controller [s].
@@ -112,6 +114,7 @@ class GameState:
     restart_team: Team | None = None
     may_touch: bool = True
     placement: tuple[float, float] | None = None
+    penalty: Team | None = None
     blue: TeamStatus = TeamStatus()
     yellow: TeamStatus = TeamStatus()
     events: tuple[str, ...] = ()

@@ -11,6 +11,7 @@ Source: RoboCup SSL rules, chapters "Scoring Goals", "Ball Leaves The Field" and
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import copysign, cos, hypot, pi, radians, sin
 
 from robobt.world.compiled import compilable
@@ -37,6 +38,9 @@ STOP_DISTANCE = 0.5
 
 AREA_DISTANCE = 0.2
 """Distance to the opponents' defence area while the game is stopped or restarts. Source: SSL rules [m]."""
+
+SUBSTITUTION_REACH = 1.0
+"""How far from the half-way line robots may leave and enter over a touch line. Source: SSL rules [m]."""
 
 CARRY_DISTANCE = 1.0
 """A robot may carry the ball no farther than this, as the crow flies. Source: SSL rules [m]."""
@@ -160,6 +164,32 @@ def in_own_defense_area(field: FieldGeometry, x: float, y: float, tolerance: flo
 def in_defense_area(field: FieldGeometry, defender: Team, x: float, y: float, tolerance: float = 0.0) -> bool:
     """Return whether (x, y) lies in ``defender``'s defence area; see :func:`in_area`."""
     return in_their_defense_area(field, own_side(defender) * x, y, tolerance)
+
+
+# Robots on the field.
+
+
+def taken_off(field: FieldGeometry, robots: Iterable[RobotState], most: int | None) -> frozenset[int]:
+    """Return the numbers of a team's robots that count as off the field.
+
+    Of a team that has more robots than ``most``, as after a card, so many too many are off as stand in its
+    substitution area, centre outside a touch line and at most 1 m from the half-way line: their handler has
+    taken them. A robot that only fetches the ball there is not. Of several those with the highest numbers
+    are off; None allows any number.
+
+    Args:
+        field: the field.
+        robots: all of the team's, from either side's view.
+        most: how many the team may have.
+    """
+    robots = tuple(robots)
+    excess = 0 if most is None else len(robots) - most
+    if excess <= 0:
+        return frozenset()
+    outside = [
+        robot.id for robot in robots if abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
+    ]
+    return frozenset(sorted(outside)[-excess:])
 
 
 # Touches and possession.

@@ -124,7 +124,9 @@ class RefereeFollower:
             yellow_score=message.yellow.score,
             blue=_status(message.blue),
             yellow=_status(message.yellow),
-            events=tuple([GameEvent.Type.Name(event.type) for event in message.game_events[:MAX_OBJECTS]]),
+            events=tuple(
+                [GameEvent.Type.Name(event.type).lower() for event in message.game_events[:MAX_OBJECTS]]
+            ),
             action_time=_seconds(message, "current_action_time_remaining"),
             stage_time=_seconds(message, "stage_time_left"),
         )

@@ -101,12 +101,12 @@ class Fouls:
                 continue
             robot = _robot(frame, toucher)
             if in_defense_area(self._field, team, robot.x, robot.y, -ROBOT_RADIUS):
-                yield Foul(EventKind.OWN_AREA_TOUCH, team, toucher, penalty(self._field, other))
+                yield Foul(EventKind.DEFENDER_IN_DEFENSE_AREA, team, toucher, penalty(self._field, other))
             elif in_defense_area(self._field, other, robot.x, robot.y, ROBOT_RADIUS):
                 self._last_foul[team] = frame.time
                 if toucher not in self._reported:
                     self._reported.add(toucher)
-                    yield Foul(EventKind.THEIR_AREA_TOUCH, team, toucher)
+                    yield Foul(EventKind.ATTACKER_TOUCHED_BALL_IN_DEFENSE_AREA, team, toucher)
 
     def _double_touch(self, frame: Frame) -> Iterator[Foul]:
         kicker, touches = self._kicker, self._touches
@@ -118,12 +118,12 @@ class Fouls:
         elif kicker not in touches.now:
             self._kicker_left = True
         elif self._kicker_left or distance(frame.ball.position, self._kick_spot) > most:
-            yield self._against(EventKind.DOUBLE_TOUCH, kicker, frame)
+            yield self._against(EventKind.ATTACKER_DOUBLE_TOUCHED_BALL, kicker, frame)
 
     def _dribbling(self, frame: Frame) -> Iterator[Foul]:
         most, carrier = self._settings.max_dribble, self._touches.carrier
         if most is not None and carrier is not None and self._touches.carried > most:
-            yield self._against(EventKind.DRIBBLING, carrier, frame)
+            yield self._against(EventKind.BOT_DRIBBLED_BALL_TOO_FAR, carrier, frame)
 
     def _keeper_hold(self, frame: Frame) -> Iterator[Foul]:
         limit, ball = self._settings.keeper_hold_time, frame.ball
@@ -135,7 +135,7 @@ class Fouls:
         elif self._area_since is None:
             self._area_since = frame.time
         elif frame.time - self._area_since > limit:
-            yield self._against(EventKind.KEEPER_HELD, self._settings.keeper(team), frame)
+            yield self._against(EventKind.KEEPER_HELD_BALL, self._settings.keeper(team), frame)
 
     def _progress(self, frame: Frame) -> Iterator[Foul]:
         limit, ball = self._settings.no_progress_time, frame.ball.position
@@ -144,7 +144,7 @@ class Fouls:
         if distance(ball, self._rest_point) > self._settings.no_progress_distance:
             self._rest_point, self._rest_since = ball, frame.time
         elif frame.time - self._rest_since > limit:
-            yield Foul(EventKind.NO_PROGRESS, None, None, drop_ball(self._field, *ball))
+            yield Foul(EventKind.NO_PROGRESS_IN_GAME, None, None, drop_ball(self._field, *ball))
 
     def _crashes(self, frame: Frame) -> Iterator[Foul]:
         limit = self._settings.crash_speed
@@ -172,10 +172,14 @@ class Fouls:
             return
         self._crashing.add(pair)
         lead = blue.speed - yellow.speed
+        drawn = abs(lead) < _EQUAL_SPEEDS
         for robot, faster in ((pair[0], lead), (pair[1], -lead)):
-            if faster > -_EQUAL_SPEEDS:
+            if drawn or faster > 0.0:
                 self._last_foul[robot.team] = frame.time
-                yield Foul(EventKind.CRASH, robot.team, robot)
+                if not drawn:
+                    yield Foul(EventKind.BOT_CRASH_UNIQUE, robot.team, robot)
+        if drawn:
+            yield Foul(EventKind.BOT_CRASH_DRAWN, None, None)
 
     def _ball_speed(self, frame: Frame) -> Iterator[Foul]:
         most = self._settings.max_ball_speed
@@ -185,7 +189,7 @@ class Fouls:
         fast = ball.vx * ball.vx + ball.vy * ball.vy > (most + SPEED_TOLERANCE) ** 2
         if fast and not self._too_fast and last is not None:
             self._last_foul[last.team] = frame.time
-            yield Foul(EventKind.BALL_SPEED, last.team, last)
+            yield Foul(EventKind.BOT_KICKED_BALL_TOO_FAST, last.team, last)
         self._too_fast = fast
 
     def _against(self, kind: EventKind, offender: RobotId, frame: Frame) -> Foul:

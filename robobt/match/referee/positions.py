@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-from robobt.match.referee.events import EventKind
 from robobt.match.referee.fouls import SPEED_TOLERANCE
 from robobt.match.referee.restarts import Resumption
 from robobt.match.referee.settings import RefereeSettings
@@ -39,14 +38,12 @@ def spot_free(frame: Frame, spot: Point) -> bool:
     return all(hypot(robot.x - spot[0], robot.y - spot[1]) > clear for robot in frame.robots().values())
 
 
-def stop_violations(frame: Frame, settings: RefereeSettings) -> Iterator[tuple[EventKind, RobotId]]:
-    """Find robots that are too fast or too close to the ball while the game is stopped."""
-    most, least = settings.stop_speed, settings.stop_distance
+def stop_violations(frame: Frame, settings: RefereeSettings) -> Iterator[RobotId]:
+    """Find robots that are too fast while the game is stopped."""
+    most = settings.stop_speed
     for identity, robot in frame.robots().items():
         if most is not None and robot.speed > most + SPEED_TOLERANCE:
-            yield EventKind.STOP_SPEED, identity
-        if least is not None and _ball_distance(robot, frame.ball) < least:
-            yield EventKind.STOP_DISTANCE, identity
+            yield identity
 
 
 def crowding(frame: Frame, settings: RefereeSettings, kicking: Team | None) -> Iterator[RobotId]:

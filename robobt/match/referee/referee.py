@@ -111,8 +111,8 @@ class Referee:
     def _judge_stop(self, frame: Frame) -> None:
         elapsed, settings = self._elapsed(frame), self.settings
         if elapsed > settings.grace:
-            for kind, robot in stop_violations(frame, settings):
-                self._record_once(frame, kind, robot)
+            for robot in stop_violations(frame, settings):
+                self._record_once(frame, EventKind.BOT_TOO_FAST_IN_STOP, robot)
         if elapsed < settings.placement_delay:
             return
         spot, restart, team = self._next.spot, self._next.restart, self._next.team
@@ -141,7 +141,7 @@ class Referee:
         team, last = self._next.team, self._touches.last
         if self._elapsed(frame) > self.settings.grace:
             for robot in crowding(frame, self.settings, team):
-                self._record_once(frame, EventKind.STOP_DISTANCE, robot)
+                self._record_once(frame, EventKind.DEFENDER_TOO_CLOSE_TO_KICK_POINT, robot)
         if distance(frame.ball.position, self._next.spot) > self.settings.in_play_distance:
             if last is not None and last.team is not team:
                 self._repeat_restart(frame)
@@ -149,7 +149,6 @@ class Referee:
             self._play(frame, self.game.command, last)
             self._judge_play(frame)
         elif self._elapsed(frame) > self.settings.kick_timeout:
-            self._record(frame, EventKind.KICK_TIMEOUT, team, None)
             self._play(frame, self.game.command)
 
     def _judge_play(self, frame: Frame) -> None:
@@ -215,8 +214,6 @@ class Referee:
 
     def _repeat_restart(self, frame: Frame) -> None:
         """Order the same restart again, because somebody moved the ball who may not."""
-        last = self._touches.last
-        self._record(frame, EventKind.INTERFERENCE, last.team if last else None, last)
         self._stop(frame, self._next)
 
     def _record(self, frame: Frame, kind: EventKind, team: Team | None, robot: RobotId | None) -> None:
@@ -233,7 +230,7 @@ class Referee:
         ball, field, last = frame.ball.position, self.field, self._touches.last
         (x, y), over_goal_line = exit_point(field, self._ball_before, ball)
         if not over_goal_line:
-            self._record(frame, EventKind.BALL_OUT, last.team if last else None, last)
+            self._record(frame, EventKind.BALL_LEFT_FIELD_TOUCH_LINE, last.team if last else None, last)
             self._stop(frame, free_kick(field, last.team.other, x, y) if last else drop_ball(field, x, y))
             return
         defender = Team.BLUE if x < 0.0 else Team.YELLOW
@@ -251,7 +248,7 @@ class Referee:
             self._record(frame, EventKind.AIMLESS_KICK, attacker, last)
             self._stop(frame, free_kick(field, defender, *where))
             return
-        self._record(frame, EventKind.BALL_OUT, last.team if last else None, last)
+        self._record(frame, EventKind.BALL_LEFT_FIELD_GOAL_LINE, last.team if last else None, last)
         if last is not None and last.team is defender:
             self._stop(frame, corner_kick(field, attacker, y))
         else:

@@ -194,7 +194,7 @@ def test_cards_keeper_times_and_events_are_known(controller: Controller) -> None
     assert game.status(Team.YELLOW) == TeamStatus(4, 5, 1, 0, can_place_ball=False)
     assert game.status(Team.BLUE) == TeamStatus(0, None, 0, 0, can_place_ball=True)
     assert (game.stage_time, game.action_time) == (-1.5, 7.25)
-    assert game.events == ("BALL_LEFT_FIELD_TOUCH_LINE",)
+    assert game.events == ("ball_left_field_touch_line",)
 
 
 def test_the_clock_alone_makes_no_new_state(controller: Controller) -> None:
