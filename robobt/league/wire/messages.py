@@ -23,10 +23,15 @@ if TYPE_CHECKING:
     from robobt.league.wire.proto.grSim_Packet_pb2 import *
     from robobt.league.wire.proto.grSim_Replacement_pb2 import *
     from robobt.league.wire.proto.grSim_Robotstatus_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_api_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_change_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_ci_pb2 import *
     from robobt.league.wire.proto.ssl_gc_common_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_engine_config_pb2 import *
     from robobt.league.wire.proto.ssl_gc_game_event_pb2 import *
     from robobt.league.wire.proto.ssl_gc_geometry_pb2 import *
     from robobt.league.wire.proto.ssl_gc_referee_message_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_state_pb2 import *
     from robobt.league.wire.proto.ssl_simulation_config_pb2 import *
     from robobt.league.wire.proto.ssl_simulation_control_pb2 import *
     from robobt.league.wire.proto.ssl_simulation_custom_erforce_realism_pb2 import *

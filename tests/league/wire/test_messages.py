@@ -91,6 +91,13 @@ def test_another_package_may_define_messages_of_the_same_names() -> None:
     assert messages.SSL_WrapperPacket().DESCRIPTOR.fields_by_name["detection"].number == 1
 
 
-def test_an_unread_game_event_is_carried_on() -> None:
-    event = bytes.fromhex("28028a01020801")
+def test_an_event_of_a_type_not_known_yet_is_carried_on() -> None:
+    # Field 99 holds a message {1: 1}, type (40) is 99.
+    event = bytes.fromhex("c002639a06020801")
     assert messages.GameEvent.FromString(event).SerializeToString() == event
+
+
+def test_an_event_that_lacks_what_the_league_requires_does_not_cost_the_packet() -> None:
+    message = messages.GameEvent(type=6)
+    message.ball_left_field_touch_line.by_bot = 3
+    assert messages.GameEvent.FromString(message.SerializeToString()).IsInitialized()
