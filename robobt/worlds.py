@@ -14,6 +14,7 @@ from robobt.config.errors import message_of
 from robobt.config.validation import first_problem
 from robobt.match import loop, runner
 from robobt.match.loop import WorldFactory
+from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.results import MatchResult
 from robobt.match.runner import Run
 from robobt.match.scenario.scenario import Scenario
@@ -93,6 +94,7 @@ def play_match(
     *,
     world: str | WorldFactory = SIM,
     record: str | Path | None = None,
+    referee: RefereeFactory = own_referee,
 ) -> MatchResult:
     """Play one match to its end.
 
@@ -101,12 +103,14 @@ def play_match(
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         record: file to record the match to.
+        referee: makes the referee; by default the scenario's own.
 
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         OSError: the recording cannot be written.
     """
-    return loop.play_match(scenario, scenario.seed if seed is None else seed, _factory(world), record)
+    seed = scenario.seed if seed is None else seed
+    return loop.play_match(scenario, seed, _factory(world), record, referee=referee)
 
 
 def run_trials(
@@ -119,6 +123,7 @@ def run_trials(
     out: str | Path | None = None,
     record: Mapping[int, str | Path] | None = None,
     on_result: Callable[[MatchResult], None] | None = None,
+    referee: RefereeFactory = own_referee,
 ) -> Run:
     """Play a scenario many times.
 
@@ -133,8 +138,10 @@ def run_trials(
         out: file to append each result to; trials it holds already are not played again.
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes.
+        referee: makes the referee of each trial; by default the scenario's own.
     """
-    return runner.run_trials(scenario, _factory(world), trials, workers, seed, out, record, on_result)
+    factory = _factory(world)
+    return runner.run_trials(scenario, factory, trials, workers, seed, out, record, on_result, referee)
 
 
 def _factory(world: str | WorldFactory) -> WorldFactory:

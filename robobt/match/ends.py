@@ -40,7 +40,7 @@ class EndJudge:
 
     Args:
         scenario: whose end conditions they are.
-        refereed: whether a game controller decides; the score is then its own.
+        refereed: whether a referee or game controller decides; the score is then its own.
         hold: whether the end conditions hold at all; without them a match ends when the referee says.
 
     Attributes:

@@ -15,7 +15,7 @@ from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
-from robobt.match.referee.referee import Referee
+from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
 from robobt.match.scenario.scenario import Scenario
@@ -23,7 +23,6 @@ from robobt.match.views import KeptView
 from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
-from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
@@ -44,6 +43,7 @@ class Match:
         world_factory: makes the world.
         record: file to record the match to; its name ends in ``.robobt.arrows``.
         trial: which repetition this is; only written down.
+        referee: makes the referee; by default the scenario's own. It is closed with the match.
 
     Attributes:
         world: where it is played.
@@ -64,10 +64,12 @@ class Match:
         world_factory: WorldFactory,
         record: str | Path | None = None,
         trial: int = 0,
+        referee: RefereeFactory = own_referee,
     ) -> None:
         self.scenario, self.seed, self.trial = scenario, seed, trial
         self.world = world_factory(scenario)
-        if scenario.referee is not None and self.world.refereed:
+        asked = scenario.referee is not None or referee is not own_referee
+        if asked and self.world.refereed:
             raise scenario.error(
                 "the scenario has a referee of its own, but a game controller decides there; "
                 "set 'referee: false', or play with 'robobt match --no-referee'",
@@ -85,9 +87,10 @@ class Match:
             team: Lineup([player for player in self.players if player.robot.team is team], keepers.get(team))
             for team in Team
         }
-        self._judge = EndJudge(scenario, self.world.refereed, self.world.scenario_ends)
         self._field = self.world.truth().field
-        self._referee = _referee_of(scenario, self._field)
+        self._referee = referee(scenario, self._field)
+        refereed = self._referee is not None or self.world.refereed
+        self._judge = EndJudge(scenario, refereed, self.world.scenario_ends)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
         self._spoilers: set[RobotId] = set()
@@ -110,8 +113,10 @@ class Match:
         self.close()
 
     def close(self) -> None:
-        """Finish the recording; a match played tick by tick is closed by ``with`` or by this."""
+        """Let go of the referee and finish the recording; or use it in ``with``."""
         let_go()
+        if self._referee is not None:
+            self._referee.close()
         if self._recorder is not None:
             with uninterrupted, self._recorder as recorder:
                 if self.outcome is not None:
@@ -275,17 +280,10 @@ def play_match(
     world_factory: WorldFactory,
     record: str | Path | None = None,
     trial: int = 0,
+    referee: RefereeFactory = own_referee,
 ) -> MatchResult:
     """Play one match to its end; the arguments are those of :class:`Match`."""
-    return Match(scenario, seed, world_factory, record, trial).play()
-
-
-def _referee_of(scenario: Scenario, field: FieldGeometry) -> Referee | None:
-    settings = scenario.referee
-    if settings is None:
-        return None
-    keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
-    return Referee(field, settings.model_copy(update=keepers))
+    return Match(scenario, seed, world_factory, record, trial, referee).play()
 
 
 _END_EVENTS: Mapping[Outcome, tuple[str, Team | None]] = {

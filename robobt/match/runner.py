@@ -12,6 +12,7 @@ import numpy as np
 
 from robobt.config.errors import RobobtError
 from robobt.match.loop import WorldFactory, play_match
+from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.file import ResultsFile
 from robobt.match.results.results import MatchResult, Summary, summarise
 from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
@@ -58,6 +59,7 @@ def run_trials(
     out: str | Path | None = None,
     record: Mapping[int, str | Path] | None = None,
     on_result: Callable[[MatchResult], None] | None = None,
+    referee: RefereeFactory = own_referee,
 ) -> Run:
     """Play a scenario many times.
 
@@ -74,6 +76,7 @@ def run_trials(
         out: file to append each result to as it finishes; trials it holds already are not played again.
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes, and with those of ``out`` first.
+        referee: makes the referee of each trial; by default the scenario's own.
 
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
@@ -96,13 +99,14 @@ def run_trials(
         scenario,
         world_factory,
         seed,
+        referee,
         {trial: Path(path) for trial, path in record.items()},
         tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
     )
     results: dict[int, MatchResult] = {}
     interrupted = False
-    world = getattr(world_factory, "address", None)
-    with ResultsFile(out, scenario, seed, world) if out is not None else nullcontext() as file:
+    where = getattr(world_factory, "address", None), getattr(referee, "name", None)
+    with ResultsFile(out, scenario, seed, *where) if out is not None else nullcontext() as file:
         try:
             for trial, result in sorted(file.done.items() if file is not None else ()):
                 if trial < trials and trial not in record:
@@ -137,12 +141,14 @@ class _Job:
     scenario: Scenario
     world_factory: WorldFactory
     seed: int
+    referee: RefereeFactory
     record: Mapping[int, Path]
     plays: tuple[Play, ...]
 
     def play(self, trial: int, _report: object) -> MatchResult:
         seed = trial_seed(self.seed, trial)
-        return play_match(self.scenario, seed, self.world_factory, self.record.get(trial), trial)
+        record = self.record.get(trial)
+        return play_match(self.scenario, seed, self.world_factory, record, trial, self.referee)
 
 
 def _import_files(paths: tuple[Path, ...]) -> None:

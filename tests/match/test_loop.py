@@ -1,4 +1,7 @@
+from __future__ import annotations
+
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -8,8 +11,11 @@ from py_trees.common import Status
 
 from robobt.match import Match, MatchResult, play_match
 from robobt.match.recording import load_recording
+from robobt.match.referee.events import Decision
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.world import Frame, RobotCommand, RobotId, Team
+from robobt.world.field import FieldGeometry
+from robobt.world.game import GameState, Stage
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
 
@@ -275,3 +281,39 @@ def test_a_skill_that_spoils_its_frame_spoils_nobody_elses(
         spoilt.tick()
     assert spoilt.result().trace == plain.result().trace
     assert caplog.text.count(f"{team} 0: a skill changes its frame") == 1
+
+
+class ScriptedReferee:
+    """Gives blue a goal at 0.1 s and ends the match at 0.2 s."""
+
+    name = "scripted"
+
+    def __init__(self) -> None:
+        self.closed = 0
+
+    def __call__(self, scenario: Scenario, field: FieldGeometry) -> ScriptedReferee:
+        return self
+
+    def update(self, frame: Frame) -> Decision:
+        over = frame.time > 0.199
+        stage = Stage.POST_GAME if over else Stage.NORMAL_FIRST_HALF
+        scored = frame.time > 0.099
+        return Decision(GameState(stage=stage, blue_score=int(scored)))
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+def test_another_referee_decides_instead_of_the_scenarios_own() -> None:
+    referee = ScriptedReferee()
+    result = Match(scenario(), 1, PlainWorld, referee=referee).play()
+    assert (result.outcome, result.blue_score) == ("full_time", 1)
+    assert referee.closed == 1
+
+
+def test_the_referee_is_closed_when_a_match_breaks_off() -> None:
+    referee = ScriptedReferee()
+    with suppress(ZeroDivisionError), Match(scenario(), 1, PlainWorld, referee=referee) as match:
+        match.tick()
+        raise ZeroDivisionError
+    assert referee.closed == 1

@@ -87,6 +87,9 @@ class Referee:
         self._ball_before = frame.ball.position
         return Decision(self.game, tuple(self._events), self._place)
 
+    def close(self) -> None:
+        """Hold nothing that would have to be let go; see :class:`robobt.match.refereeing.MatchReferee`."""
+
     # What each state waits for.
 
     def _open(self, frame: Frame) -> None:

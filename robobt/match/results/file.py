@@ -30,7 +30,7 @@ class ResultsFileError(RobobtError, ValueError):
 class ResultsFile:
     """A results file that is open for appending. A context manager.
 
-    A file that exists is continued when it holds the same scenario, seed, world and
+    A file that exists is continued when it holds the same scenario, seed, world, referee and
     version; damaged lines are dropped, and their trials played again.
 
     Args:
@@ -38,6 +38,7 @@ class ResultsFile:
         scenario: what is played.
         seed: seed of the run.
         world: address of the world it is played in; None for the built-in simulator.
+        referee: name of the referee; None for the scenario's own.
 
     Attributes:
         done: results the file held already, by trial.
@@ -47,7 +48,14 @@ class ResultsFile:
         OSError: it cannot be read or written.
     """
 
-    def __init__(self, path: str | Path, scenario: Scenario, seed: int, world: str | None = None) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        scenario: Scenario,
+        seed: int,
+        world: str | None = None,
+        referee: str | None = None,
+    ) -> None:
         self.path = Path(path)
         self.done: dict[int, MatchResult] = {}
         head: dict[str, object] = {
@@ -59,6 +67,8 @@ class ResultsFile:
         }
         if world is not None:
             head["world"] = world
+        if referee is not None:
+            head["referee"] = referee
         self.path.parent.mkdir(parents=True, exist_ok=True)
         # A pipe or a device is read for ever.
         if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
@@ -129,9 +139,9 @@ class ResultsFile:
     def _check_head(self, found: object, head: dict[str, object]) -> None:
         if not isinstance(found, dict) or found.get("format") != FORMAT:
             raise ResultsFileError(f"{self.path}: not a file of results; give another name")
-        for key in dict.fromkeys([*head, "world"]):
+        for key in dict.fromkeys([*head, "world", "referee"]):
             if found.get(key) != head.get(key):
-                there = found.get(key, "sim" if key == "world" else None)
+                there = found.get(key, {"world": "sim", "referee": "own"}.get(key))
                 what = "another version of the scenario" if key == "digest" else f"{key} {there!r}"
                 raise ResultsFileError(f"{self.path}: holds results of {what}; give another name")
 

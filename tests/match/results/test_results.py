@@ -132,6 +132,12 @@ class TestResultsFile:
         with ResultsFile(path, self.scenario, 0) as file:
             assert file.done == {0: trial(0), 1: trial(1), 2: trial(2)}
 
+    def test_results_under_another_referee_are_not_mixed_with_it(self, tmp_path: Path):
+        path = tmp_path / "results.jsonl"
+        self.write(path, trial(0))
+        with pytest.raises(ResultsFileError, match="holds results of referee 'own'"):
+            ResultsFile(path, self.scenario, 0, None, "official")
+
     @pytest.mark.parametrize("cut", [1, 20, 200])
     def test_a_last_line_that_was_cut_is_dropped(self, tmp_path: Path, cut: int):
         path = tmp_path / "results.jsonl"

@@ -1,0 +1,42 @@
+"""Who referees a match: the interface of a referee, and the one that a scenario asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from robobt.match.referee.events import Decision
+from robobt.match.referee.referee import Referee
+from robobt.match.referee.settings import RefereeSettings
+from robobt.match.scenario.scenario import Scenario
+from robobt.world.field import FieldGeometry
+from robobt.world.state import Frame
+
+
+class MatchReferee(Protocol):
+    """Watches a match and decides its state."""
+
+    def update(self, frame: Frame) -> Decision:
+        """Judge the next frame, which shows what really is on the field, from blue's side."""
+
+    def close(self) -> None:
+        """Let go of what it holds: the match is over."""
+
+
+RefereeFactory = Callable[[Scenario, FieldGeometry], MatchReferee | None]
+"""Makes the referee of a match, None for free play.
+
+For workers it is a function of a module or another object that can be pickled. One that is not
+:func:`own_referee` has a ``name``, by which files of results are told apart.
+"""
+
+
+def own_referee(scenario: Scenario, field: FieldGeometry) -> Referee | None:
+    """Return the referee that the scenario asks for: robobt's own, or none."""
+    return None if scenario.referee is None else Referee(field, referee_settings(scenario))
+
+
+def referee_settings(scenario: Scenario) -> RefereeSettings:
+    """Return the scenario's settings, with its goalkeepers; the defaults where it has no referee."""
+    keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
+    return (scenario.referee or RefereeSettings()).model_copy(update=keepers)
