@@ -75,6 +75,7 @@ class TeamStatus:
         yellow_cards: how many are in force now.
         red_cards: how many it got.
         can_place_ball: whether it may be asked to place the ball.
+        substituting: whether its robots may be exchanged by hand now.
     """
 
     keeper: int | None = None
@@ -82,6 +83,7 @@ class TeamStatus:
     yellow_cards: int = 0
     red_cards: int = 0
     can_place_ball: bool = True
+    substituting: bool = False
 
 
 @dataclass(slots=True, frozen=True)
@@ -101,6 +103,7 @@ class GameState:
             has moved, but everybody but kicker and goalkeeper has to stay behind it.
         blue, yellow: the teams, as a game controller reports them.
         events: game events since play was stopped, by the league's names in lower case, oldest first.
+        upcoming: the command that will follow, as far as a game controller knows.
         action_time: time left for the present action, None without a limit [s]. Two states that
             differ only in their times are equal.
         stage_time: time left in this stage, negative in overtime; None without a game controller [s].
@@ -118,6 +121,7 @@ class GameState:
     blue: TeamStatus = TeamStatus()
     yellow: TeamStatus = TeamStatus()
     events: tuple[str, ...] = ()
+    upcoming: RefereeCommand | None = None
     action_time: float | None = field(default=None, compare=False)
     stage_time: float | None = field(default=None, compare=False)
 

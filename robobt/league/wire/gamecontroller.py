@@ -27,7 +27,7 @@ _SILENCE = 2.0
 """Another sender is followed once the present one has been silent for this long [s]."""
 
 _KICK_TIMEOUT = 10.0
-"""A restart that has not been taken by then is over [s]."""
+"""A restart that has not been taken by then is over, where the controller does not tell the time left [s]."""
 
 # No longer sent, but found in old logs.
 _OUTDATED = {
@@ -67,7 +67,7 @@ class RefereeFollower:
         )
         self.blue_on_positive_half: bool | None = None
         self.counts = PacketCounts()
-        self._counter: tuple[int, int] | None = None
+        self._counter: tuple[int, int, int] | None = None
         self._ready: tuple[Point, float] | None = None
         self._sender: tuple[str, int] | None = None
         self._heard = 0.0
@@ -107,15 +107,19 @@ class RefereeFollower:
         command = _command(message.command)
         if message.HasField("blue_team_on_positive_half"):
             self.blue_on_positive_half = message.blue_team_on_positive_half
-        upcoming = RefereeCommand.HALT
-        if message.HasField("next_command"):
-            upcoming = _command(message.next_command)
-        # A restarted controller counts from 0 again, but with another timestamp.
-        counter = (message.command_counter, message.command_timestamp)
+        upcoming = _command(message.next_command) if message.HasField("next_command") else None
+        # A restarted controller counts from 0 again, but with another timestamp. A goal is told as a command
+        # once, and then the command in force again, with the number of the goal.
+        counter = (message.command_counter, message.command_timestamp, int(message.command))
         if counter != self._counter:
             self._counter = counter
             self._follow(command, upcoming, placement)
-        elif self.game.command is RefereeCommand.STOP or self.game.restart is Restart.BALL_PLACEMENT:
+        elif self.game.command is RefereeCommand.STOP:
+            # What happens meanwhile may change what follows.
+            restart, team = _following(upcoming)
+            placement = placement or self.game.placement
+            self.game = replace(self.game, restart=restart, restart_team=team, placement=placement)
+        elif self.game.restart is Restart.BALL_PLACEMENT:
             self.game = replace(self.game, placement=placement or self.game.placement)
         self.game = replace(
             self.game,
@@ -124,6 +128,7 @@ class RefereeFollower:
             yellow_score=message.yellow.score,
             blue=_status(message.blue),
             yellow=_status(message.yellow),
+            upcoming=upcoming,
             events=tuple(
                 [GameEvent.Type.Name(event.type).lower() for event in message.game_events[:MAX_OBJECTS]]
             ),
@@ -131,6 +136,10 @@ class RefereeFollower:
             stage_time=_seconds(message, "stage_time_left"),
         )
         return True
+
+    def follow(self, message: RefereeMessage) -> bool:
+        """Update the state from a message of the one controller there is; False when it is implausible."""
+        return bool(self._update(message))
 
     def watch(self, frame: Frame) -> GameState:
         """Return the state in view of the ball: a restart ends when the ball moves, or times out.
@@ -147,12 +156,14 @@ class RefereeFollower:
         ball, since = self._ready
         moved = distance(frame.ball.position, ball) > IN_PLAY_DISTANCE
         # A penalty kick has no timeout here: the controller ends it.
-        timeout = game.restart is not Restart.PENALTY and frame.time - since > _KICK_TIMEOUT
-        if moved or timeout:
+        timeout = frame.time - since > _KICK_TIMEOUT if game.action_time is None else game.action_time < 0.0
+        if moved or (timeout and game.restart is not Restart.PENALTY):
             self.game = replace(game, restart=None, restart_team=None, placement=None)
         return self.game
 
-    def _follow(self, command: RefereeCommand, upcoming: RefereeCommand, placement: Point | None) -> None:
+    def _follow(
+        self, command: RefereeCommand, upcoming: RefereeCommand | None, placement: Point | None
+    ) -> None:
         before = self.game
         self._ready = None
         restart, team = _RESTARTS.get(command, (None, None))
@@ -163,7 +174,7 @@ class RefereeFollower:
         elif command in (RefereeCommand.FORCE_START, RefereeCommand.NORMAL_START):
             may_touch, placement = True, None
         elif command is RefereeCommand.STOP:
-            restart, team = _RESTARTS.get(upcoming, (None, None))
+            restart, team = _following(upcoming)
         elif restart is Restart.KICKOFF:
             placement = (0.0, 0.0)
         if restart is Restart.PENALTY and command is not RefereeCommand.STOP:
@@ -171,14 +182,20 @@ class RefereeFollower:
             placement = before.placement if command is RefereeCommand.NORMAL_START else None
         elif before.command is RefereeCommand.STOP and restart is not None and placement is None:
             placement = before.placement
+        kicks = restart is Restart.PENALTY and command is not RefereeCommand.STOP
         self.game = replace(
             before,
             command=command,
             restart=restart,
             restart_team=team,
+            penalty=team if kicks else None,
             may_touch=may_touch,
             placement=placement,
         )
+
+
+def _following(upcoming: RefereeCommand | None) -> tuple[Restart | None, Team | None]:
+    return (None, None) if upcoming is None else _RESTARTS.get(upcoming, (None, None))
 
 
 def _status(info: RefereeMessage.TeamInfo) -> TeamStatus:
@@ -188,6 +205,7 @@ def _status(info: RefereeMessage.TeamInfo) -> TeamStatus:
         yellow_cards=len(info.yellow_card_times),
         red_cards=info.red_cards,
         can_place_ball=info.can_place_ball if info.HasField("can_place_ball") else True,
+        substituting=info.bot_substitution_allowed,
     )
 
 

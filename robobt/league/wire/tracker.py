@@ -26,7 +26,14 @@ def write_tracked(frame: Frame, number: int, time: float, uuid: str) -> bytes:
     ``frame`` is seen from blue's side, ``time`` Unix time or simulated [s]; ``uuid`` tells this source from
     others while it runs.
     """
-    packet = TrackerWrapperPacket(uuid=uuid, source_name=SOURCE)
+    packet = TrackerWrapperPacket()
+    fill_tracked(packet, frame, number, time, uuid)
+    return bytes(packet.SerializeToString())
+
+
+def fill_tracked(packet: TrackerWrapperPacket, frame: Frame, number: int, time: float, uuid: str) -> None:
+    """Fill in an empty tracker packet; see :func:`write_tracked`."""
+    packet.uuid, packet.source_name = uuid, SOURCE
     tracked = packet.tracked_frame
     tracked.frame_number, tracked.timestamp = number % 2**32, time
     ball = frame.ball
@@ -43,7 +50,6 @@ def write_tracked(frame: Frame, number: int, time: float, uuid: str) -> bytes:
                 vel_angular=robot.omega,
                 visibility=1.0,
             )
-    return bytes(packet.SerializeToString())
 
 
 def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tuple[str, Frame] | None:

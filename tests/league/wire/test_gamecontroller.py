@@ -134,6 +134,44 @@ def test_outdated_commands_of_old_logs_are_understood(controller: Controller) ->
     assert controller.say("GOAL_BLUE").stopped
 
 
+def test_a_goal_is_told_once_and_the_halt_goes_on(controller: Controller) -> None:
+    controller.say("HALT")
+    controller.say("GOAL_BLUE")
+    # The next message has the command in force again, and the goal's number.
+    controller.message.command = Referee.Command.Value("HALT")
+    assert controller.repeat().halted
+
+
+def test_what_happens_in_a_stop_may_change_what_follows(controller: Controller) -> None:
+    controller.say("STOP", "DIRECT_FREE_YELLOW", (1500.0, -2000.0))
+    controller.message.next_command = Referee.Command.Value("PREPARE_PENALTY_BLUE")
+    game = controller.repeat()
+    assert (game.restart, game.restart_team) == (Restart.PENALTY, Team.BLUE)
+    assert game.upcoming is RefereeCommand.PREPARE_PENALTY_BLUE
+
+
+def test_a_penalty_lasts_from_its_preparation_to_the_next_command(controller: Controller) -> None:
+    assert controller.say("STOP", "PREPARE_PENALTY_BLUE").penalty is None
+    assert controller.say("PREPARE_PENALTY_BLUE").penalty is Team.BLUE
+    controller.say("NORMAL_START")
+    controller.ball(1.5, 0.0, 1.0)
+    game = controller.ball(1.6, 0.0, 1.1)
+    assert (game.restart, game.penalty) == (None, Team.BLUE)
+    assert controller.say("STOP").penalty is None
+
+
+def test_a_restart_is_over_when_the_controllers_time_for_it_is(controller: Controller) -> None:
+    controller.say("DIRECT_FREE_BLUE")
+    controller.message.current_action_time_remaining = 100_000
+    controller.repeat()
+    # Division A gives five seconds, and an opponent too near starts them anew.
+    assert not controller.ball(1.0, 1.0, 5.0).in_play
+    assert not controller.ball(1.0, 1.0, 15.1).in_play
+    controller.message.current_action_time_remaining = -1
+    controller.repeat()
+    assert controller.ball(1.0, 1.0, 15.2).in_play
+
+
 def test_a_place_that_is_none_is_dropped(controller: Controller) -> None:
     controller.say("STOP")
     controller.message.designated_position.x = float("nan")
@@ -165,7 +203,8 @@ def test_what_is_published_is_followed_to_the_same_state() -> None:
     assert follower.read(publisher.write(STOPPED, 1.0))
     # What goes out names a goalkeeper in any case.
     named = {"blue": TeamStatus(keeper=0), "yellow": TeamStatus(keeper=0)}
-    assert follower.game == replace(STOPPED, **named)
+    upcoming = RefereeCommand.DIRECT_FREE_BLUE
+    assert follower.game == replace(STOPPED, upcoming=upcoming, **named)
     kick = replace(STOPPED, command=RefereeCommand.DIRECT_FREE_BLUE, may_touch=True)
     assert follower.read(publisher.write(kick, 2.0))
     assert follower.game == replace(kick, **named)
