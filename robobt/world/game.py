@@ -99,6 +99,7 @@ class GameState:
         may_touch: whether ``restart_team`` may take the restart now.
         placement: where the ball has to be placed or lies for the restart,
             in the coordinates of the frame that holds this state [m].
+        next_command: the command that follows once this stop or placement is over; None where nobody said.
         penalty: whose penalty kick it is, from its preparation to its end; ``restart`` is None once the ball
             has moved, but everybody but kicker and goalkeeper has to stay behind it.
         blue, yellow: the teams, as a game controller reports them.
@@ -117,6 +118,7 @@ class GameState:
     restart_team: Team | None = None
     may_touch: bool = True
     placement: tuple[float, float] | None = None
+    next_command: RefereeCommand | None = None
     penalty: Team | None = None
     blue: TeamStatus = TeamStatus()
     yellow: TeamStatus = TeamStatus()
@@ -144,6 +146,11 @@ class GameState:
         """Whether the ball is free for both teams."""
         return self.restart is None and self.command in _STARTED
 
+    @property
+    def next_team(self) -> Team | None:
+        """Whose restart follows this stop or placement; None for both teams', or where nobody said."""
+        return None if self.next_command is None else _TEAMS.get(self.next_command)
+
     def mirrored(self) -> GameState:
         """Return the same state in coordinates turned by 180 degrees."""
         if self.placement is None:
@@ -160,5 +167,10 @@ _STARTED = frozenset(
         RefereeCommand.DIRECT_FREE_YELLOW,
     }
 )
+_TEAMS = {
+    command: Team.BLUE if command.name.endswith("_BLUE") else Team.YELLOW
+    for command in RefereeCommand
+    if command.name.endswith(("_BLUE", "_YELLOW"))
+}
 OPEN_PLAY = GameState()
 """Free play without a referee: what a scenario without one holds."""

@@ -39,6 +39,9 @@ STOP_DISTANCE = 0.5
 AREA_DISTANCE = 0.2
 """Distance to the opponents' defence area while the game is stopped or restarts. Source: SSL rules [m]."""
 
+PLACED_DISTANCE = 0.15
+"""A ball this near to its spot has been placed. Source: SSL rules [m]."""
+
 SUBSTITUTION_REACH = 1.0
 """How far from the half-way line robots may leave and enter over a touch line. Source: SSL rules [m]."""
 
@@ -164,6 +167,13 @@ def in_own_defense_area(field: FieldGeometry, x: float, y: float, tolerance: flo
 def in_defense_area(field: FieldGeometry, defender: Team, x: float, y: float, tolerance: float = 0.0) -> bool:
     """Return whether (x, y) lies in ``defender``'s defence area; see :func:`in_area`."""
     return in_their_defense_area(field, own_side(defender) * x, y, tolerance)
+
+
+def area_distance(field: FieldGeometry, defender: Team, x: float, y: float) -> float:
+    """Return the distance of (x, y) from ``defender``'s defence area, 0 inside it [m]."""
+    ahead = field.half_length - field.defense_depth - own_side(defender) * x
+    aside = abs(y) - field.defense_width / 2
+    return hypot(max(0.0, ahead), max(0.0, aside))
 
 
 # Robots on the field.

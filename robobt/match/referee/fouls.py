@@ -127,6 +127,8 @@ class Fouls:
 
     def _keeper_hold(self, frame: Frame) -> Iterator[Foul]:
         limit, ball = self._settings.keeper_hold_time, frame.ball
+        if limit == "rules":
+            limit = 10.0
         if limit is None:
             return
         team = next((team for team in Team if in_defense_area(self._field, team, ball.x, ball.y)), None)
@@ -139,6 +141,8 @@ class Fouls:
 
     def _progress(self, frame: Frame) -> Iterator[Foul]:
         limit, ball = self._settings.no_progress_time, frame.ball.position
+        if limit == "rules":
+            limit = 10.0
         if limit is None:
             return
         if distance(ball, self._rest_point) > self._settings.no_progress_distance:

@@ -39,10 +39,13 @@ class RefereeSettings(Settings):
     )
     max_ball_speed: float | None = Field(6.5, gt=0, le=50, description="fastest kick [m/s]")
     crash_speed: float | None = Field(1.5, gt=0, le=20, description="closing speed of a crash [m/s]")
-    keeper_hold_time: float | None = Field(
-        10.0, gt=0, le=600, description="longest stay of the ball in a defence area [s]"
+    pushing: bool = Field(False, description="no robot shoves another; AutoReferee does not look either")
+    keeper_hold_time: float | Literal["rules"] | None = Field(
+        "rules", description="longest stay of the ball in a defence area; by the rules 5 or 10 s [s]"
     )
-    no_progress_time: float | None = Field(10.0, gt=0, le=600, description="ball at rest for so long [s]")
+    no_progress_time: float | Literal["rules"] | None = Field(
+        "rules", description="ball at rest for so long; by the rules 5 or 10 s [s]"
+    )
     no_progress_distance: float = Field(0.1, gt=0, le=5, description="what counts as at rest [m]")
     stop_speed: float | None = Field(STOP_SPEED, gt=0, le=20, description="fastest robot in STOP [m/s]")
     stop_distance: float | None = Field(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robobt.world.game import Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import keeps_ball, touches
 from robobt.world.state import BallState, Frame, RobotId, RobotState
@@ -14,17 +15,20 @@ class Touches:
         now: robots that touch the ball in this frame.
         last: who touched it last, as the world reports it, or else by the contact seen.
         where: where the ball was when it was last touched [m].
+        times: when each team touched it last [s].
         carrier: who keeps the ball at its hull, None when nobody does.
-        carried: how far the carrier has taken it, as the crow flies [m].
+        carry_start: where the carrier got it [m].
+        carried: how far the carrier has taken it from there, as the crow flies [m].
     """
 
     def __init__(self) -> None:
         self.now: list[RobotId] = []
         self.last: RobotId | None = None
         self.where: Point = (0.0, 0.0)
+        self.times: dict[Team, float] = {}
         self.carrier: RobotId | None = None
         self.carried = 0.0
-        self._carry_start: Point = (0.0, 0.0)
+        self.carry_start: Point = (0.0, 0.0)
 
     def watch(self, frame: Frame) -> None:
         """Take in the next frame."""
@@ -46,13 +50,21 @@ class Touches:
         if touching or (toucher is not None and toucher != self.last):
             self.where = ball.position
         if toucher is not None:
+            if toucher != self.last:
+                self.times[toucher.team] = frame.time
             self.last = toucher
+        for one in touching:
+            self.times[one.team] = frame.time
         self._follow_carrier(ball, carrier)
+
+    def carry_anew(self, place: Point) -> None:
+        """Count the carrier's way from here [m]."""
+        self.carry_start, self.carried = place, 0.0
 
     def _follow_carrier(self, ball: BallState, carrier: RobotState | None) -> None:
         if carrier is not None and self.last == self.carrier and keeps_ball(carrier, ball):
-            self.carried = distance(self._carry_start, ball.position)
+            self.carried = distance(self.carry_start, ball.position)
             return
         self.carrier = self.last if self.last in self.now else None
-        self._carry_start = ball.position
+        self.carry_start = ball.position
         self.carried = 0.0

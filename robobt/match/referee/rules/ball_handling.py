@@ -1,0 +1,104 @@
+"""What one robot does with the ball: dribbling, kicking too fast, touching it twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Rule, event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.game import RefereeCommand, Team
+from robobt.world.geometry import Point, distance
+from robobt.world.state import RobotId
+
+_SPEED_TOLERANCE = 0.01
+"""Source: AutoReferee [m/s]."""
+
+
+class Dribbling(Rule):
+    """No robot takes the ball farther than ``most`` [m], as the crow flies, before it lets go of it."""
+
+    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+
+    def __init__(self, most: float) -> None:
+        self._most = most
+        self._told: RobotId | None = None
+
+    def enter(self, scene: Scene) -> None:
+        """Count from where the ball comes into play."""
+        scene.touches.carry_anew(scene.frame.ball.position)
+        self._told = None
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a carry once."""
+        touches = scene.touches
+        carrier = touches.carrier
+        if carrier is None or touches.carried <= self._most:
+            self._told = None
+        elif carrier != self._told:
+            self._told = carrier
+            start, end = touches.carry_start, scene.frame.ball.position
+            yield event(scene, EventKind.BOT_DRIBBLED_BALL_TOO_FAR, carrier, start, start=start, end=end)
+
+
+class BallSpeed(Rule):
+    """No robot kicks the ball faster than ``most`` [m/s], a restart's kick among them."""
+
+    phases = frozenset({Phase.KICK, Phase.PLAY, Phase.PENALTY})
+
+    def __init__(self, most: float) -> None:
+        self._most = most + _SPEED_TOLERANCE
+        self._fast = False
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a kick once."""
+        ball, last = scene.frame.ball, scene.touches.last
+        fast = ball.vx * ball.vx + ball.vy * ball.vy > self._most * self._most
+        if fast and not self._fast and last is not None:
+            yield event(
+                scene,
+                EventKind.BOT_KICKED_BALL_TOO_FAST,
+                last,
+                initial_ball_speed=ball.speed,
+                chipped=False,
+            )
+        self._fast = fast
+
+
+class DoubleTouch(Rule):
+    """Who takes a kick-off or free kick may not touch the ball again before another robot does.
+
+    From 0.05 m of the ball's way on; who pushes it that far is still touching it.
+    """
+
+    phases = frozenset({Phase.KICK, Phase.PLAY})
+
+    def __init__(self, in_play_distance: float) -> None:
+        self._in_play = in_play_distance
+        self._spot: Point = (0.0, 0.0)
+        self._team: Team | None = None
+        self._kicker: RobotId | None = None
+
+    def enter(self, scene: Scene) -> None:
+        """Note where the ball lies, and then who has kicked it."""
+        self._kicker = None
+        if scene.phase is Phase.KICK:
+            self._spot, self._team = scene.frame.ball.position, scene.game.restart_team
+            return
+        last = scene.touches.last
+        moved = distance(self._spot, scene.frame.ball.position) > self._in_play
+        taken = moved and scene.game.command is not RefereeCommand.FORCE_START
+        if taken and last is not None and last.team is self._team:
+            self._kicker = last
+        self._team = None
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report the second touch once."""
+        kicker, touches = self._kicker, scene.touches
+        if scene.phase is Phase.KICK or kicker is None:
+            return
+        if touches.last != kicker or any(robot != kicker for robot in touches.now):
+            self._kicker = None
+        elif kicker in touches.now:
+            self._kicker = None
+            yield event(scene, EventKind.ATTACKER_DOUBLE_TOUCHED_BALL, kicker, self._spot)

@@ -1,0 +1,76 @@
+"""The ball leaves the field: goals, touch line, goal line, aimless kicks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Rule, team_event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.game import Team
+from robobt.world.geometry import Point
+from robobt.world.rules import exit_point, own_side, scorer
+
+_FROM_CENTRE = 0.2
+"""A kick from nearer to the half-way line is no aimless one. Source: AutoReferee [m]."""
+
+
+class BallLeft(Rule):
+    """Fully over a line between the posts is a possible goal, elsewhere the ball is out.
+
+    ``aimless`` says whether a kick from the own half over the far goal line, touched by nobody on its way,
+    is an event of its own: in division B.
+    """
+
+    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+
+    def __init__(self, *, aimless: bool) -> None:
+        self._aimless = aimless
+        self._told = False
+
+    def enter(self, _: Scene) -> None:
+        """Tell of a ball that was kicked straight out."""
+        self._told = False
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report the ball once, as soon as it is out."""
+        if not scene.out:
+            self._told = False
+            return ()
+        if self._told:
+            return ()
+        self._told = True
+        return (self._left(scene),)
+
+    def _left(self, scene: Scene) -> RefereeEvent:
+        ball, last = scene.frame.ball.position, scene.touches.last
+        team = None if last is None else last.team
+        crossing, over_goal_line = exit_point(scene.field, scene.inside, ball)
+        if not over_goal_line:
+            return team_event(scene, EventKind.BALL_LEFT_FIELD_TOUCH_LINE, team, last, crossing)
+        scoring = scorer(scene.field, scene.inside, ball)
+        if scoring is not None:
+            return self._goal(scene, scoring, crossing)
+        attacker = Team.YELLOW if crossing[0] < 0.0 else Team.BLUE
+        where = scene.touches.where
+        from_own_half = where[0] * own_side(attacker) > _FROM_CENTRE
+        if self._aimless and team is attacker and from_own_half:
+            return team_event(scene, EventKind.AIMLESS_KICK, team, last, crossing, kick_location=where)
+        return team_event(scene, EventKind.BALL_LEFT_FIELD_GOAL_LINE, team, last, crossing)
+
+    def _goal(self, scene: Scene, team: Team, crossing: Point) -> RefereeEvent:
+        last, touches = scene.touches.last, scene.touches
+        return team_event(
+            scene,
+            EventKind.POSSIBLE_GOAL,
+            team,
+            last if last is not None and last.team is team else None,
+            crossing,
+            kicking_team=None if last is None else last.team,
+            kicking_bot=None if last is None else last.number,
+            kick_location=touches.where,
+            # The ball does not fly yet in any world.
+            max_ball_height=0.0,
+            num_robots_by_team=len(scene.team(team)),
+            last_touch_by_team=touches.times.get(team),
+        )

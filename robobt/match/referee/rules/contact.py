@@ -1,0 +1,189 @@
+"""Robots that run into each other, or shove one another about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import atan2, hypot
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Cooldown, Rule, event, team_event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.game import Team
+from robobt.world.geometry import Point, wrap_angle
+from robobt.world.rules import in_defense_area
+from robobt.world.state import ROBOT_RADIUS, Frame, RobotId, RobotState
+
+_EQUAL_SPEEDS = 0.3
+"""Both robots are at fault in a crash when their speeds differ by less than this. Source: SSL rules [m/s]."""
+
+_TOUCHING = 1.1 * 2.0 * ROBOT_RADIUS
+"""Robots whose centres are no farther apart touch. Source: AutoReferee [m]."""
+
+_BRAKED = 3.0 * 0.1
+"""Each robot's speed counts as that much less: it may have begun to brake unseen.
+
+Source: AutoReferee, for 0.1 s; 3 m/s² as the league's robots accelerate [m/s].
+"""
+
+_PUSHING, _PUSHED = 0.19, 0.2
+"""Robots whose centres are nearer than the first touch; a way beyond the second is a push. Source:
+AutoReferee [m]."""
+
+_PUSH_ANGLE = 0.7
+"""Most between the pusher's direction to the pushed robot and that one's way. Source: AutoReferee [rad]."""
+
+_FOLLOWS = 0.05
+"""A pusher moves at least this fast towards the pushed robot, which does not do so [m/s]."""
+
+Pair = tuple[int, int]
+"""Numbers of a blue and a yellow robot."""
+
+
+def close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotState]]:
+    """Find each blue and yellow robot whose centres are no farther apart than ``reach`` [m]."""
+    yellows = [(robot.x, robot.y, robot) for robot in frame.opponents]
+    for blue in frame.own:
+        x, y = blue.x, blue.y
+        for other_x, other_y, yellow in yellows:
+            dx, dy = other_x - x, other_y - y
+            if -reach < dx < reach and -reach < dy < reach and hypot(dx, dy) <= reach:
+                yield blue, yellow
+
+
+class Crash(Rule):
+    """Two robots meet at more than ``limit`` along the line of their centres [m/s].
+
+    The faster one is at fault, both where their speeds hardly differ. Speeds are those of the frame before
+    where they were greater: in the frame in which robots are seen to touch they may have stopped each
+    other already.
+    """
+
+    phases = frozenset(Phase) - {Phase.HALT}
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit
+        self._again = Cooldown()
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report two robots every two seconds."""
+        for blue, yellow in close_pairs(scene.frame, _TOUCHING):
+            pair = blue, yellow
+            if scene.before is not None:
+                earlier = (
+                    _robot(scene.before.own, blue) or blue,
+                    _robot(scene.before.opponents, yellow) or yellow,
+                )
+                if _closing(*earlier) > _closing(*pair):
+                    pair = earlier
+            speed = _closing(*pair)
+            if speed > self._limit and self._again.ready((blue.id, yellow.id), scene.time):
+                yield _crash(scene, *pair, speed)
+
+
+def _crash(scene: Scene, blue: RobotState, yellow: RobotState, speed: float) -> RefereeEvent:
+    lead = blue.speed - yellow.speed
+    at = ((blue.x + yellow.x) / 2, (blue.y + yellow.y) / 2)
+    along = atan2(yellow.y - blue.y, yellow.x - blue.x)
+    angle = wrap_angle(atan2(blue.vy - yellow.vy, blue.vx - yellow.vx) - along)
+    if abs(lead) < _EQUAL_SPEEDS:
+        return team_event(
+            scene,
+            EventKind.BOT_CRASH_DRAWN,
+            None,
+            None,
+            at,
+            bot_yellow=yellow.id,
+            bot_blue=blue.id,
+            crash_speed=speed,
+            speed_diff=abs(lead),
+            crash_angle=angle,
+        )
+    violator, victim = (blue, yellow) if lead > 0.0 else (yellow, blue)
+    identity = RobotId(Team.BLUE if lead > 0.0 else Team.YELLOW, violator.id)
+    return event(
+        scene,
+        EventKind.BOT_CRASH_UNIQUE,
+        identity,
+        at,
+        victim=victim.id,
+        crash_speed=speed,
+        speed_diff=abs(lead),
+        crash_angle=angle,
+    )
+
+
+class Pushing(Rule):
+    """A robot shoves an opponent, which travels with it for 0.2 m, or into its own defence area.
+
+    Where both push there is no offence.
+    """
+
+    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+
+    def __init__(self) -> None:
+        self._began: dict[Pair, tuple[Point, Point]] = {}
+
+    def enter(self, _: Scene) -> None:
+        """Forget contacts of before."""
+        self._began.clear()
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a push and count it anew."""
+        began: dict[Pair, tuple[Point, Point]] = {}
+        for blue, yellow in close_pairs(scene.frame, _PUSHING):
+            pair = blue.id, yellow.id
+            starts = began[pair] = self._began.get(pair, (blue.position, yellow.position))
+            for team, pusher, pushed, start in (
+                (Team.BLUE, blue, yellow, starts[1]),
+                (Team.YELLOW, yellow, blue, starts[0]),
+            ):
+                way = hypot(pushed.x - start[0], pushed.y - start[1])
+                if not _pushes(pusher, pushed, start, way):
+                    continue
+                at_home = in_defense_area(scene.field, team.other, pushed.x, pushed.y)
+                was_at_home = in_defense_area(scene.field, team.other, *start)
+                if way > _PUSHED or (at_home and not was_at_home):
+                    began[pair] = blue.position, yellow.position
+                    yield event(
+                        scene,
+                        EventKind.BOT_PUSHED_BOT,
+                        RobotId(team, pusher.id),
+                        pushed.position,
+                        victim=pushed.id,
+                        pushed_distance=way,
+                    )
+        self._began = began
+
+
+def _pushes(pusher: RobotState, pushed: RobotState, start: Point, way: float) -> bool:
+    """Return whether one robot drives at the other, which gives way in that direction."""
+    dx, dy = pushed.x - pusher.x, pushed.y - pusher.y
+    gap = hypot(dx, dy)
+    if gap == 0.0 or way == 0.0:
+        return False
+    towards = (pusher.vx * dx + pusher.vy * dy) / gap
+    against = (pushed.vx * dx + pushed.vy * dy) / gap
+    if towards < _FOLLOWS or against < 0.0:
+        return False
+    travelled = atan2(pushed.y - start[1], pushed.x - start[0])
+    return abs(wrap_angle(travelled - atan2(dy, dx))) <= _PUSH_ANGLE
+
+
+def _closing(one: RobotState, other: RobotState) -> float:
+    """Return the speed at which two robots that may have braked come together [m/s]."""
+    dx, dy = other.x - one.x, other.y - one.y
+    gap = hypot(dx, dy)
+    if gap == 0.0:
+        return 0.0
+    first, second = _left(one.speed), _left(other.speed)
+    vx, vy = one.vx * first - other.vx * second, one.vy * first - other.vy * second
+    return (vx * dx + vy * dy) / gap
+
+
+def _left(speed: float) -> float:
+    """Return the share of a speed that braking may have left of it."""
+    return max(0.0, 1.0 - _BRAKED / speed) if speed > 0.0 else 0.0
+
+
+def _robot(robots: Iterable[RobotState], like: RobotState) -> RobotState | None:
+    return next((robot for robot in robots if robot.id == like.id), None)

@@ -1,0 +1,85 @@
+"""The defence areas in play: only their goalkeeper touches the ball there, and not for long."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Cooldown, Rule, event, team_event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.game import Team
+from robobt.world.rules import area_distance, in_defense_area
+from robobt.world.state import ROBOT_RADIUS
+
+_INSIDE = ROBOT_RADIUS - 0.02
+"""An attacker is partly inside when its centre is this near to the area. Source: AutoReferee [m]."""
+
+_SETTLED = 0.5
+"""Play has to have lasted so long. Source: AutoReferee [s]."""
+
+
+class DefenseAreaTouch(Rule):
+    """An attacker touches the ball while partly in the area, or a defender while wholly in its own.
+
+    Not while both teams touch the ball, nor where an opponent touches, and so may push, the defender.
+    """
+
+    phases = frozenset({Phase.PLAY})
+
+    def __init__(self) -> None:
+        self._again = Cooldown()
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a robot every two seconds."""
+        touching = scene.touches.now
+        if not touching or scene.elapsed < _SETTLED:
+            return
+        if any(robot.team is not touching[0].team for robot in touching):
+            return
+        field = scene.field
+        for toucher in touching:
+            robot = scene.robot(toucher)
+            if robot is None:
+                continue
+            team = toucher.team
+            if in_defense_area(field, team.other, robot.x, robot.y, _INSIDE):
+                kind = EventKind.ATTACKER_TOUCHED_BALL_IN_DEFENSE_AREA
+                gap = area_distance(field, team.other, robot.x, robot.y) - ROBOT_RADIUS
+            elif (
+                in_defense_area(field, team, robot.x, robot.y, -ROBOT_RADIUS)
+                and toucher != scene.keeper(team)
+                and not scene.pushed(team, robot)
+            ):
+                kind = EventKind.DEFENDER_IN_DEFENSE_AREA
+                gap = 0.0
+            else:
+                continue
+            if self._again.ready(toucher, scene.time):
+                yield event(scene, kind, toucher, robot.position, distance=max(0.0, gap))
+
+
+class KeeperHeld(Rule):
+    """The ball stays in a defence area for no longer than ``limit`` [s]."""
+
+    phases = frozenset({Phase.PLAY})
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit
+        self._team: Team | None = None
+        self._since = 0.0
+
+    def enter(self, _: Scene) -> None:
+        """Count from where the ball comes into play."""
+        self._team = None
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report it, and again after as long."""
+        x, y = scene.frame.ball.position
+        defender = Team.BLUE if x < 0.0 else Team.YELLOW
+        if not in_defense_area(scene.field, defender, x, y):
+            self._team = None
+        elif defender is not self._team:
+            self._team, self._since = defender, scene.time
+        elif scene.time - self._since > self._limit:
+            duration, self._since = scene.time - self._since, scene.time
+            yield team_event(scene, EventKind.KEEPER_HELD_BALL, defender, duration=duration)

@@ -1,0 +1,105 @@
+"""Placement of the ball by a team's robots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import hypot
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Rule, event, team_event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.geometry import Point, distance, segment_distance
+from robobt.world.rules import PLACED_DISTANCE, STOP_DISTANCE
+from robobt.world.state import ROBOT_RADIUS, RobotId
+
+_SOONEST = 2.0
+"""No placement succeeds before that. Source: SSL rules [s]."""
+
+_OWN_GAP = 0.05
+"""Robots are at least this far from the ball when their free kick follows. Source: SSL rules [m]."""
+
+_SMOOTHING, _STILL = 0.97, 0.005
+"""A ball lies still that is so near to its moving average of so much a frame. Source: AutoReferee [m]."""
+
+_LEARNT_AT = 0.01
+"""Frames of this length are those of the moving average [s]."""
+
+_INTERFERING = 2.0
+"""Opponents have this long to leave the way of the ball. Source: SSL rules [s]."""
+
+
+class PlacementSucceeded(Rule):
+    """The ball lies still within 0.15 m of its spot, and robots have let go of it.
+
+    They are 0.05 m away from it where the placing team's free kick follows, else 0.5 m.
+    """
+
+    phases = frozenset({Phase.PLACEMENT})
+
+    def __init__(self) -> None:
+        self._mean: Point = (0.0, 0.0)
+        self._start: Point = (0.0, 0.0)
+        self._told = False
+
+    def enter(self, scene: Scene) -> None:
+        """Begin a placement."""
+        self._mean = self._start = scene.frame.ball.position
+        self._told = False
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report success once."""
+        ball = scene.frame.ball.position
+        share = _SMOOTHING ** (scene.frame.period / _LEARNT_AT)
+        mean = self._mean = (
+            share * self._mean[0] + (1.0 - share) * ball[0],
+            share * self._mean[1] + (1.0 - share) * ball[1],
+        )
+        spot, team = scene.game.placement, scene.game.restart_team
+        if self._told or spot is None or team is None or scene.elapsed < _SOONEST:
+            return
+        precision = distance(ball, spot)
+        if precision > PLACED_DISTANCE or distance(ball, mean) > _STILL:
+            return
+        own = scene.game.next_team is team
+        reach = ROBOT_RADIUS + (_OWN_GAP if own else STOP_DISTANCE)
+        for robot in (*scene.frame.own, *scene.frame.opponents):
+            if hypot(robot.x - ball[0], robot.y - ball[1]) < reach:
+                return
+        self._told = True
+        yield team_event(
+            scene,
+            EventKind.PLACEMENT_SUCCEEDED,
+            team,
+            time_taken=scene.elapsed,
+            precision=precision,
+            distance=distance(self._start, spot),
+        )
+
+
+class PlacementInterference(Rule):
+    """Opponents of the placing team stay 0.5 m off the way from the ball to its spot."""
+
+    phases = frozenset({Phase.PLACEMENT})
+
+    def __init__(self) -> None:
+        self._since: dict[RobotId, float] = {}
+
+    def enter(self, _: Scene) -> None:
+        """Begin a placement."""
+        self._since.clear()
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a robot once as long as it stays."""
+        placing, spot, ball = scene.game.restart_team, scene.game.placement, scene.frame.ball.position
+        if placing is None or spot is None:
+            return
+        other = placing.other
+        for robot in scene.team(other):
+            identity = RobotId(other, robot.id)
+            if segment_distance(robot.position, ball, spot) > STOP_DISTANCE + ROBOT_RADIUS:
+                self._since.pop(identity, None)
+                continue
+            since = self._since.setdefault(identity, scene.time)
+            if scene.time - since > _INTERFERING:
+                self._since[identity] = float("inf")
+                yield event(scene, EventKind.BOT_INTERFERED_PLACEMENT, identity, robot.position)

@@ -1,0 +1,82 @@
+"""Play that gets nowhere, and teams that are too many."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.rules.base import Rule, team_event
+from robobt.match.referee.scene import Phase, Scene
+from robobt.world.game import Team
+from robobt.world.geometry import Point, distance
+
+_RUNNING = 2.0
+"""Play has to have lasted this long before robots are counted. Source: game controller [s]."""
+
+_TIME_TO_LEAVE = 10.0
+"""A robot has this much playing time to leave after a card. Source: SSL rules [s]."""
+
+
+class NoProgress(Rule):
+    """The ball has not moved by ``way`` [m] for ``limit`` [s]."""
+
+    phases = frozenset({Phase.PLAY})
+
+    def __init__(self, limit: float, way: float) -> None:
+        self._limit, self._way = limit, way
+        self._place: Point = (0.0, 0.0)
+        self._since = 0.0
+
+    def enter(self, scene: Scene) -> None:
+        """Count from where the ball comes into play."""
+        self._place, self._since = scene.frame.ball.position, scene.time
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report it, and again after as long."""
+        ball, time = scene.frame.ball.position, scene.time
+        if distance(ball, self._place) > self._way:
+            self._place, self._since = ball, time
+        elif time - self._since > self._limit:
+            stuck, self._since = time - self._since, time
+            yield team_event(scene, EventKind.NO_PROGRESS_IN_GAME, None, time=stuck)
+
+
+class TooManyRobots(Rule):
+    """A team has more robots on the field than it may, ten seconds of play after its last card."""
+
+    phases = frozenset({Phase.KICK, Phase.PLAY})
+
+    def __init__(self) -> None:
+        self._most: dict[Team, int] = {}
+        self._cards: dict[Team, list[float]] = {Team.BLUE: [], Team.YELLOW: []}
+        self._played = 0.0
+        self._told: set[Team] = set()
+
+    def enter(self, _: Scene) -> None:
+        """Look anew."""
+        self._told.clear()
+
+    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+        """Report a team once until play is stopped."""
+        self._played += scene.frame.period
+        for team in Team:
+            most = scene.game.status(team).max_robots
+            if most is None:
+                continue
+            before = self._most.get(team, most)
+            self._most[team] = most
+            cards = self._cards[team]
+            cards += [self._played] * max(0, before - most)
+            if len(scene.team(team)) <= most or team in self._told or scene.elapsed < _RUNNING:
+                continue
+            recent = [card for card in cards if self._played - card < _TIME_TO_LEAVE]
+            if len(scene.team(team)) > most + len(recent):
+                self._told.add(team)
+                yield team_event(
+                    scene,
+                    EventKind.TOO_MANY_ROBOTS,
+                    team,
+                    num_robots_allowed=most,
+                    num_robots_on_field=len(scene.team(team)),
+                    ball_location=scene.frame.ball.position,
+                )

@@ -1,0 +1,164 @@
+"""What the rules look at: a frame, the state of the game and what led up to them."""
+
+from __future__ import annotations
+
+from enum import Enum, auto
+
+from robobt.match.referee.settings import RefereeSettings
+from robobt.match.referee.touches import Touches
+from robobt.world.division import Division, division_of
+from robobt.world.field import FieldGeometry
+from robobt.world.game import GameState, RefereeCommand, Restart, Team
+from robobt.world.geometry import Point
+from robobt.world.rules import ball_out, taken_off
+from robobt.world.state import BallState, Frame, RobotId, RobotState
+
+
+class Phase(Enum):
+    """What the teams may do; each rule looks in some of them."""
+
+    HALT = auto()
+    """Nothing: HALT and time-outs."""
+    STOP = auto()
+    PREPARE = auto()
+    """Take positions for a kick-off or a penalty kick."""
+    PLACEMENT = auto()
+    """One team places the ball."""
+    KICK = auto()
+    """A kick-off or free kick may be taken."""
+    PENALTY = auto()
+    """A penalty kick may be taken or was; until the next command."""
+    PLAY = auto()
+
+
+class Scene:
+    """One frame after another; coordinates are the world's, seen from blue's side.
+
+    Attributes:
+        field: the field.
+        settings: what is checked.
+        division: whose rules hold.
+        frame: the present frame, without robots that count as off the field.
+        before: the last frame, None at the first.
+        game: the state of the game that was decided on the last frame.
+        phase: what the teams may do.
+        since: when this phase began [s].
+        stopped: when play was stopped last, or a placement began [s].
+        touches: who touches the ball and who did.
+        out: whether the ball is out of the field.
+        inside: where the ball was when it was last in the field [m].
+    """
+
+    def __init__(self, field: FieldGeometry, settings: RefereeSettings) -> None:
+        self.field, self.settings = field, settings
+        self.division: Division = division_of(field)
+        self.touches = Touches()
+        self.frame = Frame(0.0, field, BallState(0.0, 0.0))
+        self.before: Frame | None = None
+        self.game = GameState(RefereeCommand.HALT, may_touch=False)
+        self.phase = Phase.HALT
+        self.since = 0.0
+        self.stopped = 0.0
+        self.out = False
+        self.inside: Point = (0.0, 0.0)
+        self._state: object = None
+        self._seen = False
+
+    def update(self, frame: Frame, game: GameState) -> bool:
+        """Take in the next frame; return whether another phase, or the same one anew, begins with it."""
+        self.before = self.frame if self._seen else None
+        self._seen = True
+        self.frame = frame = self._without_absent(frame, game)
+        self.game = game
+        self.touches.watch(frame)
+        ball = frame.ball.position
+        self.out = ball_out(self.field, ball)
+        if not self.out:
+            self.inside = ball
+        state = (game.command, game.restart, game.restart_team)
+        if state == self._state:
+            return False
+        self._state = state
+        phase = self._phase_of(game)
+        if phase is self.phase is Phase.PENALTY:
+            # The ball has moved: the kick goes on.
+            return False
+        if phase in _STOPPED and self.phase not in _STOPPED:
+            self.stopped = frame.time
+        self.phase, self.since = phase, frame.time
+        return True
+
+    @property
+    def time(self) -> float:
+        """The frame's time [s]."""
+        return self.frame.time
+
+    @property
+    def elapsed(self) -> float:
+        """How long the phase has lasted [s]."""
+        return self.frame.time - self.since
+
+    def keeper(self, team: Team) -> RobotId:
+        """Return a team's goalkeeper."""
+        number = self.game.status(team).keeper
+        return self.settings.keeper(team) if number is None else RobotId(team, number)
+
+    def team(self, team: Team) -> tuple[RobotState, ...]:
+        """Return a team's robots."""
+        return self.frame.own if team is Team.BLUE else self.frame.opponents
+
+    def robot(self, identity: RobotId) -> RobotState | None:
+        """Return a robot, None where it is not on the field."""
+        for robot in self.team(identity.team):
+            if robot.id == identity.number:
+                return robot
+        return None
+
+    def pushed(self, team: Team, robot: RobotState, reach: float = 0.19) -> bool:
+        """Return whether an opponent touches this robot, which may then not be where it wants to be."""
+        for other in self.team(team.other):
+            dx, dy = other.x - robot.x, other.y - robot.y
+            if dx * dx + dy * dy < reach * reach:
+                return True
+        return False
+
+    def _phase_of(self, game: GameState) -> Phase:
+        if game.command in _PHASES:
+            return _PHASES[game.command]
+        if game.command is RefereeCommand.NORMAL_START and (
+            game.restart is Restart.PENALTY or (game.restart is None and self.phase is Phase.PENALTY)
+        ):
+            return Phase.PENALTY
+        return Phase.PLAY if game.restart is None else Phase.KICK
+
+    def _without_absent(self, frame: Frame, game: GameState) -> Frame:
+        blue, yellow = game.blue.max_robots, game.yellow.max_robots
+        if (blue is None or len(frame.own) <= blue) and (yellow is None or len(frame.opponents) <= yellow):
+            return frame
+        absent = taken_off(self.field, frame.own, blue), taken_off(self.field, frame.opponents, yellow)
+        return Frame(
+            frame.time,
+            frame.field,
+            frame.ball,
+            tuple(robot for robot in frame.own if robot.id not in absent[0]),
+            tuple(robot for robot in frame.opponents if robot.id not in absent[1]),
+            frame.team,
+            frame.period,
+            frame.game,
+            frame.last_touch,
+        )
+
+
+_PHASES = {
+    RefereeCommand.HALT: Phase.HALT,
+    RefereeCommand.TIMEOUT_BLUE: Phase.HALT,
+    RefereeCommand.TIMEOUT_YELLOW: Phase.HALT,
+    RefereeCommand.STOP: Phase.STOP,
+    RefereeCommand.PREPARE_KICKOFF_BLUE: Phase.PREPARE,
+    RefereeCommand.PREPARE_KICKOFF_YELLOW: Phase.PREPARE,
+    RefereeCommand.PREPARE_PENALTY_BLUE: Phase.PREPARE,
+    RefereeCommand.PREPARE_PENALTY_YELLOW: Phase.PREPARE,
+    RefereeCommand.BALL_PLACEMENT_BLUE: Phase.PLACEMENT,
+    RefereeCommand.BALL_PLACEMENT_YELLOW: Phase.PLACEMENT,
+}
+_STOPPED = frozenset({Phase.STOP, Phase.PLACEMENT, Phase.HALT, Phase.PREPARE})

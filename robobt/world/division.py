@@ -1,0 +1,43 @@
+"""The league's divisions: what their rules say differently.
+
+Source: RoboCup SSL rules of 2026, appendix and chapter "Offenses".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robobt.world.field import DIVISION_A as FIELD_A
+from robobt.world.field import DIVISION_B as FIELD_B
+from robobt.world.field import FieldGeometry
+
+
+@dataclass(frozen=True)
+class Division:
+    """A division's numbers.
+
+    Attributes:
+        name: "A" or "B".
+        robots: how many a team may have on the field.
+        kick_time: to take a free kick, to go on with a ball that is stuck, to get it out of the own
+            defence area [s].
+        aimless_kick: whether a kick from the own half over the far goal line is an offence.
+        failure_loses_kick: whether a team that cannot place the ball loses the free kick.
+    """
+
+    name: str
+    robots: int
+    kick_time: float
+    aimless_kick: bool
+    failure_loses_kick: bool
+
+
+A = Division("A", 11, 5.0, aimless_kick=False, failure_loses_kick=True)
+B = Division("B", 6, 10.0, aimless_kick=True, failure_loses_kick=False)
+
+_BORDER = (FIELD_A.length + FIELD_B.length) / 2
+
+
+def division_of(field: FieldGeometry) -> Division:
+    """Return the division whose field is nearest in length; fields may differ from the rules' sizes."""
+    return A if field.length > _BORDER else B

@@ -1,0 +1,1 @@
+"""One module a rule or family of rules, on both sides of each threshold."""
