@@ -99,12 +99,11 @@ class GameState:
         may_touch: whether ``restart_team`` may take the restart now.
         placement: where the ball has to be placed or lies for the restart,
             in the coordinates of the frame that holds this state [m].
-        next_command: the command that follows once this stop or placement is over; None where nobody said.
         penalty: whose penalty kick it is, from its preparation to its end; ``restart`` is None once the ball
             has moved, but everybody but kicker and goalkeeper has to stay behind it.
         blue, yellow: the teams, as a game controller reports them.
         events: game events since play was stopped, by the league's names in lower case, oldest first.
-        upcoming: the command that will follow, as far as a game controller knows.
+        upcoming: the command that will follow this stop or placement, None as far as nobody said.
         action_time: time left for the present action, None without a limit [s]. Two states that
             differ only in their times are equal.
         stage_time: time left in this stage, negative in overtime; None without a game controller [s].
@@ -118,7 +117,6 @@ class GameState:
     restart_team: Team | None = None
     may_touch: bool = True
     placement: tuple[float, float] | None = None
-    next_command: RefereeCommand | None = None
     penalty: Team | None = None
     blue: TeamStatus = TeamStatus()
     yellow: TeamStatus = TeamStatus()
@@ -149,7 +147,7 @@ class GameState:
     @property
     def next_team(self) -> Team | None:
         """Whose restart follows this stop or placement; None for both teams', or where nobody said."""
-        return None if self.next_command is None else _TEAMS.get(self.next_command)
+        return None if self.upcoming is None else _TEAMS.get(self.upcoming)
 
     def mirrored(self) -> GameState:
         """Return the same state in coordinates turned by 180 degrees."""

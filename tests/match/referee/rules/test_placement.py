@@ -26,7 +26,7 @@ def placing(us: Team, kicks: Team | None) -> Watching:
         restart_team=us,
         may_touch=True,
         placement=SPOT,
-        next_command=following,
+        upcoming=following,
     )
     return Watching(us, game=game)
 
