@@ -15,6 +15,7 @@ from math import cos, hypot, inf, sqrt
 
 from robobt.motion.detour import Circle, detour, first_hit
 from robobt.motion.pilot import drive
+from robobt.motion.stadium import outside_stadium
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point
@@ -51,13 +52,15 @@ def travel(
     avoid_robots: bool = True,
     avoid_ball: bool = False,
     goalkeeper: bool = False,
+    placing: bool = False,
     final_speed: float = 0.0,
 ) -> RobotCommand:
     """:func:`~robobt.motion.pilot.drive` along a free path, within the rules.
 
     A target that may not be driven to is replaced by :func:`allowed_target`.
     While the referee has stopped the game the robot keeps to the speed and, as
-    in the opponents' restarts, to the distance from the ball that the rules ask.
+    in the opponents' restarts, to the distance from the ball that the rules ask. It keeps
+    out of the way of a ball that the opponents place.
 
     Args:
         frame: what is on the field.
@@ -68,16 +71,24 @@ def travel(
         avoid_robots: whether to go round other robots.
         avoid_ball: whether to go round the ball.
         goalkeeper: may enter the own defence area.
+        placing: may enter both defence areas, as the robot that places the ball may.
         final_speed: speed allowed at the target [m/s].
     """
     game = frame.game
     if game.stopped and limits.max_speed > STOP_SPEED:
         limits = slowed(limits, STOP_SPEED)
-    goal = allowed_target(frame, me, target, goalkeeper=goalkeeper)
+    goal = outside_stadium(frame, me, target)
+    goal = allowed_target(frame, me, goal, goalkeeper=goalkeeper, placing=placing)
     if goal != target:
         final_speed = 0.0
     point, speed = next_waypoint(
-        frame, me, goal, avoid_robots=avoid_robots, avoid_ball=avoid_ball, goalkeeper=goalkeeper
+        frame,
+        me,
+        goal,
+        avoid_robots=avoid_robots,
+        avoid_ball=avoid_ball,
+        goalkeeper=goalkeeper,
+        placing=placing,
     )
     return drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
 
@@ -90,12 +101,14 @@ def slowed(limits: RobotLimits, max_speed: float) -> RobotLimits:
     return limits.model_copy(update={"max_speed": max_speed})
 
 
-def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: bool = False) -> Point:
+def allowed_target(
+    frame: Frame, me: RobotState, target: Point, *, goalkeeper: bool = False, placing: bool = False
+) -> Point:
     """Return the point nearest to ``target`` where the robot may stand.
 
     That is inside the walls, outside the opponents' defence area, outside the
     own one unless it is the goalkeeper, and far enough from the ball while the
-    referee demands it.
+    referee demands it; a robot that is ``placing`` the ball may stand in both areas.
     """
     field = frame.field
     x, y = target
@@ -108,6 +121,8 @@ def allowed_target(frame: Frame, me: RobotState, target: Point, *, goalkeeper: b
     behind = field.goal_line_margin - ROBOT_RADIUS - _WALL_GAP if beside_goal else 0.0
     most_x = field.half_length + behind
     x = min(most_x, max(-most_x, x))
+    if placing:
+        return (x, y)
     x, y = _expelled(field, x, y, _their_gap(frame))
     if not goalkeeper:
         x, y = _expelled(field, -x, y, ROBOT_RADIUS + _AREA_GAP)
@@ -123,6 +138,7 @@ def next_waypoint(
     avoid_robots: bool = True,
     avoid_ball: bool = False,
     goalkeeper: bool = False,
+    placing: bool = False,
 ) -> tuple[Point, float]:
     """Return the next point of a free path to ``target``, and the speed at which to pass it [m/s].
 
@@ -132,8 +148,8 @@ def next_waypoint(
     field = frame.field
     x, y = me.x, me.y
     their_gap = _their_gap(frame)
-    goal = _around_area(field, x, y, target, their_gap)
-    if not goalkeeper and goal is target:
+    goal = target if placing else _around_area(field, x, y, target, their_gap)
+    if not goalkeeper and not placing and goal is target:
         corner = _around_area(field, -x, y, (-target[0], target[1]), ROBOT_RADIUS + _AREA_GAP)
         if corner != (-target[0], target[1]):
             goal = (-corner[0], corner[1])
@@ -153,7 +169,7 @@ def next_waypoint(
         if gap > 0.0:
             # Keep to the side one is already driving to.
             cost -= 0.15 * (me.vx * (px - x) + me.vy * (py - y)) / (gap * speed)
-        if not _open(field, px, py, their_gap, goalkeeper):
+        if not _open(field, px, py, their_gap, goalkeeper, placing):
             cost += 10.0
         if cost < least:
             bend = 1.0 / cos(min(arc, 2.8) / 2.0) - 1.0
@@ -221,11 +237,15 @@ def _around_area(field: FieldGeometry, x: float, y: float, target: Point, gap: f
     return (front - _AREA_GAP, side + _AREA_GAP if gy > 0.0 else -side - _AREA_GAP)
 
 
-def _open(field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper: bool) -> bool:
+def _open(
+    field: FieldGeometry, x: float, y: float, their_gap: float, goalkeeper: bool, placing: bool
+) -> bool:
     most_x = field.half_length + (field.goal_line_margin - ROBOT_RADIUS)
     most_y = field.half_width + (field.margin - ROBOT_RADIUS)
     if abs(x) > most_x or abs(y) > most_y:
         return False
+    if placing:
+        return True
     if in_their_defense_area(field, x, y, their_gap - _AREA_GAP):
         return False
     return goalkeeper or not in_own_defense_area(field, x, y, ROBOT_RADIUS)

@@ -57,8 +57,27 @@ def segment_distance(point: Point, start: Point, end: Point) -> float:
     return distance(point, closest_point_on_segment(point, start, end))
 
 
+def segments_distance(start: Point, end: Point, other_start: Point, other_end: Point) -> float:
+    """Return the distance between two segments [m]; 0 where they cross."""
+    if _side(start, end, other_start) * _side(start, end, other_end) < 0.0 and (
+        _side(other_start, other_end, start) * _side(other_start, other_end, end) < 0.0
+    ):
+        return 0.0
+    return min(
+        segment_distance(start, other_start, other_end),
+        segment_distance(end, other_start, other_end),
+        segment_distance(other_start, start, end),
+        segment_distance(other_end, start, end),
+    )
+
+
+def _side(start: Point, end: Point, point: Point) -> float:
+    """Return on which side of the line ``point`` lies, by its sign; 0 on it."""
+    return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
+
+
 def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
-    """Return Return the y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
+    """Return the y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
 
     None when the ray points away from the line or runs along it.
     """

@@ -234,3 +234,12 @@ def test_slowed_never_speeds_up() -> None:
     assert slowed(limits, 3.0) is limits
     assert slowed(limits, 1.0).max_speed == 1.0
     assert slowed(limits, 1.0).acceleration == limits.acceleration
+
+
+@pytest.mark.parametrize("target", [(4.0, 0.0), (-4.0, 0.5)], ids=["theirs", "own"])
+def test_whoever_places_the_ball_may_enter_both_defence_areas(target: Point) -> None:
+    me = robot(0.0, 2.0)
+    seen = frame(me, FAR_BALL)
+    assert allowed_target(seen, me, target) != target
+    assert allowed_target(seen, me, target, placing=True) == target
+    assert next_waypoint(seen, me, target, placing=True)[0] == target

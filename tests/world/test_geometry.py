@@ -63,3 +63,19 @@ def test_a_limited_vector_keeps_its_direction(x: float, y: float, most: float) -
     assert lx * y == pytest.approx(ly * x, abs=1e-6)
     if hypot(x, y) <= most:
         assert (lx, ly) == (x, y)
+
+
+@given(point, point, point, point, st.floats(0, 1), st.floats(0, 1))
+def test_two_segments_are_as_far_apart_as_their_nearest_points(
+    a: g.Point, b: g.Point, c: g.Point, d: g.Point, along: float, across: float
+) -> None:
+    gap = g.segments_distance(a, b, c, d)
+    assert gap == pytest.approx(g.segments_distance(c, d, a, b))
+    one = (a[0] + along * (b[0] - a[0]), a[1] + along * (b[1] - a[1]))
+    other = (c[0] + across * (d[0] - c[0]), c[1] + across * (d[1] - c[1]))
+    assert gap <= g.distance(one, other) + 1e-9
+
+
+def test_crossing_segments_touch() -> None:
+    assert g.segments_distance((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)) == 0.0
+    assert g.segments_distance((-1.0, 0.0), (1.0, 0.0), (2.0, -1.0), (2.0, 1.0)) == 1.0

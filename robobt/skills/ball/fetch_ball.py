@@ -20,17 +20,21 @@ _IN_LINE = radians(25.0)
 _BEHIND = ROBOT_RADIUS + BALL_RADIUS + 0.05
 _NEAR = 0.3
 _GRAB_SPEED = 0.4
-_PULL = dribbling_limits(max_speed=0.5, max_turn=1.0, max_acceleration=0.8)
-"""With the ball, backwards: what any dribbler holds."""
+_PULL_SPEED = 0.5
+"""With the ball, backwards [m/s]."""
+
+_PULL_ACCELERATION = 0.8
+"""The same where the dribbler holds it [m/s^2]."""
 
 
 def pull(
-    frame: Frame, me: RobotState, held: bool, place: Point, free: RobotLimits, pulling: RobotLimits
+    frame: Frame, me: RobotState, held: bool, place: Point, free: RobotLimits, speed: float, *, placing: bool
 ) -> tuple[RobotCommand, str]:
     """Take the ball from the side of ``place`` and drive backwards to there, for one tick.
 
     A ball at a wall or behind a line comes free this way, for the robot never has to get
-    behind it. The robot may enter its own defence area.
+    behind it. The robot may enter its own defence area, and where it is ``placing`` the
+    ball as the referee asks, both.
 
     Args:
         frame: what is on the field.
@@ -38,13 +42,19 @@ def pull(
         held: whether it has the ball.
         place: where the robot's centre is to go with the ball [m].
         free: how to drive without the ball.
-        pulling: how to drive with it.
+        speed: top speed with it [m/s].
+        placing: whether it may enter the opponents' defence area.
 
     Returns:
         The command, and what the robot is about to do.
     """
     ball = frame.ball.position
     if held:
+        pulling = dribbling_limits(
+            max_speed=speed,
+            max_turn=1.0,
+            max_acceleration=min(_PULL_ACCELERATION, me.limits.hold_acceleration),
+        )
         command = drive(me, place, direction(place, me.position), pulling, frame.period)
         command.dribbler = True
         return command, "pulling it"
@@ -53,7 +63,8 @@ def pull(
     if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
         return grab(me, frame.ball, _GRAB_SPEED, frame.period), "taking it"
     behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
-    return travel(frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True), "going behind it"
+    way = travel(frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True, placing=placing)
+    return way, "going behind it"
 
 
 @skill
@@ -78,6 +89,6 @@ class FetchBall(DrivingSkill):
         if distance(self.ball.position, place) < 0.3:
             return self.succeed("the ball is back")
         self.store.command, doing = pull(
-            self.frame, self.me, self.me.ball_contact, place, self.drive_limits, _PULL
+            self.frame, self.me, self.me.ball_contact, place, self.drive_limits, _PULL_SPEED, placing=False
         )
         return self.run(doing)

@@ -35,13 +35,13 @@ class KeepDistance(Skill):
         """Drive straight away from the place that is too near."""
         frame, me = self.frame, self.me
         keep = self.distance + ROBOT_RADIUS + _MARGIN
-        places = [frame.ball.position]
-        if frame.game.restart is Restart.BALL_PLACEMENT and frame.game.placement is not None:
-            # Whoever places the ball needs the way to the spot free, too.
-            places.append(closest_point_on_segment(me.position, frame.ball.position, frame.game.placement))
-        if frame.game.placement is not None and not frame.game.in_play:
+        game, places = frame.game, [frame.ball.position]
+        if game.placement is not None and not game.in_play:
             # First of all from where the ball will lie; where it rolls now it will not stay.
-            places.insert(0, frame.game.placement)
+            places.insert(0, game.placement)
+            if game.restart is Restart.BALL_PLACEMENT:
+                # Whoever places the ball needs the way to the spot free, too.
+                places = [closest_point_on_segment(me.position, frame.ball.position, game.placement)]
         near = [place for place in places if distance(me.position, place) < keep]
         if not near:
             return self.succeed("far enough")

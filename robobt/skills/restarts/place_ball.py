@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import field
 from math import cos, hypot, sin
 
-from robobt.motion.dribbling import dribbling_limits
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import drive
 from robobt.skills.ball.fetch_ball import pull
@@ -15,12 +14,12 @@ from robobt.skills.restarts.keep_distance import way_out
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
 from robobt.world.game import RefereeCommand
-from robobt.world.geometry import direction, distance
+from robobt.world.geometry import Point, direction, distance
 from robobt.world.rules import STOP_DISTANCE, has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-_PULL = dribbling_limits(max_speed=1.0, max_turn=1.0, max_acceleration=0.8)
-"""With the ball, backwards: 8 m in 10 s, of the 30 s that the rules give."""
+_PULL_SPEED = 1.0
+"""With the ball, backwards: 8 m in 10 s, of the 30 s that the rules give [m/s]."""
 
 _HELD = ROBOT_RADIUS
 """From the robot's centre to that of a ball in its mouth [m]."""
@@ -33,6 +32,12 @@ _REST = 0.1
 
 _OFF = 0.25
 """From here on a robot may turn without touching the ball [m]."""
+
+_AT_WALL = 0.05
+"""A ball this far behind a line is pulled inwards first: beside it there may be a wall or a goal [m]."""
+
+_CLEAR_OF_WALL = 0.1
+"""How far inside the lines it is free of them [m]."""
 
 _CLEAR = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
 
@@ -53,10 +58,12 @@ class PlaceBall(DrivingSkill):
 
     _there: bool = field(default=False, init=False)
     _let_go: bool = field(default=False, init=False)
+    _inwards: bool = field(default=False, init=False)
+    _refuge: Point | None = field(default=None, init=False)
 
     def on_start(self) -> None:
         """Begin with a ball that is not in its place."""
-        self._there = self._let_go = False
+        self._there = self._let_go = self._inwards = False
 
     def on_running(self) -> Status:
         """Drive for one tick."""
@@ -69,9 +76,13 @@ class PlaceBall(DrivingSkill):
         gap = distance(ball.position, spot)
         if gap > (_STILL_PLACED if self._there else _PLACED):
             self._there = self._let_go = False
-            outwards = direction(spot, ball.position)
-            place = (spot[0] - _HELD * cos(outwards), spot[1] - _HELD * sin(outwards))
-            self.store.command, doing = pull(frame, me, has_ball(me, ball), place, self.drive_limits, _PULL)
+            self._refuge = None
+            goal = self._via(spot)
+            outwards = direction(goal, ball.position)
+            place = (goal[0] - _HELD * cos(outwards), goal[1] - _HELD * sin(outwards))
+            self.store.command, doing = pull(
+                frame, me, has_ball(me, ball), place, self.drive_limits, _PULL_SPEED, placing=True
+            )
             return self.run(doing)
         self._there = True
         if not self._let_go and has_ball(me, ball) and hypot(me.vx, me.vy) > _REST:
@@ -87,9 +98,25 @@ class PlaceBall(DrivingSkill):
             place = (ball.x + _CLEAR * cos(away), ball.y + _CLEAR * sin(away))
             self.store.command = drive(me, place, me.heading, me.limits, frame.period)
         else:
-            place = way_out(frame, me, ball.position, _CLEAR * 1.1)
-            self.store.command = travel(frame, me, place, me.heading, me.limits, avoid_ball=True)
+            # One way out is settled on: near a wall there are two, which are equally long.
+            if self._refuge is None:
+                self._refuge = way_out(frame, me, ball.position, _CLEAR * 1.1)
+            self.store.command = travel(frame, me, self._refuge, me.heading, me.limits, avoid_ball=True)
         return self.run("backing off")
+
+    def _via(self, spot: Point) -> Point:
+        """Return where the ball is pulled to now: from goals, walls and corners straight inwards first."""
+        lines, (x, y) = self.frame.field, self.ball.position
+        slack = _CLEAR_OF_WALL if self._inwards else 0.0
+        most_x, most_y = lines.half_length + _AT_WALL - slack, lines.half_width + _AT_WALL - slack
+        self._inwards = abs(x) > most_x or abs(y) > most_y
+        if not self._inwards:
+            return spot
+        inside_x, inside_y = lines.half_length - _CLEAR_OF_WALL, lines.half_width - _CLEAR_OF_WALL
+        if abs(y) < lines.goal_width / 2:
+            # Out of the goal past its posts.
+            inside_y = lines.goal_width / 2 - ROBOT_RADIUS - _CLEAR_OF_WALL
+        return (min(inside_x, max(-inside_x, x)), min(inside_y, max(-inside_y, y)))
 
 
 _ASKED = frozenset({RefereeCommand.BALL_PLACEMENT_BLUE, RefereeCommand.BALL_PLACEMENT_YELLOW})

@@ -42,8 +42,19 @@ def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
         ((4.55, 1.5), (4.3, 2.8)),
         ((0.0, 3.1), (0.0, 2.8)),
         ((0.5, 0.0), (0.6, 0.0)),
+        ((4.66, 0.09), (4.15, -2.6)),
+        ((4.1, 0.4), (-1.4, 1.2)),
+        ((1.1, -1.7), (4.0, 2.75)),
     ],
-    ids=["across the field", "corner", "over the touch line", "a hand's breadth"],
+    ids=[
+        "across the field",
+        "corner",
+        "over the touch line",
+        "a hand's breadth",
+        "out of the goal",
+        "out of their area",
+        "towards a corner",
+    ],
 )
 def test_the_ball_comes_to_rest_on_the_spot_and_the_robot_leaves_it(
     ball: Point, spot: Point, settings: str
@@ -54,6 +65,12 @@ def test_the_ball_comes_to_rest_on_the_spot_and_the_robot_leaves_it(
     (me,) = last.own
     # A kick by the opponents may be next: half a metre from the hull.
     assert hypot(me.x - last.ball.x, me.y - last.ball.y) > 0.5 + 0.09
+
+
+@pytest.mark.integration
+def test_a_dribbler_that_holds_little_is_not_asked_for_more() -> None:
+    last = place((1.0, 1.0), (-1.0, -1.0), 20.0, "erforce").frames[-1]
+    assert hypot(last.ball.x + 1.0, last.ball.y + 1.0) < 0.15
 
 
 def test_the_ball_is_never_kicked() -> None:

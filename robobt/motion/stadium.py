@@ -1,0 +1,39 @@
+"""The stadium round the way of a ball that the opponents place: nobody else may be in it.
+
+Source: RoboCup SSL rules, chapter "Ball Placement": 0.5 m from the segment between ball and spot.
+"""
+
+from __future__ import annotations
+
+from robobt.world.game import Restart
+from robobt.world.geometry import Point, closest_point_on_segment, distance, segments_distance
+from robobt.world.rules import STOP_DISTANCE
+from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
+
+_MARGIN = 0.06
+"""By how much a robot stays outside, because it does not stop at once [m]."""
+
+_CLEAR = 0.1
+"""How far beyond that a robot inside is sent, so that it does not creep [m]."""
+
+
+def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
+    """Return ``goal``, or where to go first while the opponents place the ball between.
+
+    That is straight out of the stadium for a robot inside it; any other stays where it is
+    until the ball has passed, rather than go round.
+    """
+    game = frame.game
+    spot = game.placement
+    if game.restart is not Restart.BALL_PLACEMENT or game.restart_team is frame.team or spot is None:
+        return goal
+    ball = frame.ball.position
+    keep = STOP_DISTANCE + ROBOT_RADIUS + _MARGIN
+    here = closest_point_on_segment(me.position, ball, spot)
+    gap = distance(here, me.position)
+    if 0.0 < gap < keep:
+        share = (keep + _CLEAR) / gap
+        return (here[0] + share * (me.x - here[0]), here[1] + share * (me.y - here[1]))
+    if segments_distance(me.position, goal, ball, spot) < keep:
+        return me.position
+    return goal
