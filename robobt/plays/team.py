@@ -139,7 +139,7 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
     return first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
-        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
+        when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
         goalkeeper(speed=speed),
     )
@@ -157,7 +157,7 @@ def take_penalty(farthest: float | None) -> Behaviour:
         IsRestart(kind=Restart.PENALTY, ours=True),
         IsAttacker(farthest=farthest),
         first_of("where to", SelectShot(), AimUpfield()),
-        PrepareRestart(),
+        first_of("wait", MayTouchBall(), PrepareRestart()),
         KickToTarget(),
     )
 

@@ -28,7 +28,7 @@ from robobt.world import (
 from robobt.world.rules import in_own_defense_area, touches
 from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
-from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, stop_before
+from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, penalty_in_play, stop_before
 
 pytestmark = pytest.mark.integration
 
@@ -228,6 +228,17 @@ def test_before_a_penalty_kick_everybody_is_behind_the_ball(team: Team) -> None:
     else:
         assert near == [0]
         assert abs(squad.robots[0].x + DIVISION_B.half_length) <= 0.09
+
+
+def test_the_ball_of_a_penalty_kick_is_played_by_its_taker_alone() -> None:
+    squad = Squad(penalty(Team.BLUE, (-1.5, 0.0)), (-1.5, 0.0))
+    squad.run(6.0)
+    takers = [number for number in squad.robots if squad.gap(number) < 0.5]
+    squad.game = penalty_in_play(Team.BLUE)
+    squad.ball = BallState(-1.0, 0.3)
+    squad.run(2.0)
+    assert [number for number in squad.robots if squad.gap(number) < 0.5] == takers
+    assert all(-1.0 - robot.x >= 1.0 for number, robot in squad.robots.items() if number not in takers)
 
 
 # Open play.

@@ -39,7 +39,18 @@ def penalty(team: Team, spot: Point) -> GameState:
     prepare = (
         RefereeCommand.PREPARE_PENALTY_BLUE if team is Team.BLUE else RefereeCommand.PREPARE_PENALTY_YELLOW
     )
-    return GameState(prepare, restart=Restart.PENALTY, restart_team=team, may_touch=False, placement=spot)
+    return GameState(
+        prepare,
+        restart=Restart.PENALTY,
+        restart_team=team,
+        may_touch=False,
+        placement=spot,
+        penalty=team,
+    )
+
+
+def penalty_in_play(team: Team) -> GameState:
+    return GameState(RefereeCommand.NORMAL_START, penalty=team)
 
 
 class Drive:

@@ -9,7 +9,7 @@ from robobt.world.game import Restart
 
 @skill
 class IsRestart(Skill):
-    """SUCCESS from the stop before a restart until the ball is in play.
+    """SUCCESS from the stop before a restart until the ball is in play; at a penalty kick, until it ends.
 
     Args:
         kind: which restart; None is any.
@@ -21,13 +21,15 @@ class IsRestart(Skill):
 
     def on_running(self) -> Status:
         """Ask the referee's state."""
-        frame = self.frame
-        restart = frame.game.restart
-        if restart is None or frame.game.halted:
+        frame, game = self.frame, self.frame.game
+        restart, team = game.restart, game.restart_team
+        if restart is None and game.penalty is not None:
+            restart, team = Restart.PENALTY, game.penalty
+        if restart is None or game.halted:
             return self.fail("no restart")
         if self.kind is not None and restart is not self.kind:
             return self.fail(restart.value)
-        ours = frame.game.restart_team is frame.team
+        ours = team is frame.team
         if self.ours is not None and ours is not self.ours:
             return self.fail("ours" if ours else "theirs")
         return self.succeed(f"{'our' if ours else 'their'} {restart.value}")

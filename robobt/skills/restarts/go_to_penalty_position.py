@@ -6,16 +6,16 @@ from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
-_BEHIND = 1.0 + 2.0 * ROBOT_RADIUS
-"""How far behind the ball everybody but kicker and goalkeeper waits; the rules ask for 1 m [m]."""
+_BEHIND = 1.0 + 3.0 * ROBOT_RADIUS
+"""How far behind mark and ball everybody but kicker and goalkeeper waits; the rules ask for 1 m [m]."""
 
 
 @skill
 class GoToPenaltyPosition(Skill):
-    """Wait behind the ball; the goalkeeper waits on its goal line.
+    """Wait behind the ball until the penalty kick is over; the goalkeeper waits on its goal line.
 
     Robots spread over the field's width in order of their numbers, each team on
-    its own left. Never ends by itself.
+    its own left. Never ends by itself. The kicking team's goalkeeper waits before its goal.
 
     Args:
         goalkeeper: whether this robot is the goalkeeper.
@@ -27,14 +27,16 @@ class GoToPenaltyPosition(Skill):
         """Drive to the place for one tick."""
         frame, me = self.frame, self.me
         field, game = frame.field, frame.game
-        spot = game.placement or frame.ball.position
-        ours = game.restart_team is frame.team
-        if self.goalkeeper and not ours:
-            target = (ROBOT_RADIUS / 2 - field.half_length, 0.0)
+        ours = (game.penalty or game.restart_team) is frame.team
+        away = -1.0 if ours else 1.0
+        mark = away * (field.penalty_distance - field.half_length)
+        if self.goalkeeper:
+            target = (-field.half_length + (0.5 * field.defense_depth if ours else 0.5 * ROBOT_RADIUS), 0.0)
         else:
             number = [robot.id for robot in frame.own].index(me.id)
             y = (number + 0.5) / len(frame.own) * field.half_width
-            x = spot[0] - _BEHIND if ours else spot[0] + _BEHIND
+            # Also when the ball comes back in play.
+            x = away * (max(away * mark, away * frame.ball.x) + _BEHIND)
             target = (x, y)
-        self.drive_to(target, spot, avoid_ball=True, goalkeeper=self.goalkeeper)
+        self.drive_to(target, frame.ball.position, avoid_ball=True, goalkeeper=self.goalkeeper)
         return self.run("taking position")

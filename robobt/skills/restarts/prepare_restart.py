@@ -6,11 +6,15 @@ from math import hypot
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.world.game import Restart
 from robobt.world.geometry import Point
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS
 
 _STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
+
+_OWN_HALF = ROBOT_RADIUS + 0.03
+"""A robot whose centre is this far from the half-way line is in its half as a whole [m]."""
 
 
 @skill
@@ -39,6 +43,9 @@ class PrepareRestart(Skill):
             return self.succeed("it may be taken")
         spot = game.placement or frame.ball.position
         x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
+        if game.restart is Restart.KICKOFF and x > -_OWN_HALF:
+            # Only in its own half, even where the ball is to go back.
+            x, y = _before(spot, frame.field.their_goal, -(_STOP_GAP if game.stopped else self.gap))
         if game.stopped and not frame.field.contains(x, y):
             x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
         self.drive_to((x, y), spot, avoid_ball=True)

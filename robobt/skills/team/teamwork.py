@@ -62,6 +62,10 @@ def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
 def _follow_restart(frame: Frame, team: TeamStore) -> None:
     """Remember who took the own restart until somebody else has touched the ball."""
     game = frame.game
+    if game.penalty is not None:
+        # Whoever takes it may touch the ball as often as it likes.
+        team.kicker, team.restart_pending = None, False
+        return
     if game.restart is not None:
         team.kicker = None
         team.restart_pending = game.may_touch and game.restart_team is frame.team
@@ -80,6 +84,8 @@ def _follow_restart(frame: Frame, team: TeamStore) -> None:
 
 def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
     ball, field = frame.ball, frame.field
+    if frame.game.penalty is frame.team and frame.game.may_touch and team.attacker is not None:
+        return team.attacker
     placing = frame.game.restart is Restart.BALL_PLACEMENT
     if not placing and (
         in_own_defense_area(field, ball.x, ball.y, _REACH)

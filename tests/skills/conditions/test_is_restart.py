@@ -6,7 +6,7 @@ from robobt.skills.conditions.is_restart import IsRestart
 from robobt.tree import Status
 from robobt.world import GameState, Restart, Team
 from tests.skills.fixed_world import Alone, frame, robot
-from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, stop_before
+from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty_in_play, stop_before
 
 SPOT = (1.0, 1.0)
 
@@ -35,3 +35,11 @@ def test_only_the_asked_kind_counts() -> None:
 @pytest.mark.parametrize("game", [HALT, STOP, OPEN], ids=["halt", "stop for both", "open play"])
 def test_without_a_restart_there_is_none(game: GameState) -> None:
     assert not holds(IsRestart(), game)
+
+
+@pytest.mark.parametrize("team", list(Team))
+def test_a_penalty_kick_lasts_until_it_ends_though_the_ball_is_in_play(team: Team) -> None:
+    game = penalty_in_play(Team.BLUE)
+    assert holds(IsRestart(kind=Restart.PENALTY, ours=True), game, team) is (team is Team.BLUE)
+    assert holds(IsRestart(kind=Restart.PENALTY, ours=False), game, team) is (team is Team.YELLOW)
+    assert not holds(IsRestart(kind=Restart.FREE_KICK), game, team)

@@ -5,7 +5,7 @@ import pytest
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
 from robobt.world import DIVISION_B, Team
 from tests.skills.fixed_world import robot
-from tests.skills.refereed import Drive, penalty
+from tests.skills.refereed import Drive, penalty, penalty_in_play
 
 OURS = (-1.5, 0.0)
 THEIRS = (1.5, 0.0)
@@ -37,3 +37,15 @@ def test_robots_wait_beside_each_other() -> None:
     one = Drive(GoToPenaltyPosition(), robot(0.0, 0.0, number=1), game, OURS, mates=mates).end
     two = Drive(GoToPenaltyPosition(), mates[0], game, OURS, mates=(robot(0.0, 0.0, number=1),)).end
     assert abs(one.y - two.y) > 0.3
+
+
+def test_everybody_stays_behind_a_ball_in_play_that_comes_back() -> None:
+    ball = (OURS[0] - 0.8, 0.5)
+    end = Drive(GoToPenaltyPosition(), robot(-2.7, 1.0, number=1), penalty_in_play(Team.BLUE), ball).end
+    assert end.x <= ball[0] - 1.0
+
+
+def test_the_kicking_teams_goalkeeper_stays_at_home() -> None:
+    skill = GoToPenaltyPosition(goalkeeper=True)
+    end = Drive(skill, robot(-3.0, 0.0), penalty(Team.BLUE, OURS), OURS).end
+    assert end.x < -DIVISION_B.half_length + DIVISION_B.defense_depth

@@ -5,10 +5,11 @@ from math import hypot
 import pytest
 
 from robobt.skills.restarts.prepare_restart import PrepareRestart
+from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world import DIVISION_B, FieldGeometry, Restart, Team
 from robobt.world.geometry import direction, wrap_angle
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone, frame, moved, robot
 from tests.skills.refereed import OPEN, Drive, free_kick, kickoff, penalty, stop_before
 
 SPOTS = [(1.0, 2.8), (4.3, 2.8), (4.3, -2.8), (-3.5, 2.8), (0.0, 0.0)]
@@ -63,3 +64,14 @@ def test_it_is_done_when_the_restart_may_be_taken() -> None:
 def test_it_fails_without_a_restart_of_ours(game: object) -> None:
     view = frame(robot(number=1), SPOTS[0], game=game)  # type: ignore[arg-type]
     assert Alone(PrepareRestart()).tick(view, 1) is Status.FAILURE
+
+
+def test_before_a_kick_off_to_go_back_it_waits_in_its_own_half_all_the_same() -> None:
+    me = robot(-0.2, 0.0, number=1)
+    alone = Alone(PrepareRestart())
+    alone.store.pass_ = Pass(2, (-3.0, 0.5), 3.0, 0.9)
+    for _ in range(120):
+        alone.tick(frame(me, (0.0, 0.0), game=kickoff(Team.BLUE, False)), 1)
+        me = moved(me, alone.command, 1 / 60)
+    assert me.x < -0.09
+    assert 0.2 < hypot(me.x, me.y) < 0.5
