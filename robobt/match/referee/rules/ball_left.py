@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Rule, team_event
+from robobt.match.referee.rules.base import AGAIN, Rule, team_event
 from robobt.match.referee.scene import Phase, Scene
 from robobt.world.game import Team
 from robobt.world.geometry import Point
@@ -27,19 +27,20 @@ class BallLeft(Rule):
     def __init__(self, *, aimless: bool) -> None:
         self._aimless = aimless
         self._told = False
+        self._told_at = 0.0
 
     def enter(self, _: Scene) -> None:
         """Tell of a ball that was kicked straight out."""
         self._told = False
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report the ball once, as soon as it is out."""
+        """Report the ball once, as soon as it is out; one that comes back from the wall is not out anew."""
         if not scene.out:
-            self._told = False
+            self._told = self._told and scene.time - self._told_at < AGAIN
             return ()
         if self._told:
             return ()
-        self._told = True
+        self._told, self._told_at = True, scene.time
         return (self._left(scene),)
 
     def _left(self, scene: Scene) -> RefereeEvent:
