@@ -32,6 +32,7 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
@@ -114,14 +115,9 @@ def match(
             "league's programs on this machine (one worker).",
         ),
     ] = False,
-    no_referee: Annotated[
-        bool,
-        typer.Option(
-            "--no-referee",
-            help="Play without the scenario's own referee, as where a game controller decides "
-            "(--world league://...follow_referee=true).",
-        ),
-    ] = False,
+    referee: RefereeOption = None,
+    game_controller: ControllerOption = None,
+    stages: StagesOption = None,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print the results.
@@ -144,8 +140,7 @@ def match(
     import_files(imports)
     loaded = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
     loaded = _changed(with_teams(loaded, blue, yellow), on_error, substitute or [])
-    if no_referee:
-        loaded = loaded.without_referee()
+    loaded, referees = refereed(loaded, referee, game_controller, stages)
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
     if world != SIM or publish:
@@ -178,6 +173,7 @@ def match(
                 out,
                 {} if recording is None else {recorded: recording},
                 lambda _: progress.advance(),
+                referees,
             )
         if not run.results:
             errors.print("robobt: stopped before the first trial was finished")

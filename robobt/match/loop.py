@@ -72,7 +72,7 @@ class Match:
         if asked and self.world.refereed:
             raise scenario.error(
                 "the scenario has a referee of its own, but a game controller decides there; "
-                "set 'referee: false', or play with 'robobt match --no-referee'",
+                "set 'referee: false', or play with 'robobt match --referee none'",
                 "referee",
             )
         placement_seed, world_seed = np.random.SeedSequence(seed).spawn(2)

@@ -114,5 +114,5 @@ def test_the_ends_of_the_scenario_do_not_end_a_match_that_a_controller_decides()
 
 def test_a_scenario_with_its_own_referee_is_refused_where_a_controller_decides() -> None:
     controlled = Controlled()
-    with pytest.raises(Exception, match=r"six_v_six.*referee: .*--no-referee"):
+    with pytest.raises(Exception, match=r"six_v_six.*referee: .*--referee none"):
         Match(load_scenario("six_v_six"), 1, controlled._world)

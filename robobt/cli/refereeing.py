@@ -1,0 +1,90 @@
+"""The options of who referees a match and how much of it is played."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from robobt.match import Scenario
+    from robobt.match.refereeing import RefereeFactory
+
+HALF = 300.0
+"""Playing time of a half. Source: SSL rules [s]."""
+
+_LONGEST = 3600.0
+"""A match that is not over by then never will be [s]."""
+
+
+class Who(StrEnum):
+    """Who referees."""
+
+    OWN = "own"
+    OFFICIAL = "official"
+    NONE = "none"
+
+
+class Stages(StrEnum):
+    """How much of a match is played."""
+
+    FULL = "full"
+
+
+RefereeOption = Annotated[
+    Who | None,
+    typer.Option(
+        "--referee",
+        help="Who decides: robobt's own referee, the league's official game controller, which "
+        "is stepped with the match, or none; by default as in the scenario. With a game controller in the "
+        "world (follow_referee=true) it is none.",
+    ),
+]
+
+ControllerOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--game-controller",
+        metavar="PATH",
+        help="The official game controller's program; by default what ROBOBT_GAME_CONTROLLER names, "
+        "or ssl-game-controller on the PATH.",
+    ),
+]
+
+StagesOption = Annotated[
+    Stages | None,
+    typer.Option("--stages", help="full: two halves of five minutes of playing time."),
+]
+
+
+def refereed(
+    scenario: Scenario, who: Who | None, controller: Path | None, stages: Stages | None
+) -> tuple[Scenario, RefereeFactory]:
+    """Return the scenario as these options change it, and who makes its referee.
+
+    Raises:
+        GameControllerError: the official controller is asked for and is not there.
+    """
+    from robobt.match.referee.settings import RefereeSettings
+    from robobt.match.refereeing import own_referee
+
+    if controller is not None and who is not Who.OFFICIAL:
+        raise typer.BadParameter("is for --referee official", param_hint="--game-controller")
+    if who is Who.NONE:
+        scenario = scenario.without_referee()
+    elif who is not None and scenario.referee is None:
+        scenario = scenario.model_copy(update={"referee": RefereeSettings()})
+    if stages is Stages.FULL:
+        if scenario.referee is None:
+            raise typer.BadParameter("needs a referee, who counts the time", param_hint="--stages")
+        settings = scenario.referee.model_copy(update={"half_length": HALF})
+        ends = scenario.ends.model_copy(update={"time_limit": _LONGEST, "score_limit": None})
+        scenario = scenario.model_copy(update={"referee": settings, "ends": ends})
+    if who is not Who.OFFICIAL:
+        return scenario, own_referee
+    from robobt.league.referee.official import OfficialRefereeFactory
+    from robobt.league.referee.process import find_game_controller
+
+    return scenario, OfficialRefereeFactory(find_game_controller(controller))

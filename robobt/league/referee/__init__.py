@@ -1,0 +1,1 @@
+"""The official game controller as the referee of a simulated match, in lock step with it."""

@@ -1,0 +1,145 @@
+"""The official game controller one step at a time: its clock stands still between two of our messages.
+
+Source of messages: ssl-game-controller, ``ci/ci.go`` and ``engine/``. Each message with a time makes one
+tick, which is answered at once with the state before whatever it leads to. That (a command that follows by
+itself, an event that the controller raises) is queued, and so are the changes that we send; each is answered
+when it is done. Nothing says to what an answer belongs, and a tick that meets a queue that is not empty
+repeats what waits there. So a tick is sent only when all before it is done, and answered by exactly one
+message; what it leads to is read before the next one.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from robobt.league.referee.process import GameControllerError
+from robobt.league.wire.messages import (
+    Change,
+    CiInput,
+    CiOutput,
+    Config,
+    DecodeError,
+    Referee,
+    SSL_GeometryData,
+)
+from robobt.league.wire.stream import MessageStream, StreamError
+from robobt.league.wire.tracker import fill_tracked
+from robobt.world.state import Frame
+
+EPOCH = 1_700_000_000
+"""What the controller's clock shows when the match begins [s]; any time but 0 will do."""
+
+_SETTLED = 0.002
+"""What a tick leads to is done after this time [s]; a tenth of it is the rule."""
+
+_SILENCE = 10.0
+"""The controller has failed when it does not answer for so long [s]."""
+
+_TRACKER = "robobt"
+
+
+class LockstepController:
+    """Drives a controller in its simulation mode over ``stream``.
+
+    Attributes:
+        asked: whether it has been asked and its answer not been taken yet.
+
+    Raises:
+        GameControllerError: of all methods: the controller is silent, has closed the connection or does not
+            send what it should.
+    """
+
+    def __init__(self, stream: MessageStream) -> None:
+        self._stream = stream
+        self._frames = self._changes = 0
+        self._answered = 0.0
+        self.asked = False
+
+    def ask(
+        self, seconds: float, frame: Frame | None = None, geometry: SSL_GeometryData | None = None
+    ) -> None:
+        """Set the clock, which makes the controller look at the match; :meth:`answer` waits for what it says.
+
+        Args:
+            seconds: simulated time [s].
+            frame: what is on the field, seen from blue's side.
+            geometry: the field; once, after the division has been told.
+        """
+        message = CiInput(timestamp=EPOCH * 1_000_000_000 + round(seconds * 1e9))
+        if frame is not None:
+            self._frames += 1
+            fill_tracked(message.tracker_packet, frame, self._frames, EPOCH + seconds, _TRACKER)
+        if geometry is not None:
+            message.geometry.CopyFrom(geometry)
+        self._send(message)
+        self.asked = True
+
+    def answer(self) -> list[Referee]:
+        """Return what the controller said when it was asked: the state before what follows from it."""
+        self.asked = False
+        message = self._next()
+        self._answered = time.monotonic()
+        return [message]
+
+    def change(self, changes: Sequence[Change], config: Config | None = None) -> list[Referee]:
+        """Change the match at once, without time passing; return what the controller says of it.
+
+        Changes are made in their order. One that it ignores is left out without a word.
+
+        Args:
+            changes: what to change.
+            config: what to change before that in how the controller works.
+        """
+        said: list[Referee] = []
+        for number, change in enumerate(changes):
+            # One at a time: more than ten answers at once and it drops some.
+            message = CiInput()
+            if config is not None and number == 0:
+                message.api_inputs.add().config_delta.CopyFrom(config)
+            message.api_inputs.add().change.CopyFrom(change)
+            # Changes are done in order, so this one's answer comes after all of those.
+            self._changes += 1
+            done = f"{_TRACKER} {self._changes}"
+            message.api_inputs.add().change.set_status_message_change.status_message = done
+            self._send(message)
+            while not said or said[-1].status_message != done:
+                said.append(self._next())
+        return said
+
+    def rest(self) -> list[Referee]:
+        """Wait until all that the last tick led to is done, and return what the controller says of it."""
+        said: list[Referee] = []
+        while True:
+            left = self._answered + _SETTLED - time.monotonic()
+            answer = self._receive(max(0.0, left))
+            if answer is None:
+                return said
+            said.append(answer)
+
+    def _next(self) -> Referee:
+        answer = self._receive(_SILENCE)
+        if answer is None:
+            raise GameControllerError(f"the game controller has not answered for {_SILENCE:.0f} s")
+        return answer
+
+    def _send(self, message: CiInput) -> None:
+        try:
+            self._stream.send(message.SerializeToString())
+        except StreamError as error:
+            raise GameControllerError(str(error)) from error
+
+    def _receive(self, wait: float) -> Referee | None:
+        try:
+            data = self._stream.receive(wait)
+            if data is None:
+                return None
+            output = CiOutput.FromString(data)
+        except StreamError as error:
+            raise GameControllerError(str(error)) from error
+        except (DecodeError, ValueError) as error:
+            raise GameControllerError("the game controller sends what is no message of it") from error
+        if not output.HasField("referee_msg") or not output.IsInitialized():
+            raise GameControllerError("the game controller sends a message without the state of the match")
+        message: Referee = output.referee_msg
+        return message

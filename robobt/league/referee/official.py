@@ -1,0 +1,168 @@
+"""The referee of a simulated match that asks the official controller, in lock step."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from robobt.league.referee.lockstep import EPOCH, LockstepController
+from robobt.league.referee.people import People
+from robobt.league.referee.process import GameControllerError, GameControllerProcess
+from robobt.league.referee.setup import ORIGIN, MatchSetup, game_event
+from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.gameevents import read_event, write_event
+from robobt.league.wire.geometry import write_geometry
+from robobt.league.wire.messages import Change
+from robobt.league.wire.messages import Referee as RefereeMessage
+from robobt.match.referee.automatic import CONTROLLER_SEES, AutomaticReferee
+from robobt.match.referee.events import Decision, RefereeEvent
+from robobt.match.refereeing import referee_settings
+from robobt.match.scenario.scenario import Scenario
+from robobt.world.field import FieldGeometry
+from robobt.world.rules import taken_off
+from robobt.world.state import Frame, RobotState
+
+_log = logging.getLogger(__name__)
+
+_STEP, _IN_PLAY = 0.1, 0.25
+"""Time from one look of the controller at the match to the next, and while the ball is in play [s].
+
+What is reported then is told at once.
+"""
+
+_DECIDING = 1.5
+"""The controller takes a second to believe a report; for so long it looks as often as it can [s]."""
+
+_REMEMBERED = 200
+
+
+class OfficialReferee:
+    """Tells the official controller what is on the field and what happened, and decides as it does.
+
+    What it raises itself, and what of our reports it accepts, are the events of its decisions.
+
+    Args:
+        setup: what is played.
+        start: starts the controller with settings of the game.
+    """
+
+    def __init__(
+        self, setup: MatchSetup, start: Callable[[Mapping[str, object]], GameControllerProcess]
+    ) -> None:
+        self._setup, self._start = setup, start
+        self._automatic = AutomaticReferee(setup.field, setup.settings)
+        self._people = People(setup.field, setup.settings)
+        self._follower = RefereeFollower()
+        self._process: GameControllerProcess | None = None
+        self._controller: LockstepController | None = None
+        self._reports: list[Change] = []
+        self._known: list[str] = []
+        self._due = self._decided = 0.0
+
+    def update(self, frame: Frame) -> Decision:
+        """Judge the next frame.
+
+        Raises:
+            GameControllerError: the controller cannot be started or has failed.
+        """
+        begins = self._controller is None
+        if self._controller is None:
+            self._process = self._start(self._setup.game_settings())
+            self._controller = LockstepController(self._process.stream)
+        controller = self._controller
+        seen = self._automatic.watch(frame, self._follower.game)
+        self._reports += [
+            game_event(write_event(event, EPOCH, ORIGIN))
+            for event in seen
+            if event.kind not in CONTROLLER_SEES
+        ]
+        events: list[RefereeEvent] = []
+        try:
+            if begins:
+                events += self._set_up(controller, frame)
+            if controller.asked:
+                events += self._hear(controller.answer(), frame.time)
+            if self._reports or frame.time >= self._due - 1e-6:
+                events += self._hear(controller.rest(), frame.time)
+                changes = self._reports + self._people.clicks(frame, self._follower.game)
+                if changes:
+                    self._reports = []
+                    self._decided = frame.time + _DECIDING
+                    events += self._hear(controller.change(changes), frame.time)
+                quiet = self._follower.game.in_play and frame.time >= self._decided
+                self._due = frame.time + (_IN_PLAY if quiet else _STEP)
+                controller.ask(frame.time, self._on_field(frame))
+        except GameControllerError as error:
+            crash = "" if self._process is None else self._process.crash()
+            raise GameControllerError(f"{error}: {crash}" if crash else str(error)) from error
+        game = self._follower.watch(frame)
+        place = None if game.in_play else self._people.puts_ball(frame, game)
+        return Decision(game, tuple(events), place)
+
+    def tell(self, change: Change) -> None:
+        """Let the controller change the match at its next step, as somebody at its screen may."""
+        self._reports.append(change)
+
+    def close(self) -> None:
+        """End the controller."""
+        process, self._process, self._controller = self._process, None, None
+        if process is not None:
+            process.close()
+
+    def _set_up(self, controller: LockstepController, frame: Frame) -> list[RefereeEvent]:
+        setup = self._setup
+        # Changes need a clock; sizes are told after the division, which would change them.
+        controller.ask(frame.time)
+        said = controller.answer() + controller.change(setup.changes(), setup.config())
+        controller.ask(frame.time, None, write_geometry(setup.field))
+        return self._hear(said + controller.answer(), frame.time)
+
+    def _hear(self, messages: Iterable[RefereeMessage], now: float) -> list[RefereeEvent]:
+        """Follow the controller's messages; return the events that are new in them at this time [s]."""
+        events = []
+        for message in messages:
+            if not self._follower.follow(message):
+                raise GameControllerError("the game controller names a place that is on no field")
+            for event in message.game_events:
+                if event.id in self._known:
+                    continue
+                self._known.append(event.id)
+                read = read_event(event, EPOCH, now)
+                if read is not None:
+                    events.append(read)
+        del self._known[:-_REMEMBERED]
+        return events
+
+    def _on_field(self, frame: Frame) -> Frame:
+        """Return the frame without the robots that their handlers have taken off."""
+        game = self._follower.game
+        own = _left(frame.field, frame.own, game.blue.max_robots)
+        opponents = _left(frame.field, frame.opponents, game.yellow.max_robots)
+        return replace(frame, own=own, opponents=opponents)
+
+
+def _left(field: FieldGeometry, robots: tuple[RobotState, ...], most: int | None) -> tuple[RobotState, ...]:
+    off = taken_off(field, robots, most)
+    return tuple(robot for robot in robots if robot.id not in off) if off else robots
+
+
+@dataclass(slots=True, frozen=True)
+class OfficialRefereeFactory:
+    """Makes the referee of each match; ``program`` is the official one."""
+
+    program: Path
+
+    @property
+    def name(self) -> str:
+        """What files of results are told apart by."""
+        return "official"
+
+    def __call__(self, scenario: Scenario, field: FieldGeometry) -> OfficialReferee:
+        """Return the referee of a match on this field."""
+        robots = Counter(robot.team for robot, _ in scenario.robots)
+        setup = MatchSetup(field, referee_settings(scenario), robots)
+        return OfficialReferee(setup, partial(GameControllerProcess, self.program))

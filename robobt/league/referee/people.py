@@ -1,0 +1,127 @@
+"""What people do at a match under the official controller: click, and carry the ball.
+
+Source of what the controller leaves to them: ssl-game-controller, ``engine/process_continue*.go``.
+"""
+
+from __future__ import annotations
+
+from robobt.league.referee.setup import command, stage
+from robobt.league.wire.messages import Change
+from robobt.match.referee.positions import ball_placed, spot_free
+from robobt.match.referee.restarts import free_kick_spot, penalty
+from robobt.match.referee.settings import RefereeSettings
+from robobt.world.field import FieldGeometry
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.geometry import Point, distance
+from robobt.world.rules import ball_out, in_defense_area
+from robobt.world.state import Frame
+
+_HALT_TIME = 2.0
+"""Robots have this long to stand, and people to carry the ball, before a HALT ends [s]. Source: SSL rules."""
+
+_SUBSTITUTION_TIME = 15.0
+"""After this long a HALT for a substitution ends: after 20 s it would count as another one [s]."""
+
+_TIMEOUT_TIME = 10.0
+"""How long a time-out lasts [s]."""
+
+_IDLE = 5.0
+"""A STOP after which nothing is to follow ends with a force start after this long [s]."""
+
+_GIVEN_UP = 2.0
+"""In a STOP that has lasted this long the controller will not ask robots to place the ball any more [s]."""
+
+_PATIENCE = 5.0
+"""The ball is put down after this long even if a robot stands on the spot [s]."""
+
+_PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
+"""The controller goes on with a ball so near to its spot, so far from defence areas, so slow [m, m, m/s]."""
+
+_TEN, _LEAD = 10, 1
+"""A match is over when a team has so many goals and leads by more than this. Source: SSL rules."""
+
+_BREAKS = frozenset(
+    {Stage.NORMAL_HALF_TIME, Stage.EXTRA_TIME_BREAK, Stage.EXTRA_HALF_TIME, Stage.PENALTY_SHOOTOUT_BREAK}
+)
+_LAST = frozenset({Stage.NORMAL_SECOND_HALF, Stage.EXTRA_SECOND_HALF})
+_HALVES = _LAST | {Stage.NORMAL_FIRST_HALF, Stage.EXTRA_FIRST_HALF}
+
+
+class People:
+    """The people at the field; frames are seen from blue's side, times are simulated.
+
+    Args:
+        field: where it is played.
+        settings: how long the break between the halves lasts.
+    """
+
+    def __init__(self, field: FieldGeometry, settings: RefereeSettings) -> None:
+        self._field, self._settings = field, settings
+        self._state: tuple[RefereeCommand, Stage] | None = None
+        self._since = 0.0
+
+    def clicks(self, frame: Frame, game: GameState) -> list[Change]:
+        """Return what has to be told to the controller for the match to go on."""
+        lasted = self._lasted(frame, game)
+        if game.stage is Stage.POST_GAME:
+            return []
+        if game.stage in _BREAKS:
+            over = lasted >= max(_HALT_TIME, self._settings.half_time)
+            return [stage(Stage(game.stage + 1))] if over else []
+        if game.command is RefereeCommand.HALT:
+            wait = _SUBSTITUTION_TIME if game.blue.substituting or game.yellow.substituting else _HALT_TIME
+            return [command("STOP")] if lasted >= wait else []
+        if game.command in (RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW):
+            return [command("STOP")] if lasted >= _TIMEOUT_TIME else []
+        if game.command is RefereeCommand.STOP:
+            return self._clicks_in_stop(game, lasted)
+        return []
+
+    def _clicks_in_stop(self, game: GameState, lasted: float) -> list[Change]:
+        scores = game.blue_score, game.yellow_score
+        if max(scores) >= _TEN and max(scores) - min(scores) > _LEAD:
+            return [stage(Stage.POST_GAME)]
+        if game.stage in _HALVES and game.stage_time is not None and game.stage_time < 0.0:
+            if game.restart is Restart.PENALTY:
+                # It is still taken, but nothing goes on by itself any more.
+                return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
+            return [stage(Stage.POST_GAME if game.stage in _LAST else Stage(game.stage + 1))]
+        if game.upcoming is None and lasted >= _IDLE:
+            return [command("FORCE_START")]
+        return []
+
+    def puts_ball(self, frame: Frame, game: GameState) -> Point | None:
+        """Return where the ball has to be put down by hand now, None to leave it."""
+        spot = self._spot(frame, game)
+        if spot is None or ball_placed(frame, spot):
+            return None
+        return spot if spot_free(frame, spot) or self._lasted(frame, game) > _PATIENCE else None
+
+    def _lasted(self, frame: Frame, game: GameState) -> float:
+        """Return for how long the present command and stage have been in force [s]."""
+        state = (game.command, game.stage)
+        if state != self._state:
+            self._state, self._since = state, frame.time
+        return frame.time - self._since
+
+    def _spot(self, frame: Frame, game: GameState) -> Point | None:
+        preparing = game.restart in (Restart.KICKOFF, Restart.PENALTY) and not game.may_touch
+        if preparing and game.restart is Restart.PENALTY and game.restart_team is not None:
+            return penalty(self._field, game.restart_team).spot
+        if preparing or (game.command is RefereeCommand.HALT and game.upcoming in _KICKOFFS):
+            return (0.0, 0.0)
+        given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > _GIVEN_UP
+        spot = game.placement or free_kick_spot(self._field, *frame.ball.position)
+        return spot if given_up and self._blocks(frame, spot) else None
+
+    def _blocks(self, frame: Frame, spot: Point) -> bool:
+        """Return whether the ball lies where the controller does not go on."""
+        ball = frame.ball
+        if ball.speed >= _STILL:
+            return False
+        far = distance(ball.position, spot) > _PLACED
+        near = any(in_defense_area(self._field, team, ball.x, ball.y, _AREA_GAP) for team in Team)
+        return far or near or ball_out(self._field, ball.position)
+
+
+_KICKOFFS = frozenset({RefereeCommand.PREPARE_KICKOFF_BLUE, RefereeCommand.PREPARE_KICKOFF_YELLOW})

@@ -1,0 +1,176 @@
+"""The official game controller as a child process that ends with its match.
+
+Source of flags and settings: ssl-game-controller, ``cmd/ssl-game-controller`` and ``config/config.go``.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Self
+
+from robobt.config.errors import RobobtError, one_line
+from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.stream import MessageStream
+from robobt.signals import uninterrupted
+
+PROGRAM = "ssl-game-controller"
+"""What the official program is called."""
+
+VARIABLE = "ROBOBT_GAME_CONTROLLER"
+"""The environment variable that names it."""
+
+_PATIENCE = 20.0
+"""How long the program may take until it listens, on a busy machine [s]."""
+
+_TRIES = 5
+"""How often another port is tried: between finding a free one and using it somebody else may."""
+
+_GUARD = """
+exec 3<&0
+"$@" 3<&- & child=$!
+{ read -r _ <&3; kill "$child"; } 2>/dev/null & wait "$child"
+"""
+"""A shell that ends with the program, and ends it when its own input ends, however this process does."""
+
+
+class GameControllerError(RobobtError, RuntimeError):
+    """The official game controller cannot be used, or has failed; the message is one line."""
+
+
+def find_game_controller(path: str | Path | None = None) -> Path:
+    """Return the official program: ``path``, else what the environment names, else the one on PATH.
+
+    Raises:
+        GameControllerError: there is none; the message says where to get it.
+    """
+    named = path or os.environ.get(VARIABLE)
+    found = shutil.which(named or PROGRAM)
+    if found is not None:
+        return Path(found).absolute()
+    problem = f"{one_line(str(named))} is no program" if named else f"{PROGRAM} is not on PATH"
+    raise GameControllerError(
+        f"{problem}: the official game controller is a program of its own, which "
+        "https://github.com/RoboCup-SSL/ssl-game-controller/releases has for every system; name it with "
+        f"--game-controller or {VARIABLE}, or play with --referee own"
+    )
+
+
+class GameControllerProcess:
+    """The program in its simulation mode, in a fresh folder, publishing nothing. A context manager.
+
+    Args:
+        program: the official program.
+        game: its settings of the game, by its names; durations as in "5m0s".
+
+    Attributes:
+        stream: the connection through which it is stepped.
+
+    Raises:
+        GameControllerError: it does not start.
+    """
+
+    def __init__(self, program: Path, game: Mapping[str, object] | None = None) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="robobt-gc-", ignore_cleanup_errors=True)
+        self._process: subprocess.Popen[bytes] | None = None
+        try:
+            self._write_settings(game or {})
+            self.stream = self._start(program)
+        except BaseException:
+            self._end()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the program and remove its folder."""
+        self.stream.close()
+        self._end()
+
+    def crash(self) -> str:
+        """Return what it has said of its own crash, nothing if it has not crashed."""
+        lines = self._log.read_text(errors="replace").splitlines() if self._log.exists() else []
+        return next((one_line(line) for line in lines if line.startswith(("panic:", "fatal error:"))), "")
+
+    @property
+    def _log(self) -> Path:
+        return Path(self._folder.name) / "log"
+
+    def _write_settings(self, game: Mapping[str, object]) -> None:
+        # JSON is YAML. Without an address of its own it publishes to the league's, on every interface.
+        import json
+
+        config = Path(self._folder.name) / "config"
+        config.mkdir()
+        settings = {"network": {"publish-address": ""}, "game": dict(game)}
+        (config / f"{PROGRAM}.yaml").write_text(json.dumps(settings))
+
+    def _start(self, program: Path) -> MessageStream:
+        for _ in range(_TRIES):
+            port = _free_port()
+            with uninterrupted:
+                self._process = self._spawn(program, port)
+            end = time.monotonic() + _PATIENCE
+            while time.monotonic() < end and self._process.poll() is None and not self._refused():
+                try:
+                    return MessageStream(socket.create_connection((LOOPBACK, port)), "the game controller")
+                except OSError:
+                    time.sleep(0.005)
+            self._stop()
+        raise GameControllerError(f"{program}: the game controller does not start{self._last_words()}")
+
+    def _spawn(self, program: Path, port: int) -> subprocess.Popen[bytes]:
+        # Only the port that is used has to be known; the others are the system's choice.
+        others = ("address", "autorefAddress", "teamAddress", "remoteControlAddress")
+        flags = [text for flag in others for text in (f"-{flag}", f"{LOOPBACK}:0")]
+        command = [
+            *("/bin/sh", "-c", _GUARD, "sh", str(program)),
+            *("-backendOnly", "-timeAcquisitionMode", "ci", "-ciAddress", f"{LOOPBACK}:{port}", *flags),
+        ]
+        with self._log.open("wb") as log:
+            return subprocess.Popen(
+                command,
+                cwd=self._folder.name,
+                # It does one thing at a time, and what it does is short: more threads only cost time.
+                env={**os.environ, "GOMAXPROCS": "1"},
+                stdin=subprocess.PIPE,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                # Ctrl-C in a terminal is for this process, which ends the program itself.
+                start_new_session=True,
+            )
+
+    def _last_words(self) -> str:
+        lines = self._log.read_text(errors="replace").splitlines()
+        return f": {one_line(lines[-1])}" if lines else ""
+
+    def _refused(self) -> bool:
+        return "Failed to listen" in self._log.read_text(errors="replace")
+
+    def _stop(self) -> None:
+        process, self._process = self._process, None
+        if process is not None and process.stdin is not None:
+            process.stdin.close()
+            process.wait()
+
+    def _end(self) -> None:
+        with uninterrupted:
+            self._stop()
+            self._folder.cleanup()
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind((LOOPBACK, 0))
+        port: int = probe.getsockname()[1]
+        return port
