@@ -197,7 +197,15 @@ class TestEnds:
     def test_the_referee_ends_the_match(self):
         result = play(
             robots={"blue": [robot(speed=0.0)]},
-            referee={"half_length": 1.0, "half_time": 0.1, "kickoff_wait": 0.1, "kick_timeout": 0.1},
+            referee={
+                "half_length": 0.5,
+                "placement": "by_hand",
+                "stop_time": 0.1,
+                "stop_after_halt": 0.1,
+                "kickoff_wait": 0.1,
+                "kick_timeout": 0.1,
+                "no_progress_time": 0.5,
+            },
         )
         assert result.outcome == "full_time"
 

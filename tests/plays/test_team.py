@@ -360,7 +360,7 @@ class Played:
 def played(request: pytest.FixtureRequest) -> Played:
     """Forty seconds of a bundled match, with stops long enough to see who minds them."""
     scenario = load_scenario(request.param).lasting(40.0)
-    scenario = scenario.model_copy(update={"referee": RefereeSettings(stop_time=1.5)})
+    scenario = scenario.model_copy(update={"referee": RefereeSettings(stop_time=1.5, placement="by_hand")})
     match = Match(scenario, 1, sim_world)
     seen = Played()
     before, since = match.game, 0.0

@@ -249,15 +249,27 @@ class RefereePublisher:
             (Team.YELLOW, message.yellow, game.yellow_score),
             (Team.BLUE, message.blue, game.blue_score),
         ):
+            status = game.status(team)
             info.name = team.value
             info.score = score
-            info.red_cards = info.yellow_cards = info.timeouts = info.timeout_time = 0
-            info.goalkeeper = self._keepers.get(team, 0)
+            info.timeouts = info.timeout_time = 0
+            info.red_cards, info.yellow_cards = status.red_cards, status.yellow_cards
+            # Only how many there are is known here, not how long each lasts.
+            info.yellow_card_times.extend([0] * status.yellow_cards)
+            info.goalkeeper = self._keepers.get(team, 0) if status.keeper is None else status.keeper
+            info.can_place_ball = status.can_place_ball
+            info.bot_substitution_allowed = status.substituting
+            if status.max_robots is not None:
+                info.max_allowed_bots = status.max_robots
         if game.placement is not None:
             message.designated_position.x = game.placement[0] * _MM
             message.designated_position.y = game.placement[1] * _MM
-        if game.stopped and game.restart is not None:
-            for command, following in _RESTARTS.items():
-                if following == (game.restart, game.restart_team):
-                    message.next_command = RefereeMessage.Command.Value(command.name)
+        if game.upcoming is not None:
+            message.next_command = RefereeMessage.Command.Value(game.upcoming.name)
+        if game.action_time is not None:
+            message.current_action_time_remaining = round(game.action_time * 1e6)
+        if game.stage_time is not None:
+            message.stage_time_left = round(game.stage_time * 1e6)
+        for event in game.events:
+            message.game_events.add().type = GameEvent.Type.Value(event.upper())
         return bytes(message.SerializeToString())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Literal
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.ball_handling import BallSpeed, DoubleTouch, Dribbling
@@ -16,7 +15,7 @@ from robobt.match.referee.rules.placement import PlacementInterference, Placemen
 from robobt.match.referee.rules.play_goes_on import NoProgress, TooManyRobots
 from robobt.match.referee.rules.restart_distances import AreaDistance, KickPointDistance, StopSpeed
 from robobt.match.referee.scene import Phase, Scene
-from robobt.match.referee.settings import RefereeSettings
+from robobt.match.referee.settings import RefereeSettings, in_seconds
 from robobt.world.division import Division, division_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Team
@@ -90,14 +89,10 @@ def rules_of(division: Division, settings: RefereeSettings) -> Iterator[Rule]:
     if settings.pushing:
         yield Pushing()
     if settings.keeper_hold_time is not None:
-        yield KeeperHeld(_time(settings.keeper_hold_time, division))
+        yield KeeperHeld(in_seconds(settings.keeper_hold_time, division))
     if settings.no_progress_time is not None:
-        yield NoProgress(_time(settings.no_progress_time, division), settings.no_progress_distance)
+        yield NoProgress(in_seconds(settings.no_progress_time, division), settings.no_progress_distance)
     yield TooManyRobots()
     yield PlacementSucceeded()
     yield PlacementInterference()
     yield PenaltyKick(settings.in_play_distance)
-
-
-def _time(setting: float | Literal["rules"], division: Division) -> float:
-    return division.kick_time if setting == "rules" else setting

@@ -1,86 +1,114 @@
-"""Where robots may be and how fast they may drive while the ball is not in play."""
+"""Where ball and robots have to be before play goes on.
+
+Source: the league's game controller, ``engine/process_continue*.go``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import hypot
 
-from robobt.match.referee.fouls import SPEED_TOLERANCE
 from robobt.match.referee.restarts import Resumption
-from robobt.match.referee.settings import RefereeSettings
 from robobt.world.field import FieldGeometry
-from robobt.world.game import Restart, Team
+from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance
-from robobt.world.rules import own_side
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
+from robobt.world.rules import STOP_DISTANCE, area_distance, own_side, taken_off
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame
 
 _SPOT_TOLERANCE = 0.05
-"""A ball further from its spot than this is put down anew [m]."""
+"""A ball further from its spot than this is put down anew by hand [m]."""
 
 _AT_REST = 0.05
-"""A ball slower than this lies still [m/s]."""
+"""A ball slower than this lies still for a hand [m/s]."""
 
-_STANDING = 0.3
-"""Robots slower than this stand ready [m/s]."""
+_STILL = 0.2
+"""A ball slower than this does not keep play from going on [m/s]."""
+
+_NEAR_SPOT = 1.0
+"""A ball this near to its spot need not be placed [m]."""
+
+_AREA_GAP = 0.7
+"""A ball nearer to a defence area has to be placed [m]."""
+
+_KEEP_OFF = STOP_DISTANCE + ROBOT_RADIUS - 0.05
+"""Robots' centres are at least this far from the ball [m]."""
+
+_PENALTY_MARK = 0.15
+"""How far from the mark the ball of a penalty kick may lie [m]."""
 
 _PENALTY_GAP = 1.0
-"""Everybody but kicker and keeper stays this far behind the ball at a penalty kick [m]."""
+"""Everybody but kicker and goalkeeper stays this far behind the ball at a penalty kick [m]."""
 
 
 def ball_placed(frame: Frame, spot: Point) -> bool:
-    """Return whether the ball lies at rest at ``spot``."""
+    """Return whether the ball lies at rest at ``spot``, as a hand puts it down."""
     return distance(frame.ball.position, spot) <= _SPOT_TOLERANCE and frame.ball.speed < _AT_REST
 
 
 def spot_free(frame: Frame, spot: Point) -> bool:
     """Return whether no robot stands where the ball has to be put."""
     clear = ROBOT_RADIUS + BALL_RADIUS + 0.02
-    return all(hypot(robot.x - spot[0], robot.y - spot[1]) > clear for robot in frame.robots().values())
+    return all(
+        hypot(robot.x - spot[0], robot.y - spot[1]) > clear for robot in (*frame.own, *frame.opponents)
+    )
 
 
-def stop_violations(frame: Frame, settings: RefereeSettings) -> Iterator[RobotId]:
-    """Find robots that are too fast while the game is stopped."""
-    most = settings.stop_speed
-    for identity, robot in frame.robots().items():
-        if most is not None and robot.speed > most + SPEED_TOLERANCE:
-            yield identity
+def needs_placement(frame: Frame, field: FieldGeometry, spot: Point) -> bool:
+    """Return whether the ball has to be placed before a free kick or forced start at ``spot``."""
+    x, y = frame.ball.position
+    return (
+        frame.ball.speed >= _STILL
+        or distance((x, y), spot) > _NEAR_SPOT
+        or not field.contains(x, y)
+        or min(area_distance(field, team, x, y) for team in Team) < _AREA_GAP
+    )
 
 
-def crowding(frame: Frame, settings: RefereeSettings, kicking: Team | None) -> Iterator[RobotId]:
-    """Find opponents of the kicking team that are too close to the ball while a restart is taken."""
-    least = settings.stop_distance
-    for identity, robot in frame.robots().items():
-        if least is not None and identity.team is not kicking and _ball_distance(robot, frame.ball) < least:
-            yield identity
+def stop_clear(frame: Frame, field: FieldGeometry, game: GameState, following: Resumption) -> bool:
+    """Return whether robots let play go on after a STOP.
 
-
-def ready(frame: Frame, field: FieldGeometry, settings: RefereeSettings, restart: Resumption) -> bool:
-    """Return whether everybody stands where the rules demand it at a kick-off or penalty."""
-    team = restart.team
-    if team is None:
-        return True
-    kickers = 0
-    for identity, robot in frame.robots().items():
-        if robot.speed > _STANDING:
-            return False
-        if restart.restart is Restart.KICKOFF:
-            fair = robot.x * own_side(identity.team) > 0.0
-            if hypot(robot.x, robot.y) < field.center_radius + ROBOT_RADIUS:
-                fair = identity.team is team
-                kickers += 1
-        elif identity == settings.keeper(team.other):
-            fair = abs(abs(robot.x) - field.half_length) <= ROBOT_RADIUS
-        else:
-            behind = (restart.spot[0] - robot.x) * -own_side(team)
-            fair = behind >= _PENALTY_GAP
-            if not fair and identity.team is team and behind > 0.0:
-                fair = True
-                kickers += 1
-        if not fair or kickers > 1:
-            return False
+    No team has too many, and nobody is near the ball: at a free kick no opponent, else nobody at all.
+    """
+    free_kick = following.team if following.restart is Restart.FREE_KICK else None
+    ball = frame.ball
+    for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents)):
+        most = game.status(team).max_robots
+        if most is not None and len(robots) > most:
+            robots = tuple(it for it in robots if it.id not in taken_off(field, robots, most))
+            if len(robots) > most:
+                return False
+        if team is free_kick:
+            continue
+        for robot in robots:
+            dx, dy = robot.x - ball.x, robot.y - ball.y
+            if dx * dx + dy * dy < _KEEP_OFF * _KEEP_OFF:
+                return False
     return True
 
 
-def _ball_distance(robot: RobotState, ball: BallState) -> float:
-    """Return the distance from the robot's hull to the ball's centre [m]."""
-    return hypot(robot.x - ball.x, robot.y - ball.y) - ROBOT_RADIUS
+def ready(frame: Frame, field: FieldGeometry, game: GameState, restart: Resumption) -> bool:
+    """Return whether everybody stands where it has to before a kick-off or penalty kick."""
+    assert restart.team is not None
+    if restart.restart is Restart.KICKOFF:
+        return distance(frame.ball.position, restart.spot) <= field.center_radius and all(
+            own_side(team) * robot.x >= ROBOT_RADIUS
+            for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents))
+            for robot in robots
+        )
+    return _penalty_ready(frame, field, game, restart.spot, restart.team)
+
+
+def _penalty_ready(frame: Frame, field: FieldGeometry, game: GameState, mark: Point, kicking: Team) -> bool:
+    if distance(frame.ball.position, mark) > _PENALTY_MARK:
+        return False
+    keeper, kept, kickers = game.status(kicking.other).keeper, False, 0
+    forward = -own_side(kicking)
+    for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents)):
+        for robot in robots:
+            if team is not kicking and robot.id == keeper:
+                on_line = abs(robot.x - forward * field.half_length) <= ROBOT_RADIUS
+                kept = on_line and abs(robot.y) <= field.goal_width / 2
+            elif forward * (frame.ball.x - robot.x) < _PENALTY_GAP:
+                if team is not kicking:
+                    return False
+                kickers += 1
+    return kept and kickers <= 1

@@ -25,11 +25,24 @@ GOAL_KICK_DISTANCE = 1.0
 
 @dataclass(slots=True, frozen=True)
 class Resumption:
-    """How play goes on after a STOP: a restart of ``team`` at ``spot``, or for both teams without one."""
+    """How play goes on after a STOP: a restart of ``team`` at ``spot``, or for both teams without one.
+
+    ``left_field`` says that the ball had left the field.
+    """
 
     spot: Point
     restart: Restart | None = None
     team: Team | None = None
+    left_field: bool = False
+
+    @property
+    def command(self) -> RefereeCommand:
+        """The command that begins it."""
+        if self.restart is None or self.team is None:
+            return RefereeCommand.FORCE_START
+        if self.restart is Restart.FREE_KICK:
+            return DIRECT_FREE[self.team]
+        return PREPARE[self.restart, self.team]
 
 
 def free_kick_spot(field: FieldGeometry, x: float, y: float) -> Point:
@@ -57,6 +70,11 @@ def free_kick(field: FieldGeometry, team: Team, x: float, y: float) -> Resumptio
     return Resumption(free_kick_spot(field, x, y), Restart.FREE_KICK, team)
 
 
+def throw_in(field: FieldGeometry, team: Team, x: float, y: float) -> Resumption:
+    """Return the free kick of ``team`` after the ball has left over a touch line at (x, y)."""
+    return Resumption(free_kick_spot(field, x, y), Restart.FREE_KICK, team, True)
+
+
 def kickoff(team: Team) -> Resumption:
     """Return a kick-off of ``team``."""
     return Resumption((0.0, 0.0), Restart.KICKOFF, team)
@@ -65,13 +83,13 @@ def kickoff(team: Team) -> Resumption:
 def goal_kick(field: FieldGeometry, defender: Team, y: float) -> Resumption:
     """Return the goal kick of ``defender`` after the ball has left at ``y``."""
     x = own_side(defender) * (field.half_length - GOAL_KICK_DISTANCE)
-    return Resumption((x, copysign(field.half_width - LINE_GAP, y)), Restart.FREE_KICK, defender)
+    return Resumption((x, copysign(field.half_width - LINE_GAP, y)), Restart.FREE_KICK, defender, True)
 
 
 def corner_kick(field: FieldGeometry, attacker: Team, y: float) -> Resumption:
     """Return the corner kick of ``attacker`` after the ball has left at ``y``."""
     x = -own_side(attacker) * (field.half_length - LINE_GAP)
-    return Resumption((x, copysign(field.half_width - LINE_GAP, y)), Restart.FREE_KICK, attacker)
+    return Resumption((x, copysign(field.half_width - LINE_GAP, y)), Restart.FREE_KICK, attacker, True)
 
 
 def penalty(field: FieldGeometry, attacker: Team) -> Resumption:
@@ -90,3 +108,9 @@ PREPARE = {
     (Restart.PENALTY, Team.YELLOW): RefereeCommand.PREPARE_PENALTY_YELLOW,
 }
 """The command that lets everybody take position for a kick-off or a penalty kick."""
+
+PLACE = {Team.BLUE: RefereeCommand.BALL_PLACEMENT_BLUE, Team.YELLOW: RefereeCommand.BALL_PLACEMENT_YELLOW}
+"""The command that lets a team place the ball."""
+
+TIME_OUT = {Team.BLUE: RefereeCommand.TIMEOUT_BLUE, Team.YELLOW: RefereeCommand.TIMEOUT_YELLOW}
+"""The command of a team's time-out."""

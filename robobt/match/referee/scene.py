@@ -44,6 +44,7 @@ class Scene:
         phase: what the teams may do.
         since: when this phase began [s].
         stopped: when play was stopped last, or a placement began [s].
+        penalty: whose penalty kick this phase is, or was last.
         touches: who touches the ball and who did.
         out: whether the ball is out of the field.
         inside: where the ball was when it was last in the field [m].
@@ -59,6 +60,7 @@ class Scene:
         self.phase = Phase.HALT
         self.since = 0.0
         self.stopped = 0.0
+        self.penalty: Team | None = None
         self.out = False
         self.inside: Point = (0.0, 0.0)
         self._state: object = None
@@ -86,6 +88,8 @@ class Scene:
         if phase in _STOPPED and self.phase not in _STOPPED:
             self.stopped = frame.time
         self.phase, self.since = phase, frame.time
+        if phase is Phase.PENALTY:
+            self.penalty = game.restart_team
         return True
 
     @property

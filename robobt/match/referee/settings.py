@@ -7,58 +7,116 @@ from typing import Literal
 from pydantic import Field
 
 from robobt.config.validation import Settings
+from robobt.world.division import Division
 from robobt.world.game import Team
+from robobt.world.geometry import Point
 from robobt.world.rules import CARRY_DISTANCE, IN_PLAY_DISTANCE, STOP_DISTANCE, STOP_SPEED
 from robobt.world.state import RobotId
+
+Time = float | Literal["rules"]
+"""A time, or the one of the rules for the division that the field belongs to [s]."""
 
 
 class RefereeSettings(Settings):
     """What the referee checks and how long things take, in simulated seconds.
 
-    The distances and speeds are the rules' own; the pauses are short, because
-    nobody has to carry the ball. A check whose value is None or false is off.
+    Distances, speeds and times are the rules' own for the field's division. A check
+    whose value is None or false is off.
     """
 
-    opening: Literal["kickoff", "force_start"] = Field("kickoff", description="how the match begins")
-    stop_time: float = Field(0.3, ge=0, le=60, description="shortest STOP before a restart [s]")
+    opening: Literal["kickoff", "force_start", "free_kick", "penalty", "ball_placement", "shoot_out"] = Field(
+        "kickoff", description="how the match begins"
+    )
+    opening_team: Team = Field(Team.BLUE, description="whose opening it is, the first kick-off among them")
+    opening_spot: Point | Literal["random"] | None = Field(
+        None,
+        description="where a free kick is taken or the ball has to be placed at the opening, in world "
+        "coordinates; by default where the ball lies [m]",
+    )
+    placement: Literal["robots", "by_hand"] = Field(
+        "robots",
+        description="who brings the ball to a free kick: robots as the rules say, or a hand, at once, which "
+        "does not wait either for robots near it",
+    )
+    placement_time: float = Field(
+        30.0, gt=0, le=600, description="a team has that long to place the ball [s]"
+    )
+    blue_can_place: bool = Field(True, description="whether blue is asked to place the ball")
+    yellow_can_place: bool = Field(True, description="whether yellow is asked to place the ball")
+    stop_time: float = Field(
+        2.0, ge=0, le=60, description="positions have to be right for so long before play goes on [s]"
+    )
+    stop_after_halt: float = Field(10.0, ge=0, le=600, description="shortest STOP after a HALT [s]")
     placement_delay: float = Field(
-        0.0, ge=0, le=60, description="from STOP until the ball lies at the restart's place [s]"
+        0.0, ge=0, le=60, description="from STOP until a hand has brought the ball [s]"
     )
-    kickoff_wait: float = Field(
-        2.0, ge=0, le=60, description="longest wait for positions at a kick-off or penalty [s]"
+    kickoff_wait: float | None = Field(
+        None,
+        ge=0,
+        le=600,
+        description="longest wait for robots to get to their positions; none waits for ever [s]",
     )
-    kick_timeout: float = Field(10.0, gt=0, le=60, description="a restart not taken by then is over [s]")
+    kick_timeout: Time = Field(
+        "rules",
+        description="a kick-off or free kick not taken by then is over; by the rules 10, 5 or 10 s [s]",
+    )
     in_play_distance: float = Field(
         IN_PLAY_DISTANCE, gt=0, le=0.5, description="the ball is in play after moving this far [m]"
     )
     double_touch: bool = Field(True, description="the kicker may not touch the ball twice")
-    defense_areas: bool = Field(True, description="who may touch the ball in the defence areas")
-    aimless_kick: bool = Field(True, description="no kick from the own half over the far goal line")
+    defense_areas: bool = Field(
+        True, description="who may touch the ball in the defence areas, and stand near them"
+    )
+    aimless_kick: bool = Field(
+        True, description="division B: no kick from the own half over the far goal line"
+    )
     max_dribble: float | None = Field(
         CARRY_DISTANCE, gt=0, le=50, description="longest way with the ball [m]"
     )
     max_ball_speed: float | None = Field(6.5, gt=0, le=50, description="fastest kick [m/s]")
     crash_speed: float | None = Field(1.5, gt=0, le=20, description="closing speed of a crash [m/s]")
     pushing: bool = Field(False, description="no robot shoves another; AutoReferee does not look either")
-    keeper_hold_time: float | Literal["rules"] | None = Field(
+    keeper_hold_time: Time | None = Field(
         "rules", description="longest stay of the ball in a defence area; by the rules 5 or 10 s [s]"
     )
-    no_progress_time: float | Literal["rules"] | None = Field(
+    no_progress_time: Time | None = Field(
         "rules", description="ball at rest for so long; by the rules 5 or 10 s [s]"
     )
     no_progress_distance: float = Field(0.1, gt=0, le=5, description="what counts as at rest [m]")
     stop_speed: float | None = Field(STOP_SPEED, gt=0, le=20, description="fastest robot in STOP [m/s]")
     stop_distance: float | None = Field(
-        STOP_DISTANCE, gt=0, le=5, description="robot's hull to ball in STOP [m]"
+        STOP_DISTANCE, gt=0, le=5, description="opponents' hulls to the ball at a restart [m]"
     )
     grace: float = Field(2.0, ge=0, le=60, description="time to slow down and clear the ball [s]")
-    half_length: float | None = Field(
-        None, gt=0, le=36000, description="length of a half; none: one half without end [s]"
+    max_robots: int | None = Field(
+        None, ge=1, le=32, description="robots a team may have; by default the division's 11 or 6"
     )
-    half_time: float = Field(0.0, ge=0, le=3600, description="HALT between the halves [s]")
+    yellow_card_time: float = Field(
+        120.0, gt=0, le=3600, description="playing time that a yellow card lasts [s]"
+    )
+    half_length: float | None = Field(
+        None, gt=0, le=36000, description="playing time of a half; none: one half without end [s]"
+    )
+    half_time: float = Field(0.0, ge=0, le=3600, description="HALT between two halves [s]")
+    extra_length: float | None = Field(
+        None,
+        gt=0,
+        le=36000,
+        description="playing time of a half of overtime after a draw; none: no overtime [s]",
+    )
+    shoot_out: bool = Field(False, description="whether a shoot-out decides a draw")
     blue_keeper: int = Field(0, ge=0, le=31, description="number of blue's goalkeeper")
     yellow_keeper: int = Field(0, ge=0, le=31, description="number of yellow's goalkeeper")
 
     def keeper(self, team: Team) -> RobotId:
-        """Return ``team``'s goalkeeper."""
+        """Return ``team``'s goalkeeper at the start."""
         return RobotId(team, self.blue_keeper if team is Team.BLUE else self.yellow_keeper)
+
+    def can_place(self, team: Team) -> bool:
+        """Return whether ``team`` is asked to place the ball."""
+        return self.blue_can_place if team is Team.BLUE else self.yellow_can_place
+
+
+def in_seconds(setting: Time, division: Division) -> float:
+    """Return a time; the division's time for a free kick where the rules decide [s]."""
+    return division.kick_time if setting == "rules" else setting

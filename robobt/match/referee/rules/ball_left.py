@@ -18,6 +18,8 @@ _FROM_CENTRE = 0.2
 class BallLeft(Rule):
     """Fully over a line between the posts is a possible goal, elsewhere the ball is out.
 
+    Out is out in a penalty kick, too: it has failed, whoever touched the ball last.
+
     ``aimless`` says whether a kick from the own half over the far goal line, touched by nobody on its way,
     is an event of its own: in division B.
     """
@@ -47,6 +49,11 @@ class BallLeft(Rule):
         ball, last = scene.frame.ball.position, scene.touches.last
         team = None if last is None else last.team
         crossing, over_goal_line = exit_point(scene.field, scene.inside, ball)
+        if scene.phase is Phase.PENALTY and scorer(scene.field, scene.inside, ball) is not scene.penalty:
+            reason = "the ball has left the field"
+            return team_event(
+                scene, EventKind.PENALTY_KICK_FAILED, scene.penalty, None, crossing, reason=reason
+            )
         if not over_goal_line:
             return team_event(scene, EventKind.BALL_LEFT_FIELD_TOUCH_LINE, team, last, crossing)
         scoring = scorer(scene.field, scene.inside, ball)

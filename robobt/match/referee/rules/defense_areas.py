@@ -24,7 +24,7 @@ class DefenseAreaTouch(Rule):
     Not while both teams touch the ball, nor where an opponent touches, and so may push, the defender.
     """
 
-    phases = frozenset({Phase.PLAY})
+    phases = frozenset({Phase.PLAY, Phase.PENALTY})
 
     def __init__(self) -> None:
         self._again = Cooldown()

@@ -29,7 +29,6 @@ class PenaltyKick(Rule):
     def __init__(self, in_play_distance: float) -> None:
         self._in_play = in_play_distance
         self._spot: Point = (0.0, 0.0)
-        self._team: Team | None = None
         self._past: deque[tuple[float, float, float]] = deque()
         self._farthest = 0.0
         self._told = False
@@ -37,14 +36,13 @@ class PenaltyKick(Rule):
     def enter(self, scene: Scene) -> None:
         """Begin a kick."""
         self._spot = scene.frame.ball.position
-        self._team = scene.game.restart_team
         self._past.clear()
         self._farthest = 0.0
         self._told = False
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report a failure once."""
-        ball, team = scene.frame.ball, self._team
+        ball, team = scene.frame.ball, scene.penalty
         if self._told or team is None or distance(ball.position, self._spot) <= self._in_play:
             return
         self._past.append((scene.time, ball.vx, ball.vy))

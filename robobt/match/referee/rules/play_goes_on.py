@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Rule, team_event
+from robobt.match.referee.rules.base import Cooldown, Rule, team_event
 from robobt.match.referee.scene import Phase, Scene
 from robobt.world.game import Team
 from robobt.world.geometry import Point, distance
@@ -50,14 +50,10 @@ class TooManyRobots(Rule):
         self._most: dict[Team, int] = {}
         self._cards: dict[Team, list[float]] = {Team.BLUE: [], Team.YELLOW: []}
         self._played = 0.0
-        self._told: set[Team] = set()
-
-    def enter(self, _: Scene) -> None:
-        """Look anew."""
-        self._told.clear()
+        self._again = Cooldown()
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report a team once until play is stopped."""
+        """Report a team every two seconds: its opponents may want play to go on."""
         self._played += scene.frame.period
         for team in Team:
             most = scene.game.status(team).max_robots
@@ -67,11 +63,10 @@ class TooManyRobots(Rule):
             self._most[team] = most
             cards = self._cards[team]
             cards += [self._played] * max(0, before - most)
-            if len(scene.team(team)) <= most or team in self._told or scene.elapsed < _RUNNING:
+            if len(scene.team(team)) <= most or scene.elapsed < _RUNNING:
                 continue
             recent = [card for card in cards if self._played - card < _TIME_TO_LEAVE]
-            if len(scene.team(team)) > most + len(recent):
-                self._told.add(team)
+            if len(scene.team(team)) > most + len(recent) and self._again.ready(team, scene.time):
                 yield team_event(
                     scene,
                     EventKind.TOO_MANY_ROBOTS,

@@ -1,0 +1,98 @@
+"""What teams ask of the controller: time-outs, substitutions, advantage, another goalkeeper.
+
+Source: RoboCup SSL rules, chapters "Time-outs", "Substitution" and "Goalkeeper"; the league's game
+controller for when a request is heard.
+"""
+
+from __future__ import annotations
+
+from robobt.match.referee.events import EventKind
+from robobt.match.referee.restarts import corner_kick
+from robobt.match.referee.state import MatchState
+from robobt.world.game import RefereeCommand, Team
+from robobt.world.rules import own_side
+
+SUBSTITUTION_TIME = 20.0
+"""A HALT for substitutions lasts so long. Source: SSL rules [s]."""
+
+
+class Requests:
+    """A team's wishes; each takes effect when the rules let it.
+
+    ``state`` is the match's.
+    """
+
+    def __init__(self, state: MatchState) -> None:
+        self._state = state
+
+    def time_out(self, team: Team) -> bool:
+        """Ask for a time-out, which begins at the next STOP; False where the team has none left."""
+        record = self._state.records[team]
+        if self._state.stages.shoot_out or record.time_outs < 1 or record.time_out_left <= 0.0:
+            return False
+        record.wants_time_out = True
+        return True
+
+    def end_time_out(self, team: Team) -> bool:
+        """End the team's time-out, or take the wish for one back; False where there is none."""
+        state, record = self._state, self._state.records[team]
+        if record.wants_time_out:
+            record.wants_time_out = False
+            return True
+        running = {Team.BLUE: RefereeCommand.TIMEOUT_BLUE, Team.YELLOW: RefereeCommand.TIMEOUT_YELLOW}
+        if state.game.command is not running[team]:
+            return False
+        state.deadline = state.time
+        return True
+
+    def substitution(self, team: Team, wanted: bool = True) -> None:
+        """Ask to exchange robots at the next STOP, or take that back."""
+        self._state.records[team].wants_substitution = wanted
+
+    def advantage(self, team: Team, play_on: bool) -> None:
+        """Say whether play is to go on while the opponents have too many robots."""
+        self._state.records[team].continues = play_on
+
+    def keeper(self, team: Team, number: int) -> bool:
+        """Name another goalkeeper; False where the ball is in play and in the team's own half."""
+        state = self._state
+        if state.running and own_side(team) * state.ball[0] > 0.0:
+            return False
+        state.records[team].keeper = number
+        return True
+
+    def card(self, team: Team) -> None:
+        """Show a team a card, as a human referee does for unsporting behaviour."""
+        state = self._state
+        state.note(EventKind.UNSPORTING_BEHAVIOR_MINOR, team)
+        for event in state.discipline.card(team, state.time):
+            state.record(event)
+
+    def red_card(self, team: Team) -> None:
+        """Show a team a red card, as a human referee does for unsporting behaviour."""
+        self._state.note(EventKind.UNSPORTING_BEHAVIOR_MAJOR, team)
+        self._state.records[team].red += 1
+
+    def serve(self) -> bool:
+        """Fulfil what was asked for, in a STOP; return whether that changed the command."""
+        state = self._state
+        wanting = [team for team in Team if state.records[team].wants_substitution]
+        if wanting:
+            for team in wanting:
+                record = state.records[team]
+                record.wants_substitution, record.substituting = False, True
+                state.note(EventKind.BOT_SUBSTITUTION, team)
+                record.substitutions -= 1
+            exceeding = [team for team in wanting if state.records[team].substitutions < 0]
+            for team in exceeding:
+                state.note(EventKind.EXCESSIVE_BOT_SUBSTITUTION, team)
+            if len(exceeding) == 1:
+                state.following = corner_kick(state.field, exceeding[0].other, state.ball[1])
+                state.placing.begin(state.following)
+            state.halt(SUBSTITUTION_TIME)
+            return True
+        for team in Team:
+            if state.records[team].wants_time_out:
+                state.time_out(team)
+                return True
+        return False

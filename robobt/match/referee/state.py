@@ -1,0 +1,256 @@
+"""The state of a match under its controller, and how it changes.
+
+Source: RoboCup SSL rules of 2026, and the league's game controller for what they leave open; command and
+stage numbers are those of its messages.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from robobt.match.referee.discipline import Discipline
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.placing import Placing
+from robobt.match.referee.restarts import PLACE, TIME_OUT, Resumption, kickoff, penalty
+from robobt.match.referee.settings import RefereeSettings, in_seconds
+from robobt.match.referee.stages import Stages
+from robobt.world.division import division_of
+from robobt.world.field import FieldGeometry
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.geometry import Point
+
+PREPARATION_TIME = 10.0
+"""A kick-off and a penalty kick are prepared in this time, and taken in as much. Source: SSL rules [s]."""
+
+RUNNING = frozenset(
+    {
+        RefereeCommand.NORMAL_START,
+        RefereeCommand.FORCE_START,
+        RefereeCommand.DIRECT_FREE_BLUE,
+        RefereeCommand.DIRECT_FREE_YELLOW,
+    }
+)
+"""Commands under which a team may play the ball, and time is counted."""
+
+
+class MatchState:
+    """What the controller knows and how it goes on; coordinates are the world's, times those of frames.
+
+    Attributes:
+        game: the state of the game as it is told.
+        records: fouls, cards and budgets of each team.
+        discipline: counts the fouls.
+        stages: the stage of the match.
+        placing: who brings the ball.
+        following: how play goes on after this stop.
+        events: what happened on this frame.
+        ball: where the ball is [m].
+        time: now [s].
+        since: when the present command was given [s].
+        least: how long the present STOP lasts at the least [s].
+        deadline: when the present action is over, None without a limit [s].
+        clear: since when nothing keeps play from going on, None while something does [s].
+        kick_spot: where the ball lay when it might be kicked [m].
+    """
+
+    def __init__(
+        self, field: FieldGeometry, settings: RefereeSettings, generator: np.random.Generator
+    ) -> None:
+        self.field, self.settings, self.division = field, settings, division_of(field)
+        self.game = GameState(
+            RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_touch=False, placement=None
+        )
+        self.discipline = Discipline(settings, self.division)
+        self.records = self.discipline.records
+        self.stages = Stages(settings)
+        self.placing = Placing(settings, self.division, self.records, generator)
+        self.following = Resumption((0.0, 0.0))
+        self.events: list[RefereeEvent] = []
+        self.ball: Point = (0.0, 0.0)
+        self.time = self.since = self.least = 0.0
+        self.deadline: float | None = None
+        self.clear: float | None = None
+        self.kick_spot: Point = (0.0, 0.0)
+        self._names: list[str] = []
+
+    @property
+    def elapsed(self) -> float:
+        """How long the present command has lasted [s]."""
+        return self.time - self.since
+
+    @property
+    def running(self) -> bool:
+        """Whether a team may play the ball."""
+        return self.game.command in RUNNING
+
+    def pass_time(self, seconds: float) -> None:
+        """Let the match's clock go on [s]."""
+        self.time += seconds
+        command = self.game.command
+        if command in RUNNING:
+            self.stages.played += seconds
+            for record in self.records.values():
+                record.play_on(seconds)
+        for team, time_out in TIME_OUT.items():
+            if command is time_out:
+                self.records[team].time_out_left -= seconds
+
+    def record(self, event: RefereeEvent, *, counts: bool = True) -> None:
+        """Note what happened; where it is a foul that ``counts`` it may cost a card."""
+        self.events.append(event)
+        self._names.append(event.kind.value)
+        if counts:
+            for card in self.discipline.count(event):
+                self.record(card)
+
+    def note(self, kind: EventKind, team: Team | None, reason: str | None = None) -> RefereeEvent:
+        """Record an event of the controller's own, where the ball is; return it."""
+        details = {} if reason is None else {"reason": reason}
+        event = RefereeEvent(self.time, kind, team, None, *self.ball, details)
+        self.record(event)
+        return event
+
+    # Commands.
+
+    def give(self, command: RefereeCommand, deadline: float | None = None) -> None:
+        """Give a command whose action ends at ``deadline`` [s]."""
+        self.since, self.clear, self.deadline, self.least = self.time, None, deadline, 0.0
+        self.game = replace(self.game, command=command)
+
+    def stop(self, following: Resumption) -> None:
+        """STOP, after which play goes on with ``following``."""
+        team = following.team
+        if team is not None and not self.records[team].places:
+            following = self.placing.lost(following, team)
+        self.following = following
+        self.placing.begin(following)
+        for record in self.records.values():
+            record.too_close = 0
+        self.wait()
+
+    def wait(self, least: float = 0.0) -> None:
+        """STOP for the restart that is due, for ``least`` at the least [s]."""
+        following = self.following
+        self.give(RefereeCommand.STOP)
+        self.least = least
+        self.game = replace(
+            self.game,
+            restart=following.restart,
+            restart_team=following.team,
+            may_touch=False,
+            placement=following.spot,
+            upcoming=following.command,
+            penalty=None,
+        )
+
+    def halt(self, seconds: float | None) -> None:
+        """HALT for so long [s]; None is for good."""
+        self.give(RefereeCommand.HALT, None if seconds is None else self.time + seconds)
+        self.game = replace(self.game, restart=None, restart_team=None, may_touch=False, placement=None)
+
+    def time_out(self, team: Team) -> None:
+        """Begin a team's time-out."""
+        record = self.records[team]
+        record.wants_time_out = False
+        record.time_outs -= 1
+        self.give(TIME_OUT[team], self.time + record.time_out_left)
+        self.game = replace(self.game, restart=None, restart_team=None, may_touch=False, placement=None)
+
+    def end_halt(self) -> None:
+        """STOP after a HALT or time-out, with the next stage where that was a break."""
+        for record in self.records.values():
+            record.substituting = False
+        if self.stages.in_break:
+            self.stages.end_break()
+            for record in self.records.values():
+                record.begin_half()
+                if self.stages.stage is Stage.EXTRA_FIRST_HALF_PRE:
+                    record.begin_extra_time()
+            self.following = self.after_break()
+            self.placing.begin(self.following)
+        self.wait(self.settings.stop_after_halt)
+
+    def after_break(self) -> Resumption:
+        """Return how a stage begins."""
+        if self.stages.shoot_out:
+            return penalty(self.field, self.stages.turn)
+        return kickoff(self.stages.kickoff_team)
+
+    def place_by(self, team: Team) -> None:
+        """Let a team place the ball."""
+        self.give(PLACE[team], self.placing.deadline)
+        self.game = replace(self.game, restart=Restart.BALL_PLACEMENT, restart_team=team, may_touch=True)
+
+    def resume(self) -> None:
+        """Go on after a STOP."""
+        following = self.following
+        if following.command is RefereeCommand.FORCE_START:
+            self.play()
+        elif following.restart is Restart.FREE_KICK:
+            self.allow(following.command)
+        else:
+            self.give(following.command, self.time + PREPARATION_TIME)
+            kicking = following.team if following.restart is Restart.PENALTY else None
+            self.game = replace(self.game, upcoming=RefereeCommand.NORMAL_START, penalty=kicking)
+
+    def allow(self, command: RefereeCommand) -> None:
+        """Let the restart be taken."""
+        self._begin_play()
+        self.kick_spot = self.ball
+        if self.stages.shoot_out:
+            self.stages.begin_attempt()
+        self.give(command, self.time + self.kick_time)
+        self.game = replace(self.game, may_touch=True, upcoming=None)
+
+    def play(self) -> None:
+        """Free the ball for both teams."""
+        self._begin_play()
+        self.give(RefereeCommand.FORCE_START)
+        self.free_ball()
+
+    def free_ball(self) -> None:
+        """The restart has been taken, or its time is over; a penalty kick goes on."""
+        if self.game.penalty is None:
+            self.deadline = None
+        self.game = replace(
+            self.game, restart=None, restart_team=None, may_touch=True, placement=None, upcoming=None
+        )
+
+    @property
+    def kick_time(self) -> float:
+        """How long the restart that is due may take [s]."""
+        if self.following.restart is Restart.PENALTY:
+            return PREPARATION_TIME
+        if self.settings.kick_timeout == "rules" and self.following.restart is Restart.KICKOFF:
+            return PREPARATION_TIME
+        return in_seconds(self.settings.kick_timeout, self.division)
+
+    def _begin_play(self) -> None:
+        self.stages.begin_play()
+        self._names.clear()
+
+    # What is told.
+
+    def tell(self) -> None:
+        """Bring the game state up to date."""
+        blue, yellow = self.records[Team.BLUE], self.records[Team.YELLOW]
+        game = self.game
+        self.game = GameState(
+            game.command,
+            self.stages.stage,
+            blue.score,
+            yellow.score,
+            game.restart,
+            game.restart_team,
+            game.may_touch,
+            game.placement,
+            penalty=game.penalty,
+            blue=blue.status(),
+            yellow=yellow.status(),
+            events=tuple(self._names),
+            upcoming=game.upcoming,
+            action_time=None if self.deadline is None else self.deadline - self.time,
+            stage_time=self.stages.left,
+        )
