@@ -39,8 +39,8 @@ _COMMANDS = {
 
 _GROUPS = {
     "record": (
-        "Use recordings elsewhere: in other tools and in tests.",
-        {"export": "record:export", "case": "record:case"},
+        "Use recordings: what the teams did, in other tools, in tests.",
+        {"export": "record:export", "case": "record:case", "statistics": "record:statistics"},
     ),
     "collect": ("Collect data from simulated play.", {"shots": "collect:shots"}),
     "shots": (

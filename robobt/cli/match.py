@@ -33,6 +33,7 @@ from robobt.cli.common import (
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
+from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
     from robobt.match import Run, Scenario, Summary
@@ -130,6 +131,8 @@ def match(
     time: seconds a trial; in_play: share of the time with the ball in play;
     robots: for each robot go_to_ball, shoot and total (seconds) and kicks, each
     with n, mean and variance, errors (ticks its tree failed) and first_error;
+    teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
+    and variance;
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
     """
@@ -192,7 +195,7 @@ def match(
         }
         print_json({**summary.to_json(), **extra})
     else:
-        _print_summary(summary, loaded, run, count)
+        _print_summary(summary, run, count)
         if written is not None:
             say(f"Replay of trial {recorded}: {written}")
     if run.interrupted:
@@ -228,7 +231,7 @@ def _check_replay(path: Path, out: Path | None) -> None:
         raise typer.BadParameter("the replay and the results need a file each", param_hint="--replay")
 
 
-def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: int) -> None:
+def _print_summary(summary: Summary, run: Run, requested: int) -> None:
     played = f"{summary.trials} trial{'s' if summary.trials > 1 else ''}"
     stopped = f" of {requested} (stopped)" if run.interrupted else ""
     console.print(f"[bold]{escape(summary.scenario)}[/bold]: {played}{stopped}, seed {summary.seed}")
@@ -246,7 +249,7 @@ def _print_summary(summary: Summary, scenario: Scenario, run: Run, requested: in
             f"only {summary.distinct} of {summary.trials} trials differ; vary the starts or add noise, "
             "as with --set simulator.realism=friendly"
         )
-    console.print(_times(summary) if scenario.referee is None else _goals(summary))
+    console.print(_teams(summary) if summary.teams else _times(summary))
     pace = summary.real_time_factor
     goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
     say(
@@ -272,13 +275,14 @@ def _times(summary: Summary) -> Table:
     return listed
 
 
-def _goals(summary: Summary) -> Table:
-    listed = table("team", "goals a trial", "trials with a goal", "kicks a trial")
-    for team, goals in summary.goals.items():
-        own = [robot for name, robot in summary.robots.items() if name.startswith(team)]
-        kicks = sum(robot.kicks.mean or 0.0 for robot in own)
-        scored = f"{goals.trials.rate:.0%} ({goals.trials.interval()})"
-        listed.add_row(team, f"{goals.total / summary.trials:.2f}", scored, f"{kicks:.1f}")
+def _teams(summary: Summary) -> Table:
+    means = {
+        name: {figure: spread.mean or 0.0 for figure, spread in team.items()}
+        for name, team in summary.teams.items()
+    }
+    listed = team_figures(means, "a trial")
+    scored = [f"{count.trials.rate:.0%} ({count.trials.interval()})" for count in summary.goals.values()]
+    listed.add_row("trials with a goal", *scored)
     return listed
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import RECORDING, Imports, import_files, say
+from robobt.cli.common import RECORDING, Imports, Json, console, import_files, print_json, say
+from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
     from robobt.match.recording import Recording
@@ -61,6 +63,39 @@ def case(
     who = _robot(loaded, robot)
     _spare(recording, out)
     say(f"Regression case: {save_regression_case(loaded, who, tick, out)}")
+
+
+def statistics(
+    recording: Annotated[
+        Path, typer.Argument(help=f"A recording (*{RECORDING}), or a league log (*.log, *.log.gz).")
+    ],
+    as_json: Json = False,
+) -> None:
+    """Count what each team did in a match: goals, shots, passes, possession, restarts, fouls.
+
+    Keys of --json: by team ("blue", "yellow") goals, passes, passes_completed,
+    passes_intercepted, shots_on_goal, expected_goals, possession (share), distance [m], fouls,
+    yellow_cards, red_cards, placements, placements_succeeded, restarts, restarts_kept.
+    """
+    from dataclasses import asdict
+
+    from robobt.match.recording import load_recording
+    from robobt.match.recording.statistics import recorded_statistics
+
+    if recording.name.lower().endswith((".log", ".log.gz")):
+        from robobt.league.log.world import record_log
+
+        with tempfile.TemporaryDirectory() as folder:
+            loaded = load_recording(record_log(recording, Path(folder) / f"log{RECORDING}"))
+    else:
+        loaded = load_recording(recording)
+    teams = {name: asdict(team) for name, team in recorded_statistics(loaded).items()}
+    if not teams:
+        raise typer.BadParameter("holds no referee, so there is no match to count", param_hint="RECORDING")
+    if as_json:
+        print_json(teams)
+    else:
+        console.print(team_figures(teams))
 
 
 def _robot(recording: Recording, text: str | None) -> RobotId:

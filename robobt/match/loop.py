@@ -15,9 +15,11 @@ from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
+from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
+from robobt.match.results.teams import TeamStatistics
 from robobt.match.scenario.scenario import Scenario
 from robobt.match.views import KeptView
 from robobt.signals import check, let_go, uninterrupted
@@ -90,6 +92,7 @@ class Match:
         self._field = self.world.truth().field
         self._referee = referee(scenario, self._field)
         refereed = self._referee is not None or self.world.refereed
+        self._teams = TeamStatistics() if refereed else None
         self._judge = EndJudge(scenario, refereed, self.world.scenario_ends)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
@@ -139,13 +142,16 @@ class Match:
         check()
         truth = self.world.truth()
         self._time = truth.time
+        events: tuple[RefereeEvent, ...] = ()
         if self._referee is not None:
-            self._follow_referee(truth)
+            events = self._follow_referee(truth)
         else:
             # A world may have a referee of its own: the league's game controller.
             self.game = truth.game
         truth.game = self.game
         self.measures.update(truth, self.game, self._commands, self.world.seen_kicks())
+        if self._teams is not None:
+            self._teams.update(truth, self.game, events)
         packed = truth.packed()
         self._trace.update(packed, self.game)
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
@@ -182,6 +188,7 @@ class Match:
             robots={str(robot): replace(figures) for robot, figures in measures.robots.items()},
             trace=self._trace.hexdigest(),
             wall_time=wall_time,
+            teams={} if self._teams is None else self._teams.result(),
         )
 
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
@@ -223,7 +230,7 @@ class Match:
             figures.first_error = player.problem
         self._trace.event(f"error {player.robot}")
 
-    def _follow_referee(self, truth: Frame) -> None:
+    def _follow_referee(self, truth: Frame) -> tuple[RefereeEvent, ...]:
         assert self._referee is not None
         decision = self._referee.update(truth)
         self.game = decision.game
@@ -235,6 +242,7 @@ class Match:
                 )
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
+        return decision.events
 
     def _make_recorder(self, path: Path) -> Recorder:
         scenario = self.scenario

@@ -1,3 +1,5 @@
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -62,3 +64,27 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
         saved = CliRunner().invoke(app, [*wanted, "--import", str(file)])
         assert saved.exit_code == 0, saved.stderr
         check_regression_case(case)
+
+
+@pytest.mark.integration
+def test_the_statistics_of_a_recording_are_those_of_the_match(tmp_path: Path) -> None:
+    path = tmp_path / "match.robobt.arrows"
+    with Match(load_scenario("six_v_six").lasting(8.0), 3, sim_world, path) as match:
+        result = match.play()
+    done = CliRunner().invoke(app, ["record", "statistics", str(path), "--json"])
+    assert done.exit_code == 0, done.output
+    counted = json.loads(done.stdout)
+    played = {name: asdict(team) for name, team in result.teams.items()}
+    assert played["blue"]["distance"] > 1.0
+    for name, team in counted.items():
+        assert team == pytest.approx(played[name], abs=1e-3)
+    assert "passes completed" in CliRunner().invoke(app, ["record", "statistics", str(path)]).stdout
+
+
+def test_a_recording_without_a_referee_has_no_statistics(tmp_path: Path) -> None:
+    path = tmp_path / "free.robobt.arrows"
+    with Match(load_scenario("table4_trial1").lasting(0.1), 0, sim_world, path) as match:
+        assert match.play().teams == {}
+    refused = CliRunner().invoke(app, ["record", "statistics", str(path)])
+    assert refused.exit_code == 2
+    assert "no referee" in refused.output

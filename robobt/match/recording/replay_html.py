@@ -9,6 +9,7 @@ import base64
 import html
 import json
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from importlib.resources import files
 from math import isfinite
 from pathlib import Path
@@ -21,6 +22,7 @@ from pydantic import JsonValue
 from robobt.config.errors import naming
 from robobt.match.recording import Recording, RobotFlag, load_recording
 from robobt.match.recording.recording import Timeline
+from robobt.match.recording.statistics import recorded_statistics
 from robobt.match.recording.stores import plain
 from robobt.skills.store import GoalLine
 from robobt.world.game import GameState
@@ -119,6 +121,7 @@ def page_data(recording: Recording) -> dict[str, object]:
         "outcome": plain(recording.outcome),
         "field": header.field.model_dump(mode="json"),
         "teams": dict(header.teams),
+        "figures": {name: asdict(team) for name, team in recorded_statistics(recording).items()},
         "frames": frames,
         "times": _base64(recording.times[::stride].astype("<f4").tobytes()),
         "ball": _int16(ball_rows * 1000.0),

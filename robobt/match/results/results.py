@@ -6,12 +6,13 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, fields
 from functools import cache
 from statistics import fmean, variance
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from robobt.match.results.teams import TeamResult
 from robobt.statistics import wilson_interval
 
 _AS_WRITTEN = ConfigDict(extra="forbid", allow_inf_nan=False)
@@ -59,6 +60,7 @@ class MatchResult:
         robots: figures of each robot by its name ("blue 0").
         trace: hash over every true state; equal traces are equal matches.
         wall_time: how long it took to play, without compiling [s]; all that may differ between two runs.
+        teams: figures of each team by its name ("blue"), where a referee watched.
     """
 
     __pydantic_config__ = _AS_WRITTEN
@@ -75,6 +77,7 @@ class MatchResult:
     robots: Mapping[str, RobotResult]
     trace: str
     wall_time: float = 0.0
+    teams: Mapping[str, TeamResult] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, object]:
         """Return plain data; the keys are the attributes' names."""
@@ -179,6 +182,7 @@ class Summary:
         robots: figures by robot.
         real_time_factor: simulated time over the time spent playing, on one core, less that spent compiling.
         trace: hash over the trials' traces in order; equal for equal runs.
+        teams: by team the figures of :class:`~robobt.match.results.teams.TeamResult` by their names.
     """
 
     scenario: str
@@ -192,6 +196,7 @@ class Summary:
     robots: Mapping[str, RobotSummary]
     real_time_factor: float
     trace: str
+    teams: Mapping[str, Mapping[str, Spread]]
 
     def to_json(self) -> dict[str, object]:
         """Return plain data; the keys are the attributes' names."""
@@ -240,7 +245,18 @@ def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
         },
         real_time_factor=simulated / wall_time if wall_time > 0.0 else 0.0,
         trace=hashlib.blake2b("".join(traces).encode(), digest_size=16).hexdigest(),
+        teams={
+            name: _team([result.teams[name] for result in ordered if name in result.teams])
+            for name in ordered[0].teams
+        },
     )
+
+
+def _team(results: Sequence[TeamResult]) -> dict[str, Spread]:
+    return {
+        figure.name: Spread.of(getattr(result, figure.name) for result in results)
+        for figure in fields(TeamResult)
+    }
 
 
 def _goals(scores: Sequence[int], traces: Sequence[str]) -> GoalCount:

@@ -6,6 +6,7 @@ import pytest
 
 from robobt.match import MatchResult, RobotResult, Scenario, run_trials, summarise
 from robobt.match.results.file import ResultsFile, ResultsFileError
+from robobt.match.results.teams import TeamResult
 from robobt.match.scenario.scenario import scenario_from
 from robobt.world.protocol import World
 from robobt.worlds import sim_world
@@ -26,6 +27,7 @@ def trial(number: int, outcome: str = "goal_blue", **changes: object) -> MatchRe
         robots={"blue 0": RobotResult(1.0 + number, 0.25, 1), "yellow 0": RobotResult()},
         trace=f"{number:032x}",
         wall_time=0.5,
+        teams={"blue": TeamResult(goals=number, possession=0.5), "yellow": TeamResult()},
     )
     return replace(result, **changes)  # type: ignore[arg-type]
 
@@ -39,6 +41,11 @@ class TestSummary:
         assert summary.outcomes["saved"].count == 72
         assert summary.goals["blue"].total == summary.goals["blue"].trials.count == 28
         assert summary.goals["yellow"].total == 0
+
+    def test_each_figure_of_a_team_has_its_mean(self):
+        summary = summarise([trial(i) for i in range(3)])
+        assert summary.teams["blue"]["goals"].mean == 1.0
+        assert summary.teams["yellow"]["possession"].mean == 0.0
 
     def test_one_trial_repeated_has_no_interval(self):
         summary = summarise([trial(i, trace="same") for i in range(20)])

@@ -1,0 +1,262 @@
+"""What each team did in a match, counted as the league's analysts count; from frames alone.
+
+The same counting serves a match that is being played, a recording and a league's log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import hypot
+from typing import Protocol
+
+import numpy as np
+from pydantic import ConfigDict
+
+from robobt.match.referee.events import EventKind
+from robobt.match.referee.touches import Touches
+from robobt.match.referee.verdicts import FOULS
+from robobt.skills.aim.raters import RATERS
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.world.game import GameState, Restart, Team
+from robobt.world.geometry import Point, distance
+from robobt.world.rules import ball_out
+from robobt.world.state import Frame, RobotId, RobotState
+
+_KICKED = 1.0
+"""A ball that leaves a robot faster than this was kicked, not lost [m/s]."""
+
+_SHOT = 2.0
+"""A ball that is faster than this on its way into the goal is a shot [m/s]."""
+
+_MEANT = 1.0
+"""A kick whose line passes a team-mate ahead within this distance is a pass [m]."""
+
+_SHORTEST_PASS = 0.3
+"""A ball that a team-mate touches nearer to where it was kicked was handed on, not passed [m]."""
+
+_TAKEN = (Restart.KICKOFF, Restart.FREE_KICK)
+
+_JUMP = 0.5
+"""A robot or ball that is farther from where it was a frame before was put there [m]."""
+
+
+class TeamEvent(Protocol):
+    """An event as referees and recordings have it: its kind by the league's name, and who did it."""
+
+    @property
+    def kind(self) -> str:
+        """The league's name in lower case."""
+
+    @property
+    def team(self) -> Team | None:
+        """Who did it."""
+
+
+@dataclass(slots=True)
+class TeamResult:
+    """One team's figures in one match.
+
+    Attributes:
+        goals: the score.
+        passes: kicks towards a team-mate that were no shots; ``passes_completed`` of them were next
+            touched by a team-mate, ``passes_intercepted`` by an opponent.
+        shots_on_goal: kicks of at least 2 m/s whose line led into the goal.
+        expected_goals: sum of the probabilities that a goalkeeper like the real ones lets them in,
+            by the rater ``expected_goal``.
+        possession: share of the time in play in which this team had touched the ball last.
+        distance: that its robots drove, together [m].
+        fouls, yellow_cards, red_cards: as the referee counts them.
+        placements, placements_succeeded: ball placements that it was asked for, and that it did.
+        restarts, restarts_kept: own kick-offs and free kicks that came into play, taken or not; those
+            in which the next to touch the ball, the kicker aside, was of this team.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    goals: int = 0
+    passes: int = 0
+    passes_completed: int = 0
+    passes_intercepted: int = 0
+    shots_on_goal: int = 0
+    expected_goals: float = 0.0
+    possession: float = 0.0
+    distance: float = 0.0
+    fouls: int = 0
+    yellow_cards: int = 0
+    red_cards: int = 0
+    placements: int = 0
+    placements_succeeded: int = 0
+    restarts: int = 0
+    restarts_kept: int = 0
+
+
+@dataclass(slots=True)
+class _Flight:
+    """A kicked ball that nobody has touched yet."""
+
+    kicker: RobotId
+    start: Point
+    is_pass: bool
+
+
+class TeamStatistics:
+    """Follows a match frame by frame; frames are true and seen from blue's side."""
+
+    def __init__(self) -> None:
+        self._teams = {team: TeamResult() for team in Team}
+        self._touches = Touches()
+        self._before: Frame | None = None
+        self._holder: RobotId | None = None
+        self._flight: _Flight | None = None
+        self._placing: Team | None = None
+        self._pending: Team | None = None
+        self._restarted: Team | None = None
+        self._taker: RobotId | None = None
+        self._cards = dict.fromkeys(Team, 0)
+        self._owner: Team | None = None
+        self._owned = dict.fromkeys(Team, 0)
+        self._rater = RATERS["expected_goal"]()
+
+    def update(self, frame: Frame, game: GameState, events: Iterable[TeamEvent] = ()) -> None:
+        """Take in the next frame, the state of the game as of it and what happened in it."""
+        self._touches.watch(frame)
+        for event in events:
+            self._count(event)
+        for team in Team:
+            figures, status = self._teams[team], game.status(team)
+            figures.goals = game.blue_score if team is Team.BLUE else game.yellow_score
+            figures.red_cards = status.red_cards
+        self._follow_cards(game)
+        self._drive(frame)
+        self._follow_restart(game)
+        if game.in_play and not ball_out(frame.field, frame.ball.position):
+            self._follow_ball(frame)
+        else:
+            if self._flight is not None and self._flight.is_pass:
+                self._teams[self._flight.kicker.team].passes += 1
+            # The kick that takes a restart is one that leaves its taker once the ball is in play.
+            self._holder, self._flight = self._taker, None
+        self._before = frame
+
+    def result(self) -> dict[str, TeamResult]:
+        """Return the figures so far, by the team's name."""
+        owned = sum(self._owned.values())
+        return {
+            team.value: replace(figures, possession=self._owned[team] / owned if owned else 0.0)
+            for team, figures in self._teams.items()
+        }
+
+    def _count(self, event: TeamEvent) -> None:
+        if event.team is None:
+            return
+        figures = self._teams[event.team]
+        if event.kind in FOULS:
+            figures.fouls += 1
+        elif event.kind == EventKind.PLACEMENT_SUCCEEDED:
+            figures.placements_succeeded += 1
+
+    def _follow_cards(self, game: GameState) -> None:
+        before = self._cards
+        self._cards = {team: game.status(team).yellow_cards for team in Team}
+        for team in Team:
+            self._teams[team].yellow_cards += max(0, self._cards[team] - before[team])
+
+    def _drive(self, frame: Frame) -> None:
+        if self._before is None:
+            return
+        known = self._before.robots()
+        for robot, state in frame.robots().items():
+            last = known.get(robot)
+            if last is not None:
+                way = distance(last.position, state.position)
+                if way < _JUMP:
+                    self._teams[robot.team].distance += way
+
+    def _follow_restart(self, game: GameState) -> None:
+        placing = game.restart_team if game.restart is Restart.BALL_PLACEMENT else None
+        if placing is not None and placing is not self._placing:
+            self._teams[placing].placements += 1
+        self._placing = placing
+        if game.restart in _TAKEN and game.may_touch and not game.stopped:
+            takers = [robot for robot in self._touches.now if robot.team is game.restart_team]
+            if self._pending is None or takers:
+                self._taker = takers[0] if takers else None
+            self._pending, self._restarted = game.restart_team, None
+        elif not game.in_play:
+            self._pending = self._restarted = self._taker = None
+        elif self._pending is not None:
+            self._restarted, self._pending = self._pending, None
+            self._teams[self._restarted].restarts += 1
+
+    def _follow_ball(self, frame: Frame) -> None:
+        now = self._touches.now
+        if now:
+            toucher = now[0] if self._holder not in now else self._holder
+            assert toucher is not None
+            self._touched(toucher, frame)
+            self._holder = toucher
+        elif self._holder is not None:
+            self._left(self._holder, frame)
+            self._holder = None
+        if self._owner is not None:
+            self._owned[self._owner] += 1
+
+    def _touched(self, toucher: RobotId, frame: Frame) -> None:
+        self._owner = toucher.team
+        if self._restarted is not None and toucher != self._taker:
+            self._teams[self._restarted].restarts_kept += toucher.team is self._restarted
+            self._restarted = self._taker = None
+        flight, self._flight = self._flight, None
+        if flight is None or not flight.is_pass or toucher == flight.kicker:
+            return
+        figures = self._teams[flight.kicker.team]
+        if toucher.team is not flight.kicker.team:
+            figures.passes += 1
+            figures.passes_intercepted += 1
+        elif distance(flight.start, frame.ball.position) >= _SHORTEST_PASS:
+            figures.passes += 1
+            figures.passes_completed += 1
+
+    def _left(self, kicker: RobotId, frame: Frame) -> None:
+        """Judge the ball that has just left a robot: lost, shot or passed."""
+        before = self._before
+        if before is None or frame.ball.speed < _KICKED:
+            return
+        view, seen = before.seen_by(kicker.team), frame.seen_by(kicker.team)
+        me = view.robot(kicker.number)
+        if me is None:
+            return
+        at = _goal_crossing(seen)
+        if at is not None and seen.ball.speed >= _SHOT:
+            figures = self._teams[kicker.team]
+            figures.shots_on_goal += 1
+            figures.expected_goals += self._chance(view, me, at)
+            return
+        self._flight = _Flight(kicker, frame.ball.position, _is_pass(seen, me))
+
+    def _chance(self, view: Frame, me: RobotState, y: float) -> float:
+        assert isinstance(self._rater, ExpectedGoal)
+        points = np.array([[view.field.half_length, y]])
+        chances = self._rater.chances(view, view.ball.position, me, points)
+        return 0.0 if chances is None else float(chances[0])
+
+
+def _goal_crossing(view: Frame) -> float | None:
+    """Return the y at which the ball's line enters the opponents' goal [m]; None where it does not."""
+    ball, field = view.ball, view.field
+    if ball.vx <= 0.0 or ball.x >= field.half_length:
+        return None
+    y = ball.y + ball.vy * (field.half_length - ball.x) / ball.vx
+    return y if abs(y) < field.goal_width / 2 else None
+
+
+def _is_pass(view: Frame, me: RobotState) -> bool:
+    ball = view.ball
+    speed = hypot(ball.vx, ball.vy)
+    ux, uy = ball.vx / speed, ball.vy / speed
+    for mate in view.own:
+        dx, dy = mate.x - ball.x, mate.y - ball.y
+        if mate.id != me.id and ux * dx + uy * dy > 0.0 and abs(ux * dy - uy * dx) < _MEANT:
+            return True
+    return False
