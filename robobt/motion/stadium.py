@@ -6,7 +6,13 @@ Source: RoboCup SSL rules, chapter "Ball Placement": 0.5 m from the segment betw
 from __future__ import annotations
 
 from robobt.world.game import Restart
-from robobt.world.geometry import Point, closest_point_on_segment, distance, segments_distance
+from robobt.world.geometry import (
+    Point,
+    closest_point_on_segment,
+    distance,
+    segment_distance,
+    segments_distance,
+)
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
@@ -20,8 +26,8 @@ _CLEAR = 0.1
 def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     """Return ``goal``, or where to go first while the opponents place the ball between.
 
-    That is straight out of the stadium for a robot inside it; any other stays where it is
-    until the ball has passed, rather than go round.
+    A robot inside goes straight out of the stadium unless ``goal`` is outside; any other stays
+    where it is until the ball has passed, rather than go round.
     """
     game = frame.game
     spot = game.placement
@@ -31,6 +37,8 @@ def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     keep = STOP_DISTANCE + ROBOT_RADIUS + _MARGIN
     here = closest_point_on_segment(me.position, ball, spot)
     gap = distance(here, me.position)
+    if gap < keep and segment_distance(goal, ball, spot) >= keep:
+        return goal
     if 0.0 < gap < keep:
         share = (keep + _CLEAR) / gap
         return (here[0] + share * (me.x - here[0]), here[1] + share * (me.y - here[1]))

@@ -53,6 +53,11 @@ def penalty_in_play(team: Team) -> GameState:
     return GameState(RefereeCommand.NORMAL_START, penalty=team)
 
 
+def placement(spot: Point, team: Team) -> GameState:
+    command = RefereeCommand[f"BALL_PLACEMENT_{team.name}"]
+    return GameState(command, restart=Restart.BALL_PLACEMENT, restart_team=team, placement=spot)
+
+
 class Drive:
     """One skill of robot ``me``, everything else at rest.
 

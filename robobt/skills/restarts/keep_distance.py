@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from dataclasses import field
+from math import cos, inf, pi, sin
 
 from robobt.motion.path_planner import allowed_target
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.game import Restart
-from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
+from robobt.world.geometry import (
+    Point,
+    closest_point_on_segment,
+    direction,
+    distance,
+    segment_distance,
+    segments_distance,
+)
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _MARGIN = 0.05
-_TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 2.5, -2.5, pi)
+_TURNS = (0.0, *(side * step * pi / 12.0 for step in range(1, 12) for side in (1.0, -1.0)), pi)
+_REACHES = (1.0, 1.5, 2.5)
+"""Which ways out are tried: turned so far from straight away, and so many times as far."""
+
+_DETOUR = 0.2
+"""Gap to the ball that a way out has to win for each metre that it is longer."""
 
 
 @skill
@@ -31,34 +44,58 @@ class KeepDistance(Skill):
     distance: float = STOP_DISTANCE
     goalkeeper: bool = False
 
+    _refuge: Point | None = field(default=None, init=False)
+
+    def on_start(self) -> None:
+        """Begin without a place to go to."""
+        self._refuge = None
+
     def on_running(self) -> Status:
         """Drive straight away from the place that is too near."""
-        frame, me = self.frame, self.me
+        frame, me, game = self.frame, self.me, self.frame.game
         keep = self.distance + ROBOT_RADIUS + _MARGIN
-        game, places = frame.game, [frame.ball.position]
-        if game.placement is not None and not game.in_play:
-            # First of all from where the ball will lie; where it rolls now it will not stay.
-            places.insert(0, game.placement)
-            if game.restart is Restart.BALL_PLACEMENT:
-                # Whoever places the ball needs the way to the spot free, too.
-                places = [closest_point_on_segment(me.position, frame.ball.position, game.placement)]
-        near = [place for place in places if distance(me.position, place) < keep]
+        ball = frame.ball.position
+        spot = ball if game.placement is None or game.in_play else game.placement
+        ways = [(spot, spot), (ball, ball)]
+        if game.restart is Restart.BALL_PLACEMENT:
+            # Whoever places the ball needs the way to the spot free, too.
+            ways = [(ball, spot)]
+        near = [way for way in ways if segment_distance(me.position, *way) < keep]
         if not near:
             return self.succeed("far enough")
-        # Aimed farther than needed, so that the robot does not creep up to the limit.
-        target = way_out(frame, me, near[0], keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
-        self.drive_to(target, near[0], goalkeeper=self.goalkeeper, thereabouts=True)
+        # Where the ball will lie counts first; where it rolls now it will not stay.
+        way = near[0]
+        if self._refuge is None or segment_distance(self._refuge, *way) < keep:
+            # Aimed farther than needed, so that the robot does not creep up to the limit.
+            self._refuge = way_out(frame, me, way, keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
+        place = closest_point_on_segment(me.position, *way)
+        self.drive_to(self._refuge, place, goalkeeper=self.goalkeeper, thereabouts=True)
         return self.run("clearing the ball")
 
 
-def way_out(frame: Frame, me: RobotState, place: Point, reach: float, *, goalkeeper: bool = False) -> Point:
-    """Return a point straight away from ``place``, or as little aside as robots may stand there.
+def way_out(
+    frame: Frame, me: RobotState, way: tuple[Point, Point], reach: float, *, goalkeeper: bool = False
+) -> Point:
+    """Return a point ``reach`` away from the segment ``way``, straight away if robots may stand there.
 
-    ``reach`` is how far to go [m]; ``goalkeeper`` says whether the robot may stay in its own defence area.
+    Else, as in a corner, the one on the way to which the robot keeps farthest from it; for lack of any,
+    the middle of the field. ``goalkeeper`` says whether the robot may stay in its own defence area [m].
     """
+    place = closest_point_on_segment(me.position, *way)
     away = direction(place, me.position)
-    for turn in _TURNS:
-        target = (place[0] + reach * cos(away + turn), place[1] + reach * sin(away + turn))
-        if allowed_target(frame, me, target, goalkeeper=goalkeeper) == target:
-            return target
-    return (0.0, 0.0)
+    best: Point = (0.0, 0.0)
+    most = -inf
+    for far in _REACHES:
+        for turn in _TURNS:
+            angle = away + turn
+            target = (place[0] + far * reach * cos(angle), place[1] + far * reach * sin(angle))
+            if segment_distance(target, *way) < reach - 1e-9:
+                continue
+            if allowed_target(frame, me, target, goalkeeper=goalkeeper) != target:
+                continue
+            if turn == 0.0:
+                return target
+            gain = segments_distance(me.position, target, *way) - _DETOUR * distance(me.position, target)
+            if gain > most:
+                best, most = target, gain
+    return best

@@ -100,7 +100,7 @@ class PlaceBall(DrivingSkill):
         else:
             # One way out is settled on: near a wall there are two, which are equally long.
             if self._refuge is None:
-                self._refuge = way_out(frame, me, ball.position, _CLEAR * 1.1)
+                self._refuge = way_out(frame, me, (ball.position, ball.position), _CLEAR * 1.1)
             self.store.command = travel(frame, me, self._refuge, me.heading, me.limits, avoid_ball=True)
         return self.run("backing off")
 

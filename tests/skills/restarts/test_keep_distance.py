@@ -7,8 +7,9 @@ import pytest
 from robobt.skills.restarts.keep_distance import KeepDistance
 from robobt.tree import Status
 from robobt.world import Restart, Team
+from robobt.world.geometry import segment_distance
 from tests.skills.fixed_world import robot
-from tests.skills.refereed import STOP, Drive, free_kick, stop_before
+from tests.skills.refereed import STOP, Drive, free_kick, placement, stop_before
 
 CLEAR = 0.5 + 0.09
 
@@ -44,3 +45,10 @@ def test_there_is_a_way_out_of_every_corner(ball: tuple[float, float]) -> None:
     me = robot(ball[0] + 0.1, ball[1] + 0.1, number=1)
     drive = Drive(KeepDistance(), me, free_kick(Team.YELLOW, ball), ball, seconds=4.0)
     assert hypot(drive.end.x - ball[0], drive.end.y - ball[1]) >= CLEAR
+
+
+@pytest.mark.parametrize("me", [(4.69, 3.19), (4.7, 2.5), (4.2, 3.2)], ids=str)
+def test_there_is_a_way_out_from_between_a_placement_and_the_corner(me: tuple[float, float]) -> None:
+    ball, spot = (4.73, 2.72), (4.3, 2.8)
+    drive = Drive(KeepDistance(), robot(*me, number=1), placement(spot, Team.YELLOW), ball, seconds=2.0)
+    assert segment_distance(drive.end.position, ball, spot) >= CLEAR

@@ -11,12 +11,7 @@ from robobt.world.geometry import Point
 from robobt.world.state import Frame
 from tests.simulation import Trial, blue
 from tests.skills.fixed_world import robot
-from tests.skills.refereed import STOP, Drive, free_kick
-
-
-def placement(spot: Point, team: Team = Team.BLUE) -> GameState:
-    command = RefereeCommand[f"BALL_PLACEMENT_{team.name}"]
-    return GameState(command, restart=Restart.BALL_PLACEMENT, restart_team=team, placement=spot)
+from tests.skills.refereed import STOP, Drive, free_kick, placement
 
 
 def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
@@ -25,7 +20,7 @@ def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
 
     def observe_placement() -> Frame:
         frame = observe()
-        frame.game = placement(spot)
+        frame.game = placement(spot, Team.BLUE)
         return frame
 
     trial.world.observe = observe_placement  # type: ignore[method-assign]
