@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import copysign
 
 from robobt.match.players import Player
 from robobt.motion.path_planner import travel
 from robobt.world.command import RobotCommand
+from robobt.world.rules import SUBSTITUTION_REACH
 from robobt.world.state import Frame, RobotState
 
 _log = logging.getLogger(__name__)
 
-_ASIDE = 0.4
-"""How far from the defence area a robot that has left stands, and from the next one [m]."""
+_ASIDE = 0.3
+"""How far from one another robots stand that have left [m]."""
 
 
 class Lineup:
@@ -78,11 +79,15 @@ class Lineup:
         team.attacker = team.agreed_on = None
 
 
-def leave(view: Frame, me: RobotState) -> RobotCommand:
-    """Drive off the field: behind the own goal line, where a game controller does not count robots."""
+def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand:
+    """Drive off the field over the nearer touch line, beside the half-way line in the own half.
+
+    ``leaving`` are the numbers of all robots that leave; those on one side stand in order of their numbers.
+    """
     field = view.field
-    behind = -field.outer[0]
-    y = copysign(field.defense_width / 2 + _ASIDE, me.y)
-    taken = [robot for robot in view.own if robot.id > me.id and robot.x < -field.half_length]
-    y = copysign(abs(y) + _ASIDE * len([robot for robot in taken if robot.y * y > 0.0]), y)
-    return travel(view, me, (behind, y), 0.0, me.limits)
+    before = [
+        robot for robot in view.own if robot.id in leaving and robot.id < me.id and robot.y * me.y > 0.0
+    ]
+    x = max(-SUBSTITUTION_REACH, -_ASIDE * (len(before) + 0.5))
+    y = copysign((field.half_width + field.outer[1]) / 2, me.y)
+    return travel(view, me, (x, y), 0.0, me.limits, avoid_ball=True)

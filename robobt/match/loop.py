@@ -28,6 +28,7 @@ from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
+from robobt.world.rules import without_absent
 from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)
@@ -200,15 +201,16 @@ class Match:
         halted = frame.game.halted
         # Both views before any tree is ticked, for they may share the frame's objects.
         views = [(lineup, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
-        for lineup, view in views:
-            leaving = lineup.follow(view)
+        for lineup, everybody in views:
+            # A robot that has left is not there for the trees; it is still driven.
+            view, leaving = without_absent(everybody, everybody.game), lineup.follow(everybody)
+            for me in everybody.own if leaving else ():
+                if me.id in leaving:
+                    commands[lineup.players[me.id].robot] = leave(everybody, me, leaving)
             kept = KeptView(view)
             for me in view.own:
                 player = lineup.players.get(me.id)
-                if player is None:
-                    continue
-                if me.id in leaving:
-                    commands[player.robot] = leave(view, me)
+                if player is None or me.id in leaving:
                     continue
                 command = player.decide(view, me)
                 if kept.mend() and player.robot not in self._spoilers:

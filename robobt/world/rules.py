@@ -12,11 +12,12 @@ Source: RoboCup SSL rules, chapters "Scoring Goals", "Ball Leaves The Field" and
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from math import copysign, cos, hypot, pi, radians, sin
 
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
-from robobt.world.game import Team
+from robobt.world.game import GameState, Team
 from robobt.world.geometry import Point
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
 
@@ -200,6 +201,21 @@ def taken_off(field: FieldGeometry, robots: Iterable[RobotState], most: int | No
         robot.id for robot in robots if abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
     ]
     return frozenset(sorted(outside)[-excess:])
+
+
+def without_absent(frame: Frame, game: GameState) -> Frame:
+    """Return the frame without the robots that count as off the field; itself where all play."""
+    own, opponents = game.status(frame.team).max_robots, game.status(frame.team.other).max_robots
+    if (own is None or len(frame.own) <= own) and (opponents is None or len(frame.opponents) <= opponents):
+        return frame
+    off = taken_off(frame.field, frame.own, own), taken_off(frame.field, frame.opponents, opponents)
+    if not off[0] and not off[1]:
+        return frame
+    return replace(
+        frame,
+        own=tuple(robot for robot in frame.own if robot.id not in off[0]),
+        opponents=tuple(robot for robot in frame.opponents if robot.id not in off[1]),
+    )
 
 
 # Touches and possession.

@@ -75,22 +75,35 @@ def test_a_goalkeeper_that_does_not_play_changes_nothing(caplog: pytest.LogCaptu
     assert len([record for record in caplog.records if "does not play here" in record.message]) == 1
 
 
+def beside(frame: Frame) -> set[int]:
+    """Numbers of the own robots that stand beside the field, where they count as taken off."""
+    return {robot.id for robot in frame.own if abs(robot.y) > 3.0 and abs(robot.x) <= 1.0}
+
+
 def test_a_team_with_a_card_takes_a_robot_off_and_brings_it_back() -> None:
     controlled = Controlled()
     controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=5))
-    frame = controlled.play(8.0).seen_by(Team.YELLOW)
-    # Where a controller does not count robots: 0.09 m behind the goal line and farther.
-    assert [robot.id for robot in frame.own if robot.x < -4.5 - 0.09] == [5]
+    frame = controlled.play(6.0).seen_by(Team.YELLOW)
+    assert beside(frame) == {5}
     controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=6))
-    frame = controlled.play(4.0).seen_by(Team.YELLOW)
-    assert not [robot.id for robot in frame.own if robot.x < -4.5]
+    assert not beside(controlled.play(3.0).seen_by(Team.YELLOW))
 
 
 def test_two_robots_leave_and_the_goalkeeper_stays() -> None:
     controlled = Controlled()
     controlled.game = replace(controlled.game, blue=TeamStatus(keeper=5, max_robots=4))
-    frame = controlled.play(8.0)
-    assert {robot.id for robot in frame.own if robot.x < -4.5 - 0.09} == {3, 4}
+    assert beside(controlled.play(6.0)) == {3, 4}
+
+
+def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:
+    controlled = Controlled()
+    controlled.game = replace(controlled.game, blue=TeamStatus(max_robots=5))
+    controlled.play(6.0)
+    for player in controlled.match.players:
+        if player.robot != RobotId(Team.BLUE, 5):
+            seen = player.store.frame.seen_by(Team.BLUE)
+            assert [robot.id for robot in seen.own] == [0, 1, 2, 3, 4]
+            assert len(seen.opponents) == 6
 
 
 def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:

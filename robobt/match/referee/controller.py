@@ -18,6 +18,7 @@ from robobt.match.referee.verdicts import HIGHEST_GOAL, PENALTY_BREACHES, resump
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import without_absent
 from robobt.world.state import Frame
 
 _SPOT_PATIENCE = 3.0
@@ -65,6 +66,7 @@ class Controller:
     def update(self, frame: Frame, events: Sequence[RefereeEvent]) -> Decision:
         """Decide on the next frame, seen from blue's side, in which ``events`` happened."""
         state, self._place = self.state, None
+        frame = without_absent(frame, state.game)
         state.ball = frame.ball.position
         if self._begun:
             state.pass_time(frame.time - state.time)
@@ -221,9 +223,7 @@ class Controller:
         if state.game.command is not RefereeCommand.STOP:
             return
         clear = clear and (
-            self._impatient
-            or settings.placement == "by_hand"
-            or stop_clear(frame, self._field, state.game, following)
+            self._impatient or settings.placement == "by_hand" or stop_clear(frame, state.game, following)
         )
         wait = 0.0 if state.placing.done else settings.stop_time
         if self._lasted(clear, wait) and state.elapsed >= state.least - _SLACK:

@@ -11,7 +11,7 @@ from robobt.match.referee.restarts import Resumption
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance
-from robobt.world.rules import STOP_DISTANCE, area_distance, own_side, taken_off
+from robobt.world.rules import STOP_DISTANCE, area_distance, own_side
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame
 
 _SPOT_TOLERANCE = 0.05
@@ -63,7 +63,7 @@ def needs_placement(frame: Frame, field: FieldGeometry, spot: Point) -> bool:
     )
 
 
-def stop_clear(frame: Frame, field: FieldGeometry, game: GameState, following: Resumption) -> bool:
+def stop_clear(frame: Frame, game: GameState, following: Resumption) -> bool:
     """Return whether robots let play go on after a STOP.
 
     No team has too many, and nobody is near the ball: at a free kick no opponent, else nobody at all.
@@ -73,9 +73,7 @@ def stop_clear(frame: Frame, field: FieldGeometry, game: GameState, following: R
     for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents)):
         most = game.status(team).max_robots
         if most is not None and len(robots) > most:
-            robots = tuple(it for it in robots if it.id not in taken_off(field, robots, most))
-            if len(robots) > most:
-                return False
+            return False
         if team is free_kick:
             continue
         for robot in robots:

@@ -10,7 +10,7 @@ from robobt.world.division import Division, division_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point
-from robobt.world.rules import ball_out, taken_off
+from robobt.world.rules import ball_out, without_absent
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
@@ -70,7 +70,7 @@ class Scene:
         """Take in the next frame; return whether another phase, or the same one anew, begins with it."""
         self.before = self.frame if self._seen else None
         self._seen = True
-        self.frame = frame = self._without_absent(frame, game)
+        self.frame = frame = without_absent(frame, game)
         self.game = game
         self.touches.watch(frame)
         ball = frame.ball.position
@@ -134,23 +134,6 @@ class Scene:
         ):
             return Phase.PENALTY
         return Phase.PLAY if game.restart is None else Phase.KICK
-
-    def _without_absent(self, frame: Frame, game: GameState) -> Frame:
-        blue, yellow = game.blue.max_robots, game.yellow.max_robots
-        if (blue is None or len(frame.own) <= blue) and (yellow is None or len(frame.opponents) <= yellow):
-            return frame
-        absent = taken_off(self.field, frame.own, blue), taken_off(self.field, frame.opponents, yellow)
-        return Frame(
-            frame.time,
-            frame.field,
-            frame.ball,
-            tuple(robot for robot in frame.own if robot.id not in absent[0]),
-            tuple(robot for robot in frame.opponents if robot.id not in absent[1]),
-            frame.team,
-            frame.period,
-            frame.game,
-            frame.last_touch,
-        )
 
 
 _PHASES = {

@@ -18,7 +18,7 @@ from robobt.match.referee.settings import RefereeSettings, in_seconds
 from robobt.match.referee.stages import Stages
 from robobt.world.division import division_of
 from robobt.world.field import FieldGeometry
-from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point
 
 PREPARATION_TIME = 10.0
@@ -33,6 +33,12 @@ RUNNING = frozenset(
     }
 )
 """Commands under which a team may play the ball, and time is counted."""
+
+
+_TIME_OUTS = {command: team for team, command in TIME_OUT.items()}
+
+_TOLD_EVERY = 0.1
+"""Where nothing else changes, the times that are left are told anew after this long [s]."""
 
 
 class MatchState:
@@ -73,7 +79,10 @@ class MatchState:
         self.deadline: float | None = None
         self.clear: float | None = None
         self.kick_spot: Point = (0.0, 0.0)
-        self._names: list[str] = []
+        self._names: tuple[str, ...] = ()
+        self._told: GameState | None = None
+        self._said: tuple[TeamStatus, TeamStatus, tuple[str, ...]] | None = None
+        self._told_at = 0.0
 
     @property
     def elapsed(self) -> float:
@@ -93,14 +102,13 @@ class MatchState:
             self.stages.played += seconds
             for record in self.records.values():
                 record.play_on(seconds)
-        for team, time_out in TIME_OUT.items():
-            if command is time_out:
-                self.records[team].time_out_left -= seconds
+        elif command in _TIME_OUTS:
+            self.records[_TIME_OUTS[command]].time_out_left -= seconds
 
     def record(self, event: RefereeEvent, *, counts: bool = True) -> None:
         """Note what happened; where it is a foul that ``counts`` it may cost a card."""
         self.events.append(event)
-        self._names.append(event.kind.value)
+        self._names += (event.kind.value,)
         if counts:
             for card in self.discipline.count(event):
                 self.record(card)
@@ -229,14 +237,17 @@ class MatchState:
 
     def _begin_play(self) -> None:
         self.stages.begin_play()
-        self._names.clear()
+        self._names = ()
 
     # What is told.
 
     def tell(self) -> None:
         """Bring the game state up to date."""
         blue, yellow = self.records[Team.BLUE], self.records[Team.YELLOW]
-        game = self.game
+        game, said = self.game, (blue.status(), yellow.status(), self._names)
+        if game is self._told and said == self._said and self.time - self._told_at < _TOLD_EVERY:
+            return
+        self._said, self._told_at = said, self.time
         self.game = GameState(
             game.command,
             self.stages.stage,
@@ -247,10 +258,11 @@ class MatchState:
             game.may_touch,
             game.placement,
             penalty=game.penalty,
-            blue=blue.status(),
-            yellow=yellow.status(),
-            events=tuple(self._names),
+            blue=said[0],
+            yellow=said[1],
+            events=said[2],
             upcoming=game.upcoming,
             action_time=None if self.deadline is None else self.deadline - self.time,
             stage_time=self.stages.left,
         )
+        self._told = self.game

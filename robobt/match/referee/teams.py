@@ -63,6 +63,8 @@ class TeamRecord:
     wants_substitution: bool = False
     continues: bool = False
     substituting: bool = False
+    _told: tuple[object, ...] = ()
+    _status: TeamStatus = field(default_factory=TeamStatus)
 
     @property
     def places(self) -> bool:
@@ -104,12 +106,8 @@ class TeamRecord:
         self.time_outs, self.time_out_left = EXTRA_TIME_OUTS, EXTRA_TIME_OUT_TIME
 
     def status(self) -> TeamStatus:
-        """Return what robots are told of it."""
-        return TeamStatus(
-            keeper=self.keeper,
-            max_robots=self.max_robots,
-            yellow_cards=len(self.yellow),
-            red_cards=self.red,
-            can_place_ball=self.places,
-            substituting=self.substituting,
-        )
+        """Return what robots are told of it; the same object until that changes."""
+        told = (self.keeper, self.max_robots, len(self.yellow), self.red, self.places, self.substituting)
+        if told != self._told:
+            self._told, self._status = told, TeamStatus(*told)
+        return self._status

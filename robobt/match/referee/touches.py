@@ -33,11 +33,12 @@ class Touches:
     def watch(self, frame: Frame) -> None:
         """Take in the next frame."""
         ball = frame.ball
+        x, y = ball.x, ball.y
         touching = []
         carrier: RobotState | None = None
         for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
             for robot in robots:
-                if abs(robot.x - ball.x) < 0.2 and abs(robot.y - ball.y) < 0.2:
+                if -0.2 < robot.x - x < 0.2 and -0.2 < robot.y - y < 0.2:
                     identity = RobotId(team, robot.id)
                     if touches(robot, ball):
                         touching.append(identity)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from math import atan2, hypot
+from operator import attrgetter
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Cooldown, Rule, event, team_event
@@ -35,18 +37,23 @@ _PUSH_ANGLE = 0.7
 _FOLLOWS = 0.05
 """A pusher moves at least this fast towards the pushed robot, which does not do so [m/s]."""
 
+_place = attrgetter("x")
+
 Pair = tuple[int, int]
 """Numbers of a blue and a yellow robot."""
 
 
 def close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotState]]:
     """Find each blue and yellow robot whose centres are no farther apart than ``reach`` [m]."""
-    yellows = [(robot.x, robot.y, robot) for robot in frame.opponents]
+    yellows = sorted(frame.opponents, key=_place)
+    places = [robot.x for robot in yellows]
     for blue in frame.own:
-        x, y = blue.x, blue.y
-        for other_x, other_y, yellow in yellows:
-            dx, dy = other_x - x, other_y - y
-            if -reach < dx < reach and -reach < dy < reach and hypot(dx, dy) <= reach:
+        x = blue.x
+        for yellow in yellows[bisect_left(places, x - reach) :]:
+            dx = yellow.x - x
+            if dx > reach:
+                break
+            if hypot(dx, yellow.y - blue.y) <= reach:
                 yield blue, yellow
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import hypot
+from math import hypot, inf
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Rule, event, team_event
@@ -23,6 +23,9 @@ _SMOOTHING, _STILL = 0.97, 0.005
 
 _LEARNT_AT = 0.01
 """Frames of this length are those of the moving average [s]."""
+
+_KEEP_OFF = STOP_DISTANCE + ROBOT_RADIUS
+"""Opponents' centres are at least this far from the way of the ball. Source: SSL rules [m]."""
 
 _INTERFERING = 2.0
 """Opponents have this long to leave the way of the ball. Source: SSL rules [s]."""
@@ -82,7 +85,7 @@ class PlacementInterference(Rule):
     phases = frozenset({Phase.PLACEMENT})
 
     def __init__(self) -> None:
-        self._since: dict[RobotId, float] = {}
+        self._since: dict[int, float] = {}
 
     def enter(self, _: Scene) -> None:
         """Begin a placement."""
@@ -94,12 +97,20 @@ class PlacementInterference(Rule):
         if placing is None or spot is None:
             return
         other = placing.other
+        # Most robots are clear of the rectangle around ball and spot, which is quicker to see.
+        low_x, high_x = min(ball[0], spot[0]) - _KEEP_OFF, max(ball[0], spot[0]) + _KEEP_OFF
+        low_y, high_y = min(ball[1], spot[1]) - _KEEP_OFF, max(ball[1], spot[1]) + _KEEP_OFF
         for robot in scene.team(other):
-            identity = RobotId(other, robot.id)
-            if segment_distance(robot.position, ball, spot) > STOP_DISTANCE + ROBOT_RADIUS:
-                self._since.pop(identity, None)
+            number, x, y = robot.id, robot.x, robot.y
+            if (
+                not (low_x < x < high_x and low_y < y < high_y)
+                or segment_distance((x, y), ball, spot) > _KEEP_OFF
+            ):
+                if self._since:
+                    self._since.pop(number, None)
                 continue
-            since = self._since.setdefault(identity, scene.time)
+            since = self._since.setdefault(number, scene.time)
             if scene.time - since > _INTERFERING:
-                self._since[identity] = float("inf")
+                self._since[number] = inf
+                identity = RobotId(other, number)
                 yield event(scene, EventKind.BOT_INTERFERED_PLACEMENT, identity, robot.position)

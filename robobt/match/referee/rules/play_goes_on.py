@@ -55,23 +55,26 @@ class TooManyRobots(Rule):
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report a team every two seconds: its opponents may want play to go on."""
         self._played += scene.frame.period
-        for team in Team:
-            most = scene.game.status(team).max_robots
+        for team, status, robots in (
+            (Team.BLUE, scene.game.blue, scene.frame.own),
+            (Team.YELLOW, scene.game.yellow, scene.frame.opponents),
+        ):
+            most, cards = status.max_robots, self._cards[team]
             if most is None:
                 continue
             before = self._most.get(team, most)
+            if most != before:
+                cards += [self._played] * (before - most)
             self._most[team] = most
-            cards = self._cards[team]
-            cards += [self._played] * max(0, before - most)
-            if len(scene.team(team)) <= most or scene.elapsed < _RUNNING:
+            if len(robots) <= most or scene.elapsed < _RUNNING:
                 continue
             recent = [card for card in cards if self._played - card < _TIME_TO_LEAVE]
-            if len(scene.team(team)) > most + len(recent) and self._again.ready(team, scene.time):
+            if len(robots) > most + len(recent) and self._again.ready(team, scene.time):
                 yield team_event(
                     scene,
                     EventKind.TOO_MANY_ROBOTS,
                     team,
                     num_robots_allowed=most,
-                    num_robots_on_field=len(scene.team(team)),
+                    num_robots_on_field=len(robots),
                     ball_location=scene.frame.ball.position,
                 )
