@@ -7,23 +7,25 @@ the players step by step under one simulated clock. ``pytest -m slow -s`` prints
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import hypot
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from robobt.league.referee.lockstep import LockstepController
+from robobt.league.referee.process import GameControllerProcess
+from robobt.league.referee.setup import command, stage
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_scenario
-from robobt.league.wire.messages import Referee
+from robobt.league.wire.messages import Change, Config, Referee
 from robobt.league.wire.sockets import Sender
-from robobt.league.wire.tracker import write_tracked
 from robobt.match import Match, load_scenario
 from robobt.sim import settings_from
 from robobt.world import Frame, RobotId, Team
+from robobt.world.game import Stage
 from tests.league.lockstep import LockstepWorld
-from tests.league.official_controller import OfficialController, change, command, team_state
 from tests.league.served import free_endpoints
 
 BINARY = os.environ.get("ROBOBT_GAME_CONTROLLER", "")
@@ -39,11 +41,12 @@ HULL = 0.09
 class Refereed:
     """A scenario played on a served field under the official controller."""
 
-    def __init__(self, name: str, folder: Path, blue_on_positive_half: bool = False) -> None:
+    def __init__(self, name: str, blue_on_positive_half: bool = False) -> None:
         scenario = load_scenario(name).without_referee().model_copy(update={"period": 1 / 60})
         endpoints = free_endpoints("127.0.0.1")
         settings = settings_from(scenario.simulator)
-        self.controller = OfficialController(BINARY, folder)
+        self.process = GameControllerProcess(Path(BINARY))
+        self.controller = LockstepController(self.process.stream)
         self.server = SimServer(served_scenario(scenario), endpoints)
         self.world = LockstepWorld(
             self.server,
@@ -58,31 +61,27 @@ class Refereed:
         self._sender = Sender(*endpoints.referee)
         self._frames = 0
         self.message = Referee()
-        self.controller.step(0.0, None, {2: 1})
-        sides = {"blue": blue_on_positive_half, "yellow": not blue_on_positive_half}
-        self._hear(
-            # Nothing by itself: the test gives the commands.
-            {3: {5: 0}},
-            change(12, {1: 2, 2: 2}),
-            *[
-                team_state(team, name=team, on_positive_half=side, can_place_ball=True)
-                for team, side in sides.items()
-            ],
-        )
+        self.controller.ask(0.0)
+        self.controller.answer()
+        sides = {Team.BLUE: blue_on_positive_half, Team.YELLOW: not blue_on_positive_half}
+        changes = [team_state(team, on_positive_half=side) for team, side in sides.items()]
+        # Nothing by itself: the test gives the commands.
+        division = Change(update_config_change={"division": "DIV_B", "first_kickoff_team": "BLUE"})
+        self.controller.change([division, *changes], Config(auto_continue=False))
         self.match = Match(scenario, 1, lambda _: self.world)
 
     def close(self) -> None:
         self.world.close()
         self.server.close()
         self._sender.close()
-        self.controller.__exit__(None, None, None)
+        self.process.close()
 
-    def play(self, seconds: float, *inputs: dict[int, Any]) -> list[Frame]:
+    def play(self, seconds: float, *changes: Change) -> list[Frame]:
         """Play on, after changing the match; return the true frames."""
         frames = []
         for _ in range(round(seconds * 60)):
-            self._hear(*inputs)
-            inputs = ()
+            self._hear(changes)
+            changes = ()
             if not self.match.tick():
                 break
             frames.append(self.server.field.truth())
@@ -94,23 +93,26 @@ class Refereed:
             self.server.field.place_ball(x, y)
             self.play(2.5, command("STOP"))
 
-    def _hear(self, *inputs: dict[int, Any]) -> None:
+    def _hear(self, changes: Sequence[Change] = ()) -> None:
         self._frames += 1
-        truth = self.server.field.truth()
-        tracked = write_tracked(truth, self._frames, truth.time, "robobt-test")
-        data = self.controller.step(1.0 + self._frames / 60, tracked, *inputs)
-        self.message = Referee.FromString(data)
-        self._sender.send(data)
+        self.controller.change(changes)
+        self.controller.ask(1.0 + self._frames / 60, self.server.field.truth())
+        self.message = self.controller.answer()[-1]
+        self._sender.send(self.message.SerializeToString())
+
+
+def team_state(team: Team, **values: Any) -> Change:
+    """The change of what the controller knows of a team."""
+    wrapped = {name: {"value": value} for name, value in values.items()}
+    return Change(update_team_state_change={"for_team": team.name, **wrapped})
 
 
 @pytest.fixture
-def refereed(tmp_path: Path) -> Iterator[Callable[..., Refereed]]:
+def refereed() -> Iterator[Callable[..., Refereed]]:
     opened: list[Refereed] = []
 
     def open_one(name: str, **options: bool) -> Refereed:
-        folder = tmp_path / str(len(opened))
-        folder.mkdir()
-        opened.append(Refereed(name, folder, **options))
+        opened.append(Refereed(name, **options))
         return opened[-1]
 
     yield open_one
@@ -136,7 +138,7 @@ def test_halt_and_timeouts_stop_everybody_within_half_a_second(
     name: str, refereed: Callable[..., Refereed]
 ) -> None:
     game = refereed(name)
-    for order, team in (("HALT", None), ("TIMEOUT", "blue"), ("TIMEOUT", "yellow")):
+    for order, team in (("HALT", None), ("TIMEOUT", Team.BLUE), ("TIMEOUT", Team.YELLOW)):
         moving = game.play(1.5, command("FORCE_START"))
         assert max(map(fastest, moving)) > 0.5
         # On its way down from full speed the robot brakes; after that it stands.
@@ -160,7 +162,7 @@ def test_no_command_is_ignored(positive: bool, refereed: Callable[..., Refereed]
     assert all(min(nearest(frame, team) for team in Team) >= 0.49 for frame in stop[60:])
     for team in Team:
         game.stop_with_ball_at(0.0, 0.0)
-        frame = game.play(6.0, command("KICKOFF", team.value))[-1]
+        frame = game.play(6.0, command("KICKOFF", team))[-1]
         own = [it for robot, it in frame.robots().items() if robot.team is not team]
         say(f"KICKOFF {team.value}: opponents nearest {nearest(frame, team.other):.2f} m")
         assert nearest(frame, team.other) >= 0.49
@@ -170,17 +172,18 @@ def test_no_command_is_ignored(positive: bool, refereed: Callable[..., Refereed]
     for team in Team:
         spot = (1.5 * side[team], 1.0)
         game.stop_with_ball_at(*spot)
-        free = game.play(9.0, command("DIRECT", team.value))
+        free = game.play(9.0, command("DIRECT", team))
         taken = next(i for i, frame in enumerate(free) if frame.ball.speed > 0.5)
         say(f"DIRECT {team.value}: taken after {taken / 60:.1f} s")
         assert free[taken].last_touch is None or free[taken].last_touch.team is team
         assert min(nearest(frame, team.other) for frame in free[90:taken]) >= 0.45 if taken > 90 else True
     for team in Team:
         game.stop_with_ball_at(2.0 * side[team], -1.5)
-        target = {1: 0.5 * side[team], 2: 1.0}
-        placed = game.play(20.0, change(4, {1: target}), command("BALL_PLACEMENT", team.value))
+        target = {"x": 0.5 * side[team], "y": 1.0}
+        spot = Change(set_ball_placement_pos_change={"pos": target})
+        placed = game.play(20.0, spot, command("BALL_PLACEMENT", team))
         ball = placed[-1].ball
-        off = hypot(ball.x - target[1], ball.y - target[2])
+        off = hypot(ball.x - target["x"], ball.y - target["y"])
         say(f"BALL_PLACEMENT {team.value}: {off * 1000:.0f} mm off after 20 s, {ball.speed:.2f} m/s")
         assert off < 0.15
         assert ball.speed < 0.2
@@ -190,7 +193,7 @@ def test_no_command_is_ignored(positive: bool, refereed: Callable[..., Refereed]
     for team in Team:
         mark = -side[team] * (4.5 - 6.0)
         game.stop_with_ball_at(mark, 0.0)
-        ready = game.play(8.0, command("PENALTY", team.value))[-1]
+        ready = game.play(8.0, command("PENALTY", team))[-1]
         keeper = ready.robots()[RobotId(team.other, 0)]
         say(f"PENALTY {team.value}: keeper {abs(abs(keeper.x) - 4.5) * 1000:.0f} mm from its line")
         assert abs(abs(keeper.x) - 4.5) < 0.12
@@ -202,22 +205,22 @@ def test_no_command_is_ignored(positive: bool, refereed: Callable[..., Refereed]
 def test_cards_goalkeepers_and_stages_are_obeyed(refereed: Callable[..., Refereed]) -> None:
     game = refereed("six_v_six")
     game.play(2.0, command("STOP"))
-    off = game.play(10.0, change(5, {1: 1}))[-1]
+    off = game.play(10.0, Change(add_yellow_card_change={"for_team": "YELLOW"}))[-1]
     assert game.message.yellow.max_allowed_bots == 5
     # What the controller counts: not behind the own goal line.
     counted = [state for robot, state in off.robots().items() if robot.team is Team.YELLOW and state.x < 4.59]
     print(f"yellow card: {len(counted)} yellow robots on the field after 10 s")
     assert len(counted) == 5
-    kept = game.play(10.0, team_state("blue", goalkeeper=3))[-1].robots()
+    kept = game.play(10.0, team_state(Team.BLUE, goalkeeper=3))[-1].robots()
     assert game.message.blue.goalkeeper == 3
     print(f"keeper is blue 3: at x {kept[RobotId(Team.BLUE, 3)].x:.2f}")
     assert kept[RobotId(Team.BLUE, 3)].x < -3.9
     assert kept[RobotId(Team.BLUE, 0)].x > -3.9
-    for number, stage in enumerate(Referee.Stage.keys()):
+    for number, name in enumerate(Referee.Stage.keys()):
         if number == 0:
             continue
-        game.play(0.5, change(3, {1: number}))
-        print(f"stage {stage}: {game.match.game.stage.name}")
-        assert game.match.game.stage.name == stage
+        game.play(0.5, stage(Stage(number)))
+        print(f"stage {name}: {game.match.game.stage.name}")
+        assert game.match.game.stage.name == name
     assert game.match.outcome is not None
     assert game.match.outcome.value == "full_time"

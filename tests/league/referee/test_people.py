@@ -1,0 +1,159 @@
+"""What people do at a match: end halts, bring on stages, carry the ball."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from robobt.league.referee.people import People
+from robobt.league.wire.messages import Command, Referee
+from robobt.match.referee.settings import RefereeSettings
+from robobt.world.field import DIVISION_B
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
+from robobt.world.state import BallState, Frame, RobotState
+
+FIRST, HALF_TIME = Stage.NORMAL_FIRST_HALF, Stage.NORMAL_HALF_TIME
+HALT = GameState(RefereeCommand.HALT, FIRST, may_touch=False)
+FREE_KICK = GameState(
+    RefereeCommand.STOP,
+    FIRST,
+    restart=Restart.FREE_KICK,
+    restart_team=Team.BLUE,
+    may_touch=False,
+    placement=(1.0, 1.0),
+    upcoming=RefereeCommand.DIRECT_FREE_BLUE,
+    stage_time=100.0,
+)
+KICKOFF = replace(
+    FREE_KICK,
+    restart=Restart.KICKOFF,
+    placement=(0.0, 0.0),
+    upcoming=RefereeCommand.PREPARE_KICKOFF_BLUE,
+)
+PENALTY = replace(FREE_KICK, restart=Restart.PENALTY, upcoming=RefereeCommand.PREPARE_PENALTY_BLUE)
+
+
+class Field:
+    def __init__(self, **settings: Any) -> None:
+        self.people = People(DIVISION_B, RefereeSettings(**settings))
+
+    def clicks(self, game: GameState, *times: float) -> list[str]:
+        """What is clicked at the last of these times."""
+        for time in times:
+            clicked = self.people.clicks(Frame(time, DIVISION_B, BallState(1.0, 1.0)), game)
+        return [told(change) for change in clicked]
+
+    def puts(self, game: GameState, ball: BallState, *times: float, robot: float = 3.0) -> object:
+        """Where the ball is put at the last of these times, with a robot at (robot, 0)."""
+        own = (RobotState(1, robot, 0.0),)
+        return [self.people.puts_ball(Frame(time, DIVISION_B, ball, own), game) for time in times][-1]
+
+
+def told(change: Any) -> str:
+    if change.HasField("change_stage_change"):
+        return Referee.Stage.Name(change.change_stage_change.new_stage)
+    command = change.new_command_change.command
+    return Command.Type.Name(command.type) + {0: "", 1: " YELLOW", 2: " BLUE"}[command.for_team]
+
+
+def test_a_halt_ends_when_robots_have_had_time_to_stand() -> None:
+    assert Field().clicks(HALT, 5.0, 6.9) == []
+    assert Field().clicks(HALT, 5.0, 7.0) == ["STOP"]
+
+
+def test_a_substitution_ends_before_it_would_count_as_another() -> None:
+    halt = replace(HALT, yellow=TeamStatus(substituting=True))
+    assert Field().clicks(halt, 5.0, 19.9) == []
+    assert Field().clicks(halt, 5.0, 20.0) == ["STOP"]
+
+
+def test_a_time_out_ends() -> None:
+    assert Field().clicks(replace(HALT, command=RefereeCommand.TIMEOUT_BLUE), 0.0, 10.0) == ["STOP"]
+
+
+@pytest.mark.parametrize("wait", [0.0, 30.0])
+def test_the_break_lasts_as_long_as_the_settings_say(wait: float) -> None:
+    field, game = Field(half_time=wait), replace(HALT, stage=HALF_TIME)
+    lasts = max(2.0, wait)
+    assert field.clicks(game, 100.0, 100.0 + lasts - 0.1) == []
+    assert field.clicks(game, 100.0 + lasts) == ["NORMAL_SECOND_HALF_PRE"]
+
+
+def test_a_half_whose_time_is_over_ends_with_the_next_stop() -> None:
+    over = replace(FREE_KICK, stage_time=-0.1)
+    assert Field().clicks(over, 0.0) == ["NORMAL_HALF_TIME"]
+    assert Field().clicks(replace(over, stage=Stage.NORMAL_SECOND_HALF), 0.0) == ["POST_GAME"]
+    running = replace(over, command=RefereeCommand.DIRECT_FREE_BLUE)
+    assert Field().clicks(running, 0.0) == []
+    assert Field().clicks(FREE_KICK, 0.0) == []
+
+
+def test_a_penalty_is_still_taken_at_the_end_of_a_half() -> None:
+    assert Field().clicks(replace(PENALTY, stage_time=-1.0), 0.0, 4.9) == []
+    assert Field().clicks(replace(PENALTY, stage_time=-1.0), 0.0, 5.0) == ["PENALTY BLUE"]
+
+
+@pytest.mark.parametrize(("score", "over"), [((10, 8), True), ((10, 9), False), ((9, 0), False)])
+def test_ten_goals_with_a_lead_of_two_end_the_match(score: tuple[int, int], over: bool) -> None:
+    game = replace(KICKOFF, blue_score=score[0], yellow_score=score[1])
+    assert Field().clicks(game, 0.0) == (["POST_GAME"] if over else [])
+
+
+def test_a_stop_after_which_nothing_follows_ends_with_a_force_start() -> None:
+    nothing = replace(FREE_KICK, restart=None, restart_team=None, upcoming=None)
+    assert Field().clicks(nothing, 0.0, 4.9) == []
+    assert Field().clicks(nothing, 0.0, 5.0) == ["FORCE_START"]
+
+
+def test_nothing_is_done_while_the_ball_is_in_play_or_the_match_over() -> None:
+    assert Field().clicks(GameState(stage_time=-10.0), 0.0, 100.0) == []
+    assert Field().clicks(replace(HALT, stage=Stage.POST_GAME), 0.0, 100.0) == []
+
+
+def test_the_ball_is_carried_to_the_centre_for_a_kick_off() -> None:
+    in_goal = BallState(4.6, 0.0)
+    assert Field().puts(KICKOFF, in_goal, 0.0) == (0.0, 0.0)
+    assert Field().puts(replace(KICKOFF, command=RefereeCommand.HALT), in_goal, 0.0) == (0.0, 0.0)
+    assert Field().puts(KICKOFF, BallState(0.0, 0.01), 0.0) is None
+
+
+@pytest.mark.parametrize(("team", "x"), [(Team.BLUE, -1.5), (Team.YELLOW, 1.5)])
+def test_the_ball_is_carried_to_the_mark_for_a_penalty(team: Team, x: float) -> None:
+    game = replace(PENALTY, restart_team=team)
+    assert Field().puts(game, BallState(3.0, 1.0), 0.0) == (x, 0.0)
+    # Once it may be taken nobody carries it any more.
+    taken = replace(game, command=RefereeCommand.NORMAL_START, may_touch=True)
+    assert Field().puts(taken, BallState(3.0, 1.0), 0.0, 10.0) is None
+
+
+def test_a_robot_on_the_spot_is_given_time_to_leave() -> None:
+    ball = BallState(4.6, 0.0)
+    assert Field().puts(KICKOFF, ball, 0.0, 4.9, robot=0.1) is None
+    assert Field().puts(KICKOFF, ball, 0.0, 5.1, robot=0.1) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("ball", "carried"),
+    [
+        (BallState(1.0, 1.9), False),
+        (BallState(1.0, 2.1), True),
+        (BallState(1.0, 3.1), True),
+        (BallState(1.0, 3.1, 0.0, 0.3), False),
+    ],
+    ids=["near its spot", "far", "outside", "rolling"],
+)
+def test_a_ball_that_no_robot_may_place_is_carried(ball: BallState, carried: bool) -> None:
+    assert Field().puts(FREE_KICK, ball, 0.0, 1.9) is None
+    assert Field().puts(FREE_KICK, ball, 0.0, 2.1) == ((1.0, 1.0) if carried else None)
+
+
+def test_a_ball_near_a_defence_area_is_carried_even_if_it_is_near_its_spot() -> None:
+    game = replace(FREE_KICK, placement=(2.5, 0.5))
+    assert Field().puts(game, BallState(2.9, 0.5), 0.0, 2.1) == (2.5, 0.5)
+
+
+def test_a_ball_that_has_no_spot_is_carried_to_the_nearest_legal_one() -> None:
+    game = replace(FREE_KICK, restart=None, placement=None)
+    assert Field().puts(game, BallState(1.0, 3.1), 0.0, 2.1) == (1.0, 2.8)

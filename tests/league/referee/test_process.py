@@ -1,0 +1,112 @@
+"""The official program is found, started on ports of its own, and ends with its match."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.league.referee.process import (
+    PROGRAM,
+    VARIABLE,
+    GameControllerError,
+    GameControllerProcess,
+    find_game_controller,
+)
+
+GAME = {"normal": {"half-duration": "300s"}}
+
+
+@pytest.fixture(autouse=True)
+def _no_program_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+
+
+def running(name: str) -> list[int]:
+    """Processes with this in their command lines."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdigit():
+            try:
+                line = (folder / "cmdline").read_bytes()
+            except OSError:
+                continue
+            if name.encode() in line and int(folder.name) != os.getpid():
+                found.append(int(folder.name))
+    return found
+
+
+def gone(name: str, within: float = 5.0) -> bool:
+    end = time.monotonic() + within
+    while running(name):
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def test_a_program_that_is_absent_is_said_with_where_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    with pytest.raises(GameControllerError, match=f"{PROGRAM} is not on PATH: .*github.com/RoboCup-SSL"):
+        find_game_controller()
+    with pytest.raises(GameControllerError, match="/no/such/program is no program"):
+        find_game_controller("/no/such/program")
+
+
+def test_the_option_goes_before_the_environment_and_that_before_the_path(
+    program: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    other = tmp_path / PROGRAM
+    other.write_bytes(program.read_bytes())
+    other.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert find_game_controller() == other
+    monkeypatch.setenv(VARIABLE, "/bin/sh")
+    assert find_game_controller() == Path("/bin/sh")
+    assert find_game_controller(program) == program
+
+
+def test_what_is_not_the_controller_is_an_error_that_names_it(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong"
+    wrong.write_text("#!/bin/sh\necho panic: this is something else; exit 3\n")
+    wrong.chmod(0o755)
+    with pytest.raises(GameControllerError, match="wrong: the game controller does not start: panic"):
+        GameControllerProcess(wrong)
+
+
+@pytest.mark.integration
+def test_it_publishes_nothing_and_ends_when_it_is_closed(program: Path, tmp_path: Path) -> None:
+    name = program.name
+    with GameControllerProcess(program, GAME) as controller:
+        # The fake ends at once when it would be heard.
+        assert controller.crash() == ""
+        assert running("fake_controller")
+        folder = Path(controller._folder.name)
+        assert folder.exists()
+    assert gone("fake_controller")
+    assert not folder.exists()
+    assert not running(name)
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_it_ends_however_the_match_does(
+    program: Path, number: signal.Signals, start_python: Callable[..., Any]
+) -> None:
+    code = (
+        "import sys, time; from pathlib import Path\n"
+        "from robobt.league.referee.process import GameControllerProcess\n"
+        f"GameControllerProcess(Path({str(program)!r}), {GAME!r})\n"
+        "print('started', flush=True); time.sleep(60)"
+    )
+    process = start_python("-c", code)
+    assert process.stdout.readline() == "started\n"
+    assert running("fake_controller")
+    process.send_signal(number)
+    process.wait(10.0)
+    assert gone("fake_controller")
