@@ -24,13 +24,6 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, Robo
 IN_PLAY_DISTANCE = 0.05
 """The ball is in play once it has moved this far from a restart's spot. Source: SSL rules [m]."""
 
-PUSH_FACTOR = 2.0
-"""A kicker that never lets go of the ball touches it twice after this many in-play distances.
-
-The rules let the kicker stay in contact until the ball is in play; the second
-distance is tolerance, because the ball is seen once a tick.
-"""
-
 STOP_SPEED = 1.5
 """Most a robot may drive while the referee has stopped the game. Source: SSL rules [m/s]."""
 
