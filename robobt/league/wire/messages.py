@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from robobt.league.wire.proto.ssl_gc_engine_config_pb2 import *
     from robobt.league.wire.proto.ssl_gc_game_event_pb2 import *
     from robobt.league.wire.proto.ssl_gc_geometry_pb2 import *
+    from robobt.league.wire.proto.ssl_gc_rcon_pb2 import *
     from robobt.league.wire.proto.ssl_gc_referee_message_pb2 import *
     from robobt.league.wire.proto.ssl_gc_state_pb2 import *
     from robobt.league.wire.proto.ssl_simulation_config_pb2 import *
