@@ -100,10 +100,8 @@ class Controller:
                 state.wait()
         elif kind is EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA and team is not None:
             self._too_close(team, event)
-        elif not state.running:
+        elif not state.running or self._take_in_penalty(event):
             return
-        elif state.game.penalty is not None:
-            self._take_in_penalty(state.game.penalty, event)
         elif kind is EventKind.POSSIBLE_GOAL and team is not None:
             if self._goal_counts(event):
                 self._goal(team, event)
@@ -113,21 +111,31 @@ class Controller:
         elif kind is EventKind.DEFENDER_TOO_CLOSE_TO_KICK_POINT and state.game.restart is not None:
             state.deadline = state.time + state.kick_time
         else:
-            resumption = resumption_after(self._field, event, state.ball)
-            if resumption is not None:
-                state.stop(resumption)
+            self._stop_after(event)
 
-    def _take_in_penalty(self, kicking: Team, event: RefereeEvent) -> None:
-        kind, team = event.kind, event.team
+    def _stop_after(self, event: RefereeEvent) -> None:
+        resumption = resumption_after(self._field, event, self.state.ball)
+        if resumption is not None:
+            self.state.stop(resumption)
+
+    def _take_in_penalty(self, event: RefereeEvent) -> bool:
+        """Take what ends a penalty kick; return False for all else."""
+        state, kind, team = self.state, event.kind, event.team
+        kicking = state.game.penalty
+        if kicking is None:
+            return False
         if kind is EventKind.POSSIBLE_GOAL and team is kicking and self._goal_counts(event):
             self._goal(kicking, event)
         elif kind in (EventKind.POSSIBLE_GOAL, EventKind.PENALTY_KICK_FAILED):
             self._fail_penalty(kicking)
         elif kind in PENALTY_BREACHES and team is kicking:
-            self.state.note(EventKind.PENALTY_KICK_FAILED, kicking, kind.value)
+            state.note(EventKind.PENALTY_KICK_FAILED, kicking, kind.value)
             self._fail_penalty(kicking)
         elif kind in PENALTY_BREACHES and team is kicking.other:
             self._goal(kicking, event)
+        else:
+            return False
+        return True
 
     def _goal_counts(self, event: RefereeEvent) -> bool:
         assert event.team is not None
@@ -157,16 +165,16 @@ class Controller:
         """Punish a robot near the opponents' defence area: by their free kick, the second time by a HALT."""
         state, record = self.state, self.state.records[team]
         if state.running:
-            resumption = resumption_after(self._field, event, state.ball)
-            if resumption is not None and state.game.restart is not None:
-                state.stop(resumption)
-                record.too_close = 1
+            self._stop_after(event)
+            record.too_close = 1
             return
         if state.game.command is not RefereeCommand.STOP:
             return
         record.too_close += 1
-        if state.following.restart not in (Restart.KICKOFF, Restart.PENALTY):
-            state.following = replace(state.following, restart=Restart.FREE_KICK, team=team.other)
+        resumption = resumption_after(self._field, event, state.ball)
+        if resumption is not None and state.following.restart not in (Restart.KICKOFF, Restart.PENALTY):
+            state.following = resumption
+            state.placing.begin(resumption)
         if record.too_close > 1:
             record.too_close = 0
             state.halt(_HALT_TIME)

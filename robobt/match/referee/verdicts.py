@@ -87,9 +87,12 @@ def resumption_after(field: FieldGeometry, event: RefereeEvent, ball: Point) -> 
     Args:
         field: the field.
         event: what happened while the ball was in play.
-        ball: where the ball is now [m].
+        ball: where the ball is now, which an event may tell better as its ``ball_location`` [m].
     """
     kind, team, x, y = event.kind, event.team, event.x, event.y
+    told = event.details.get("ball_location")
+    if isinstance(told, tuple):
+        ball = told
     if kind in (_K.NO_PROGRESS_IN_GAME, _K.TOO_MANY_ROBOTS):
         return drop_ball(field, *ball)
     if kind is _K.BALL_LEFT_FIELD_TOUCH_LINE:
@@ -104,7 +107,7 @@ def resumption_after(field: FieldGeometry, event: RefereeEvent, ball: Point) -> 
     if kind is _K.AIMLESS_KICK:
         place = event.details.get("kick_location")
         return free_kick(field, team.other, *(place if isinstance(place, tuple) else ball))
-    if kind is _K.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA:
+    if kind in (_K.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA, _K.BOT_TIPPED_OVER, _K.BOT_DROPPED_PARTS):
         return free_kick(field, team.other, *ball)
     if kind is _K.ATTACKER_DOUBLE_TOUCHED_BALL or kind in FREE_KICK_FOULS:
         return free_kick(field, team.other, x, y)
