@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from math import copysign
 
 from robobt.match.players import Player
 from robobt.motion.path_planner import travel
 from robobt.world.command import RobotCommand
-from robobt.world.rules import SUBSTITUTION_REACH
-from robobt.world.state import Frame, RobotState
+from robobt.world.geometry import Point, distance
+from robobt.world.rules import SUBSTITUTION_REACH, in_substitution_area
+from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _log = logging.getLogger(__name__)
 
 _ASIDE = 0.3
 """How far from one another robots stand that have left [m]."""
+
+_BEHIND_WALL = 0.3
+"""How far behind the wall a robot lies that was taken off [m]."""
+
+_ROOM = 2.0 * ROBOT_RADIUS + 0.05
+"""From other robots to where one is put back [m]."""
 
 
 class Lineup:
@@ -33,6 +40,7 @@ class Lineup:
         self._keeper = keeper
         self._unknown: int | None = None
         self._leaving: frozenset[int] = frozenset()
+        self._away: frozenset[int] = frozenset()
 
     def follow(self, view: Frame) -> frozenset[int]:
         """Do what the game controller says of this team; return the numbers of robots that have to leave.
@@ -52,6 +60,25 @@ class Lineup:
             self._leaving = leaving
             self._forget_roles()
         return leaving
+
+    def carried(self, view: Frame) -> Iterator[tuple[int, Point]]:
+        """Find the robots that their handlers carry now, and where to, as their team sees it.
+
+        One that has to leave is taken behind the wall from where it left the field; one that may play
+        again is put back there, once there is room.
+        """
+        if not self._leaving and not self._away:
+            return
+        field = view.field
+        wall, margin = field.outer[1], (field.half_width + field.outer[1]) / 2
+        self._away = frozenset(robot.id for robot in view.own if abs(robot.y) > wall)
+        for me in view.own:
+            if me.id in self._leaving and me.id not in self._away and in_substitution_area(field, me):
+                yield me.id, (me.x, copysign(wall + _BEHIND_WALL, me.y))
+            elif me.id in self._away - self._leaving:
+                place = (me.x, copysign(margin, me.y))
+                if all(distance(place, other.position) > _ROOM for other in view.others(me.id)):
+                    yield me.id, place
 
     def _make_keeper(self, number: int) -> None:
         old, new = self._keeper, number

@@ -28,7 +28,7 @@ from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
-from robobt.world.rules import without_absent
+from robobt.world.rules import own_side, without_absent
 from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)
@@ -169,6 +169,7 @@ class Match:
                 self._record(self._recorder, truth, packed, frame)
         if self.outcome is not None:
             return False
+        self._carry(frame)
         self.world.act(self._commands)
         return True
 
@@ -224,6 +225,13 @@ class Match:
             # Whatever the trees make of it: not every play asks the referee.
             return {robot: RobotCommand() for robot in commands}
         return commands
+
+    def _carry(self, frame: Frame) -> None:
+        """Do what handlers do with robots that have left the field or come back."""
+        for team, lineup in self._lineups.items():
+            side = -own_side(team)
+            for number, (x, y) in lineup.carried(frame.seen_by(team)):
+                self.world.carry_robot(RobotId(team, number), side * x, side * y)
 
     def _note_failure(self, player: Player) -> None:
         figures = self.measures.robots[player.robot]

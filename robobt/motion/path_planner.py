@@ -53,6 +53,7 @@ def travel(
     avoid_ball: bool = False,
     goalkeeper: bool = False,
     placing: bool = False,
+    ball_gap: float = BALL_GAP,
     final_speed: float = 0.0,
 ) -> RobotCommand:
     """:func:`~robobt.motion.pilot.drive` along a free path, within the rules.
@@ -72,6 +73,7 @@ def travel(
         avoid_ball: whether to go round the ball.
         goalkeeper: may enter the own defence area.
         placing: may enter both defence areas, as the robot that places the ball may.
+        ball_gap: how far to stay from an avoided ball, hull to ball [m].
         final_speed: speed allowed at the target [m/s].
     """
     game = frame.game
@@ -89,6 +91,7 @@ def travel(
         avoid_ball=avoid_ball,
         goalkeeper=goalkeeper,
         placing=placing,
+        ball_gap=ball_gap,
     )
     return drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
 
@@ -139,6 +142,7 @@ def next_waypoint(
     avoid_ball: bool = False,
     goalkeeper: bool = False,
     placing: bool = False,
+    ball_gap: float = BALL_GAP,
 ) -> tuple[Point, float]:
     """Return the next point of a free path to ``target``, and the speed at which to pass it [m/s].
 
@@ -154,7 +158,7 @@ def next_waypoint(
         if corner != (-target[0], target[1]):
             goal = (-corner[0], corner[1])
     corner_first = goal != target
-    circles = _circles(frame, me, goal, avoid_robots, avoid_ball)
+    circles = _circles(frame, me, goal, avoid_robots, ball_gap if avoid_ball else None)
     first = first_hit(me.position, goal, circles, not corner_first) if circles else None
     if first is None:
         return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
@@ -251,7 +255,9 @@ def _open(
     return goalkeeper or not in_own_defense_area(field, x, y, ROBOT_RADIUS)
 
 
-def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoid_ball: bool) -> list[Circle]:
+def _circles(
+    frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, ball_gap: float | None
+) -> list[Circle]:
     """Return the obstacles near enough to matter, each where it will be when the robot gets there."""
     x, y = me.x, me.y
     reach = hypot(goal[0] - x, goal[1] - y) + 1.0
@@ -266,9 +272,9 @@ def _circles(frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, avoi
                 ahead = min(_LOOK_AHEAD, gap * pace)
                 circles.append((ox + robot.vx * ahead, oy + robot.vy * ahead, radius))
     keep_off = _keep_off(frame)
-    if avoid_ball or keep_off:
+    if ball_gap is not None or keep_off:
         ball = frame.ball
         ahead = min(_LOOK_AHEAD, hypot(ball.x - x, ball.y - y) * pace)
-        radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else BALL_GAP)
+        radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else ball_gap or 0.0)
         circles.append((ball.x + ball.vx * ahead, ball.y + ball.vy * ahead, radius))
     return circles

@@ -160,6 +160,12 @@ class SimWorld(World):
         check_inside("the ball", (x, y), self.field)
         self._arenas.place_ball(0, x, y)
 
+    def carry_robot(self, robot: RobotId, x: float, y: float) -> None:
+        """See :meth:`robobt.world.World.carry_robot`; also to behind the walls."""
+        index = self._index[robot]
+        heading = self._arenas.robots[0, index, 2]
+        self._arenas.place_robot(0, index, (x, y, heading, 0.0, 0.0, 0.0))
+
     def _make_arenas(self) -> Arenas:
         return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import atan2, radians
 from typing import TypeVar, dataclass_transform
 
-from robobt.motion.path_planner import travel
+from robobt.motion.path_planner import BALL_GAP, travel
 from robobt.motion.pilot import roughly
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
@@ -16,6 +16,10 @@ from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 _FACING = radians(15.0)
 """How far off a robot looks at most that has to look there roughly."""
+
+
+KICKER_GAP = 0.1
+"""Who took a restart stays this far from the ball until somebody else has touched it [m]."""
 
 
 @dataclass(eq=False, repr=False)
@@ -52,6 +56,11 @@ class Skill(Leaf[Store]):
         """The limits to drive with now."""
         return self.store.me.limits
 
+    @property
+    def has_kicked(self) -> bool:
+        """Whether this robot took a restart and may not touch the ball before another has."""
+        return self.store.team.kicker == self.me.id
+
     def drive_to(
         self,
         target: Point,
@@ -79,7 +88,8 @@ class Skill(Leaf[Store]):
             heading,
             self.drive_limits,
             avoid_robots=avoid_robots,
-            avoid_ball=avoid_ball,
+            avoid_ball=avoid_ball or self.has_kicked,
+            ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
             goalkeeper=goalkeeper,
         )
 

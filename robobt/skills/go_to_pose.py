@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import field
 from math import hypot, radians
 
-from robobt.motion.path_planner import allowed_target, travel
+from robobt.motion.path_planner import BALL_GAP, allowed_target, travel
 from robobt.motion.pilot import roughly
-from robobt.skills.base import skill
+from robobt.skills.base import KICKER_GAP, skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
@@ -68,7 +68,8 @@ class GoToPose(DrivingSkill):
             heading,
             self.drive_limits,
             avoid_robots=self.avoid_robots,
-            avoid_ball=self.avoid_ball,
+            avoid_ball=self.avoid_ball or self.has_kicked,
+            ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
             goalkeeper=self.goalkeeper,
         )
         x, y = allowed_target(frame, me, target, goalkeeper=self.goalkeeper)

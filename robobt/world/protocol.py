@@ -56,6 +56,10 @@ class World(Protocol):
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest (the referee's hand), in world coordinates [m]."""
 
+    def carry_robot(self, robot: RobotId, x: float, y: float) -> None:  # noqa: ARG002
+        """Put a robot down at rest, as its handler does, in world coordinates [m]; else people do it."""
+        return
+
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
         """Return who was seen to kick between the last two frames, and when in the frames' time [s].
 
@@ -104,6 +108,10 @@ class WrappedWorld(World):
     def place_ball(self, x: float, y: float) -> None:
         """See :meth:`World.place_ball`."""
         self.world.place_ball(x, y)
+
+    def carry_robot(self, robot: RobotId, x: float, y: float) -> None:
+        """See :meth:`World.carry_robot`."""
+        self.world.carry_robot(robot, x, y)
 
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
         """See :meth:`World.seen_kicks`."""

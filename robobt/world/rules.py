@@ -173,6 +173,11 @@ def area_distance(field: FieldGeometry, defender: Team, x: float, y: float) -> f
 # Robots on the field.
 
 
+def in_substitution_area(field: FieldGeometry, robot: RobotState) -> bool:
+    """Return whether a robot stands in a substitution area: beside the half-way line, over a touch line."""
+    return abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
+
+
 def taken_off(field: FieldGeometry, robots: Iterable[RobotState], most: int | None) -> frozenset[int]:
     """Return the numbers of a team's robots that count as off the field.
 
@@ -190,9 +195,7 @@ def taken_off(field: FieldGeometry, robots: Iterable[RobotState], most: int | No
     excess = 0 if most is None else len(robots) - most
     if excess <= 0:
         return frozenset()
-    outside = [
-        robot.id for robot in robots if abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
-    ]
+    outside = [robot.id for robot in robots if in_substitution_area(field, robot)]
     return frozenset(sorted(outside)[-excess:])
 
 

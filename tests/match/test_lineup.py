@@ -85,8 +85,12 @@ def test_a_team_with_a_card_takes_a_robot_off_and_brings_it_back() -> None:
     controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=5))
     frame = controlled.play(6.0).seen_by(Team.YELLOW)
     assert beside(frame) == {5}
+    # Its handler has carried it out of the way, behind the wall.
+    assert abs(frame.robots()[RobotId(Team.YELLOW, 5)].y) > 3.3
     controlled.game = replace(controlled.game, yellow=TeamStatus(max_robots=6))
-    assert not beside(controlled.play(3.0).seen_by(Team.YELLOW))
+    frame = controlled.play(3.0).seen_by(Team.YELLOW)
+    assert not beside(frame)
+    assert abs(frame.robots()[RobotId(Team.YELLOW, 5)].y) < 3.0
 
 
 def test_two_robots_leave_and_the_goalkeeper_stays() -> None:

@@ -2,12 +2,15 @@ from __future__ import annotations
 
 from math import hypot, pi
 
+import pytest
+
 from robobt.skills import GoToPose
 from robobt.tree import Status
 from robobt.world import Frame, GameState, RefereeCommand, RobotLimits
 from robobt.world.rules import in_their_defense_area
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 from tests.simulation import Trial, always, blue, eventually, inside_the_field, never, yellow
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone, frame, moved, robot
 
 
 def test_without_a_target_it_fails() -> None:
@@ -102,3 +105,16 @@ def test_it_obeys_a_stop() -> None:
     stopped = GameState(command=RefereeCommand.STOP)
     alone.tick(frame(robot(velocity=(3.0, 0.0, 0.0)), ball=(0.0, -2.0), game=stopped))
     assert hypot(alone.command.vx, alone.command.vy) <= 1.5 + 1e-9
+
+
+@pytest.mark.parametrize("kicker", [1, 2])
+def test_who_took_a_restart_goes_round_its_ball(kicker: int) -> None:
+    me, gaps = robot(-1.0, 0.01, number=1), []
+    alone = Alone(GoToPose(target=(1.0, 0.0)))
+    alone.store.team.kicker = kicker
+    for _ in range(120):
+        alone.tick(frame(me), 1)
+        me = moved(me, alone.command, 1 / 60)
+        gaps.append(hypot(me.x, me.y) - ROBOT_RADIUS - BALL_RADIUS)
+    assert me.x > 0.9
+    assert (min(gaps) > 0.05) is (kicker == 1)
