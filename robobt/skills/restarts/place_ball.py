@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import cos, hypot, sin
+from math import copysign, cos, hypot, sin
 
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import drive
@@ -38,6 +38,9 @@ _AT_WALL = 0.05
 
 _CLEAR_OF_WALL = 0.1
 """How far inside the lines it is free of them [m]."""
+
+_BESIDE_GOAL = 0.25
+"""A ball behind the goal line this near to a goal lies in the corner beside it [m]."""
 
 _CLEAR = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
 
@@ -116,6 +119,9 @@ class PlaceBall(DrivingSkill):
         if abs(y) < lines.goal_width / 2:
             # Out of the goal past its posts.
             inside_y = lines.goal_width / 2 - ROBOT_RADIUS - _CLEAR_OF_WALL
+        elif abs(x) > lines.half_length and abs(y) < lines.goal_width / 2 + _BESIDE_GOAL:
+            # Aslant from beside the goal, whose wall leaves the robot no room straight behind the ball.
+            return (copysign(inside_x, x), y + copysign(abs(x) - inside_x, y))
         return (min(inside_x, max(-inside_x, x)), min(inside_y, max(-inside_y, y)))
 
 
