@@ -28,14 +28,14 @@ from robobt.world.state import Frame, RobotState
 
 _log = logging.getLogger(__name__)
 
-_STEP, _IN_PLAY = 0.1, 0.25
-"""Time from one look of the controller at the match to the next, and while the ball is in play [s].
+_DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.4
+"""Time from one look of the controller at the match to the next [s].
 
-What is reported then is told at once.
+While it has something to decide, while play is stopped, while the ball is in play. Reports are told at once.
 """
 
-_DECIDING = 1.5
-"""The controller takes a second to believe a report; for so long it looks as often as it can [s]."""
+_DECIDES = 1.5
+"""The controller takes a second to believe a report; for so long it has something to decide [s]."""
 
 _REMEMBERED = 200
 
@@ -91,10 +91,10 @@ class OfficialReferee:
                 changes = self._reports + self._people.clicks(frame, self._follower.game)
                 if changes:
                     self._reports = []
-                    self._decided = frame.time + _DECIDING
+                    self._decided = frame.time + _DECIDES
                     events += self._hear(controller.change(changes), frame.time)
-                quiet = self._follower.game.in_play and frame.time >= self._decided
-                self._due = frame.time + (_IN_PLAY if quiet else _STEP)
+                pause = _IN_PLAY if self._follower.game.in_play else _STOPPED
+                self._due = frame.time + (_DECIDING if frame.time < self._decided else pause)
                 controller.ask(frame.time, self._on_field(frame))
         except GameControllerError as error:
             crash = "" if self._process is None else self._process.crash()
