@@ -8,7 +8,11 @@ from time import perf_counter, process_time
 from typing import TypedDict
 
 from robobt.match.loop import Match, WorldFactory
+from robobt.match.referee.events import Decision
+from robobt.match.refereeing import MatchReferee, own_referee
 from robobt.match.scenario.scenario import Scenario
+from robobt.world.field import FieldGeometry
+from robobt.world.state import Frame
 
 _BLOCK = 1.0
 """Simulated time that each of the matches plays in turn, so that all see the same machine [s]."""
@@ -28,9 +32,38 @@ class MatchFigures(TypedDict):
     real_time_factor_py_trees: float
     speedup_vs_py_trees: float
     recording_share: float
+    referee_share: float
     in_play: float
     ticks: int
     errors: int
+
+
+class _TimedReferee:
+    """Makes the scenario's own referee, and is it: passes frames on and measures how long it takes.
+
+    ``busy`` is its processor time so far [s].
+    """
+
+    def __init__(self) -> None:
+        self.busy = 0.0
+        self._referee: MatchReferee | None = None
+
+    def __call__(self, scenario: Scenario, field: FieldGeometry) -> MatchReferee | None:
+        self._referee = own_referee(scenario, field)
+        return None if self._referee is None else self
+
+    def update(self, frame: Frame) -> Decision:
+        """Judge the next frame."""
+        assert self._referee is not None
+        begin = process_time()
+        decision = self._referee.update(frame)
+        self.busy += process_time() - begin
+        return decision
+
+    def close(self) -> None:
+        """Close the referee."""
+        if self._referee is not None:
+            self._referee.close()
 
 
 def bench_match(
@@ -50,7 +83,8 @@ def bench_match(
         Match(scenario.lasting(2.0), seed, world_factory, path).play()
         played = scenario.lasting(seconds)
         recorded = Match(played, seed, world_factory, path)
-        bare = Match(played, seed, world_factory)
+        timed = _TimedReferee()
+        bare = Match(played, seed, world_factory, referee=timed)
         stock = Match(played, seed, world_factory)
         for player in stock.players:
             player.runner.tick_by_py_trees()
@@ -87,6 +121,7 @@ def bench_match(
         "speedup_vs_py_trees": spent[2] / spent[1],
         # By processor time, for other programs on the machine cost the recorder nothing.
         "recording_share": 1.0 - busy[1] / busy[0],
+        "referee_share": timed.busy / busy[1],
         "in_play": result.in_play,
         "ticks": result.ticks,
         "errors": sum(robot.errors for robot in result.robots.values()),

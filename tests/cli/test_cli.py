@@ -454,6 +454,7 @@ class TestBench:
         assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["wall_s"])
         assert printed["real_time_factor_py_trees"] > 0
         assert printed["recording_share"] < 1
+        assert 0 <= printed["referee_share"] < 1
         assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
 
     def test_trees(self, monkeypatch: pytest.MonkeyPatch):

@@ -27,9 +27,9 @@ def bench_match(
     Keys of --json: scenario, seed, robots (how many), period, simulated_s,
     wall_s (of the recorded match), real_time_factor (of it),
     real_time_factor_unrecorded, real_time_factor_py_trees (unrecorded),
-    speedup_vs_py_trees, recording_share (of the recorded match's time), in_play
-    (share of the time with the ball in play), ticks, errors (ticks a tree
-    failed).
+    speedup_vs_py_trees, recording_share (of the recorded match's time),
+    referee_share (of the unrecorded match's time), in_play (share of the time
+    with the ball in play), ticks, errors (ticks a tree failed).
     """
     from robobt.match import load_scenario
     from robobt.match.bench import bench_match as measure
@@ -46,6 +46,7 @@ def bench_match(
         f"{loaded.name}: {figures['simulated_s']:.1f} s of {figures['robots']} robots at "
         f"{1 / loaded.period:.0f} Hz in {figures['wall_s']:.2f} s: "
         f"{figures['real_time_factor']:.1f} times real time, of which recording takes "
-        f"{figures['recording_share']:.1%}; ball in play {figures['in_play']:.0%} of the time. "
+        f"{figures['recording_share']:.1%} and the referee {figures['referee_share']:.1%}; "
+        f"ball in play {figures['in_play']:.0%} of the time. "
         f"With py_trees' own ticking {figures['real_time_factor_py_trees']:.1f} times real time."
     )
