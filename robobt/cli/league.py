@@ -89,6 +89,14 @@ def serve(
     yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302,
     blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011,
     yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012,
+    in_step: Annotated[
+        bool,
+        typer.Option(
+            "--in-step",
+            help="Let time pass only when clients ask for it, by SimulationSyncRequest over TCP at the ports "
+            "of teleports and control.",
+        ),
+    ] = False,
     log: Annotated[
         Path | None,
         typer.Option("--log", help="Write everything that is sent to this league log (*.log, *.log.gz)."),
@@ -154,7 +162,12 @@ def serve(
             _announce(server)
         # A signal is how one stops serving.
         with suppress(KeyboardInterrupt, Terminated):
-            server.run(seconds, on_slow=_TellOnce())
+            if in_step:
+                from robobt.league.serve.synchronous import StepServer
+
+                stack.enter_context(StepServer(server, interface)).run(seconds)
+            else:
+                server.run(seconds, on_slow=_TellOnce())
     packets = {port: asdict(counts) for port, counts in server.counts.items()}
     figures = {
         "frames": server.frames,

@@ -171,7 +171,7 @@ def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: 
 
     hammer(("127.0.0.1", getattr(server.endpoints, port)), seeds, amount, [server.counts[port]], take_in)
     # Nothing is left of it but a field like any other, on which robots obey.
-    server._ports.set_realism(REALISM["none"])
+    server.ports.set_realism(REALISM["none"])
     server.field.teleport_ball(BallTeleport(-1.0, 1.0, 0.0, 0.0))
     assert server.field.teleport(Teleport(ME, 0.0, 0.0, 0.0)) is None
     server.field.limit(ME, server.field.settings.limits)

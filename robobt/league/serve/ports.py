@@ -126,30 +126,34 @@ class ClientPorts:
             self._field.command(robot, command)
         self._teleport(request)
 
-    def _on_control(self, team: Team, receiver: Receiver, packet: Packet) -> None:
+    def control(self, team: Team, data: bytes) -> RobotControlResponse | None:
+        """Command a team's robots by a ``RobotControl``; None, counted, when it makes no sense."""
         robots = self._field.truth().robots()
         headings = {robot.number: state.heading for robot, state in robots.items() if robot.team is team}
-        request = read_control(packet.data, team, headings, receiver.counts)
+        request = read_control(data, team, headings, self.counts[team.value])
         if request is None:
-            return
+            return None
         response = RobotControlResponse()
         for robot, command in request.commands.items():
             if self._field.command(robot, command):
                 response.feedback.add(id=robot.number, dribbler_ball_contact=robots[robot].ball_contact)
             else:
                 request.errors.append(("NO_ROBOT", f"there is no robot {robot} on the field"))
-        _answer(receiver, packet, response, request.errors)
+        _add(response, request.errors)
+        return response
 
-    def _on_simulator_command(self, receiver: Receiver, packet: Packet) -> None:
+    def simulator_command(self, data: bytes) -> SimulatorResponse | None:
+        """Teleport and configure by a ``SimulatorCommand``; None, counted, when it makes no sense."""
+
         def convert(message: SimulatorCommand) -> tuple[SimulatorCommand, Request] | None:
             request = read_teleports(message)
             if request is None or not isfinite(message.control.simulation_speed):
                 return None
             return message, request
 
-        found = read(SimulatorCommand, packet.data, receiver.counts, convert)
+        found = read(SimulatorCommand, data, self.counts["control"], convert)
         if found is None:
-            return
+            return None
         message, request = found
         errors = [("CANNOT_TELEPORT", problem) for problem in self._teleport(request)]
         if message.control.HasField("simulation_speed"):
@@ -159,7 +163,15 @@ class ClientPorts:
             else:
                 errors.append(("SPEED", f"the speed must be {_SPEEDS[0]} to {_SPEEDS[1]}"))
         errors += self._configure(message)
-        _answer(receiver, packet, SimulatorResponse(), errors)
+        response = SimulatorResponse()
+        _add(response, errors)
+        return response
+
+    def _on_control(self, team: Team, receiver: Receiver, packet: Packet) -> None:
+        _answer(receiver, packet, self.control(team, packet.data))
+
+    def _on_simulator_command(self, receiver: Receiver, packet: Packet) -> None:
+        _answer(receiver, packet, self.simulator_command(packet.data))
 
     def _teleport(self, request: Request) -> list[str]:
         """Teleport robots and ball; return the reasons of what cannot be done."""
@@ -193,15 +205,16 @@ class ClientPorts:
         return errors
 
 
-def _answer(
-    receiver: Receiver,
-    packet: Packet,
-    response: RobotControlResponse | SimulatorResponse,
-    errors: Iterable[tuple[str, str]],
-) -> None:
+def _add(response: RobotControlResponse | SimulatorResponse, errors: Iterable[tuple[str, str]]) -> None:
     for code, problem in errors:
         response.errors.add(code=code, message=problem)
-    receiver.answer(response.SerializeToString(), packet.sender)
+
+
+def _answer(
+    receiver: Receiver, packet: Packet, response: RobotControlResponse | SimulatorResponse | None
+) -> None:
+    if response is not None:
+        receiver.answer(response.SerializeToString(), packet.sender)
 
 
 def _limits(spec: RobotSpecs, base: RobotLimits) -> RobotLimits | None:

@@ -24,7 +24,7 @@ from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.sockets import LOOPBACK, Sender
 from robobt.league.wire.tracker import write_tracked
-from robobt.league.wire.vision import write_vision
+from robobt.league.wire.vision import CameraFrame, write_vision
 from robobt.match.referee.settings import RefereeSettings
 from robobt.signals import check, uninterrupted
 
@@ -54,6 +54,7 @@ class SimServer:
         frames: how many were made; the last may still wait to be sent.
         kept: share of its speed that the field has kept.
         referee: the referee, None without one.
+        ports: where clients command the field.
 
     Raises:
         OSError: a port is taken, or no interface has the address.
@@ -87,10 +88,10 @@ class SimServer:
             self._vision = opened.enter_context(Sender(*to.vision, interface))
             self._tracker = opened.enter_context(Sender(*to.tracker, interface))
             self._controller = opened.enter_context(Sender(*to.referee, interface))
-            self._ports = ClientPorts(field, self._cameras, to, interface, speed)
-            opened.callback(self._ports.close)
+            self.ports = ClientPorts(field, self._cameras, to, interface, speed)
+            opened.callback(self.ports.close)
             self._opened = opened.pop_all()
-        self.endpoints, self.counts = self._ports.endpoints, self._ports.counts
+        self.endpoints, self.counts = self.ports.endpoints, self.ports.counts
         self._kinds = {
             self._vision: LogKind.VISION,
             self._tracker: LogKind.TRACKER,
@@ -103,7 +104,7 @@ class SimServer:
     @property
     def speed(self) -> float:
         """Simulated time over real time."""
-        return self._ports.speed
+        return self.ports.speed
 
     def run(
         self,
@@ -148,15 +149,15 @@ class SimServer:
             if self._outbox:
                 due = min(due, self._outbox[0][0])
             left = (due - pace.due) / speed + now - clocks.monotonic()
-            if left > 0.0 and select.select(self._ports.receivers, [], [], left)[0]:
+            if left > 0.0 and select.select(self.ports.receivers, [], [], left)[0]:
                 self.receive()
 
     def receive(self) -> None:
         """Process the waiting packets; a flood of them not all at once."""
-        self._ports.receive()
+        self.ports.receive()
 
-    def step(self) -> None:
-        """Simulate one period, and queue what the cameras then see."""
+    def step(self) -> list[CameraFrame]:
+        """Simulate one period, queue what the cameras then see, and return it."""
         field = self.field
         field.step()
         self.frames += 1
@@ -173,10 +174,16 @@ class SimServer:
             geometry = None
         tracked = write_tracked(truth, self.frames, stamped, self._uuid)
         self._post(now, self._tracker, tracked)
-        self._ports.report_status()
+        self.ports.report_status()
         message = None if self.referee is None else self.referee.judge(self._epoch + now)
         if message is not None:
             self._send(now, self._controller, message)
+        return frames
+
+    def look(self) -> list[CameraFrame]:
+        """Return what the cameras see now, without time passing."""
+        stamped = self._stamped_from + self.field.time
+        return self._cameras.capture(self.field.truth(), stamped, stamped)
 
     def send_due(self, time: float) -> None:
         """Send what is due at a simulated time [s]."""

@@ -44,6 +44,10 @@ class MessageStream:
         """Close the connection."""
         self._socket.close()
 
+    def fileno(self) -> int:
+        """Return the socket's number, for ``select``; messages may wait here that it does not know of."""
+        return self._socket.fileno()
+
     def send(self, message: bytes) -> None:
         """Send one message.
 
