@@ -126,7 +126,10 @@ class Controller:
             return False
         if kind is EventKind.POSSIBLE_GOAL and team is kicking and self._goal_counts(event):
             self._goal(kicking, event)
-        elif kind in (EventKind.POSSIBLE_GOAL, EventKind.PENALTY_KICK_FAILED):
+        elif kind is EventKind.POSSIBLE_GOAL:
+            state.record(replace(event, kind=EventKind.INVALID_GOAL))
+            self._fail_penalty(kicking)
+        elif kind is EventKind.PENALTY_KICK_FAILED:
             self._fail_penalty(kicking)
         elif kind in PENALTY_BREACHES and team is kicking:
             state.note(EventKind.PENALTY_KICK_FAILED, kicking, kind.value)
@@ -150,7 +153,8 @@ class Controller:
     def _goal(self, team: Team, event: RefereeEvent) -> None:
         state = self.state
         state.records[team].score += 1
-        state.record(replace(event, kind=EventKind.GOAL, team=team, details={}))
+        scorer = event.robot if event.team is team else None
+        state.record(replace(event, kind=EventKind.GOAL, team=team, robot=scorer, details={}))
         shoot_out = state.stages.shoot_out
         state.stop(penalty(self._field, state.stages.turn) if shoot_out else kickoff(team.other))
 

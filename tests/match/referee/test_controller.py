@@ -507,6 +507,14 @@ def test_breaches_end_a_penalty(kind: EventKind, team: Team, goals: int) -> None
     assert match.game.restart_team is YELLOW
 
 
+def test_a_penalty_goal_after_the_kickers_foul_does_not_count() -> None:
+    match = penalty()
+    match.controller.state.records[BLUE].last_foul = match.time
+    match.goal(BLUE)
+    assert match.kinds[-2:] == [K.POSSIBLE_GOAL, K.INVALID_GOAL]
+    assert (score(match), match.game.restart, match.game.restart_team) == ((0, 0), Restart.FREE_KICK, YELLOW)
+
+
 # Stages.
 
 
