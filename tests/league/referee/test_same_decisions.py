@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from itertools import product
+from math import cos, sin
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +24,20 @@ from robobt.match.referee.controller import Controller
 from robobt.match.referee.events import Detail, EventKind, RefereeEvent
 from robobt.match.referee.restarts import free_kick, kickoff, penalty
 from robobt.match.referee.settings import RefereeSettings
-from robobt.world import DIVISION_A, DIVISION_B, BallState, FieldGeometry, Frame, GameState, RobotId, Team
+from robobt.world import (
+    DIVISION_A,
+    DIVISION_B,
+    BallState,
+    FieldGeometry,
+    Frame,
+    GameState,
+    RobotId,
+    RobotState,
+    Team,
+)
 from robobt.world.game import RefereeCommand
+from robobt.world.geometry import Point
+from robobt.world.rules import own_side
 
 OFFICIAL = os.environ.get("ROBOBT_GAME_CONTROLLER", "")
 
@@ -205,23 +220,29 @@ def reported(state: str, kind: EventKind, team: Team, kicking: Team) -> bool:
     return True
 
 
-@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
-def test_both_decide_alike(field: FieldGeometry) -> None:
-    lot = np.random.default_rng(1)
+@contextmanager
+def begun(field: FieldGeometry, *, by_itself: bool) -> Iterator[Official]:
+    """Start the official controller, which goes on by itself or waits for clicks."""
     # So many that cards never take all of them: with fewer than none no goal would count.
     setup = MatchSetup(field, RefereeSettings(), {Team.BLUE: 500, Team.YELLOW: 500})
-    differing: list[str] = []
-    compared = 0
     with GameControllerProcess(Path(OFFICIAL), setup.game_settings()) as process:
         controller = LockstepController(process.stream)
         config = setup.config()
-        config.auto_continue = False
+        config.auto_continue = by_itself
         controller.ask(0.0)
         controller.answer()
         controller.change(setup.changes(), config)
         controller.ask(0.0, None, write_geometry(field))
         controller.answer()
-        official = Official(controller, field)
+        yield Official(controller, field)
+
+
+@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
+def test_both_decide_alike(field: FieldGeometry) -> None:
+    lot = np.random.default_rng(1)
+    differing: list[str] = []
+    compared = 0
+    with begun(field, by_itself=False) as official:
         for state, kind, team, kicking in product(STATES, REPORTED, Team, Team):
             if not reported(state, kind, team, kicking) or (kind is K.AIMLESS_KICK and field is DIVISION_A):
                 continue
@@ -246,3 +267,89 @@ def test_both_decide_alike(field: FieldGeometry) -> None:
                 differing.append(f"{state} of {kicking}, {kind} by {event.team}: {parts}")
     assert compared > 350
     assert not differing, f"{len(differing)} of {compared}: " + "\n".join(differing)
+
+
+Places = list[tuple[Team, int, float, float]]
+WAITING = ("stop_free_kick", "stop_kickoff", "prepare_kickoff", "prepare_penalty")
+
+
+def standing(
+    lot: np.random.Generator, field: FieldGeometry, state: str, kicking: Team
+) -> tuple[Point, Places]:
+    """Put ball and robots where some of them, now and then, are a little out of place."""
+    ahead = 1.0 if kicking is Team.BLUE else -1.0
+
+    def near(limit: float, spread: float = 0.05) -> float:
+        # Not at the limit itself: positions travel as single precision numbers.
+        return limit + float(lot.choice((-1.0, 1.0, 1.0, 1.0))) * float(lot.uniform(0.002, spread))
+
+    robots: Places = [(team, 9, own_side(team) * 2.0, 2.0) for team in Team]
+    if state in ("stop_free_kick", "stop_kickoff"):
+        spot = (1.0, field.half_width - 0.2) if state == "stop_free_kick" else (0.0, 0.0)
+        off = near(0.9, 0.15) if state == "stop_free_kick" and lot.random() < 0.3 else 0.0
+        ball = (spot[0] - off, spot[1])
+        for team in Team:
+            angle, gap = float(lot.uniform(3.3, 6.1)), near(0.54)
+            robots.append((team, 1, ball[0] + gap * cos(angle), ball[1] + gap * sin(angle)))
+        return ball, robots
+    if state == "prepare_kickoff":
+        for team in Team:
+            robots.append((team, 1, own_side(team) * near(0.09), float(lot.uniform(-1.0, 1.0))))
+        return (0.0, 0.0), robots
+    mark = penalty(field, kicking).spot
+    line, post = ahead * field.half_length, field.goal_width / 2
+    robots = [
+        (kicking.other, 0, line - ahead * near(0.0, 0.12), min(near(post - 0.05, 0.1), post + 0.04)),
+        (kicking, 1, mark[0] - ahead * 0.3, 0.0),
+        (kicking, 2, mark[0] - ahead * near(1.02, 0.1), 1.0),
+        (kicking.other, 3, mark[0] - ahead * near(1.02, 0.1), -1.0),
+    ]
+    return mark, robots
+
+
+def frames(field: FieldGeometry, ball: Point, robots: Places, begin: float) -> Iterator[Frame]:
+    """Four seconds in which nobody moves."""
+    own, opponents = (
+        tuple(RobotState(number, x, y) for each, number, x, y in robots if each is team) for team in Team
+    )
+    for tick in range(1, 17):
+        yield Frame(begin + 0.25 * tick, field, BallState(*ball), own, opponents)
+
+
+@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
+def test_both_go_on_from_the_same_positions(field: FieldGeometry) -> None:
+    lot = np.random.default_rng(2)
+    differing, outcomes = [], set()
+    with begun(field, by_itself=True) as official:
+        # A match begins with a HALT, after which the first stop is longer.
+        official.tick(12.0)
+        for case in range(160):
+            state, kicking = WAITING[case % 4], list(Team)[case // 4 % 2]
+            ball, robots = standing(lot, field, state, kicking)
+            ours = Ours(
+                field, {"prepare_kickoff": "kickoff", "prepare_penalty": "penalty"}.get(state, state), kicking
+            )
+            match = ours.controller.state
+            official.tick(0.1)
+            if state.startswith("stop"):
+                official.change(command("STOP"), command("FORCE_START"))
+                for event in before(field, state, kicking):
+                    official.report(event)
+            else:
+                match.stop(match.following)
+                match.resume()
+                kind = "KICKOFF" if state == "prepare_kickoff" else "PENALTY"
+                official.change(command("STOP"), command(kind, kicking))
+            begin = match.time
+            for frame in frames(field, ball, robots, official.time):
+                official.time = frame.time
+                official.controller.ask(frame.time, frame)
+                official.follow(official.controller.answer() + official.controller.rest())
+                begin += 0.25
+                ours.controller.update(replace(frame, time=begin), ())
+            mine, theirs = ours.controller.game.command, official.follower.game.command
+            outcomes.add(mine)
+            if mine is not theirs:
+                differing.append(f"{state} of {kicking}, {mine.name} / {theirs.name}: ball {ball}, {robots}")
+    assert len(outcomes) > 6
+    assert not differing, f"{len(differing)} of 160: " + "\n".join(differing)
