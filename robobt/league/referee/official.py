@@ -8,6 +8,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from zlib import crc32
+
+import numpy as np
 
 from robobt.league.referee.lockstep import EPOCH, LockstepController
 from robobt.league.referee.people import People
@@ -20,6 +23,7 @@ from robobt.league.wire.messages import Change
 from robobt.league.wire.messages import Referee as RefereeMessage
 from robobt.match.referee.automatic import CONTROLLER_SEES, AutomaticReferee
 from robobt.match.referee.events import Decision, RefereeEvent
+from robobt.match.referee.openings import opening_of
 from robobt.match.refereeing import referee_settings
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
@@ -115,9 +119,10 @@ class OfficialReferee:
 
     def _set_up(self, controller: LockstepController, frame: Frame) -> list[RefereeEvent]:
         setup = self._setup
+        opening = opening_of(setup.settings, setup.field, frame, np.random.default_rng(crc32(frame.packed())))
         # Changes need a clock; sizes are told after the division, which would change them.
         controller.ask(frame.time)
-        said = controller.answer() + controller.change(setup.changes(), setup.config())
+        said = controller.answer() + controller.change(setup.changes(opening), setup.config())
         controller.ask(frame.time, None, write_geometry(setup.field))
         return self._hear(said + controller.answer(), frame.time)
 

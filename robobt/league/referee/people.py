@@ -10,6 +10,7 @@ from robobt.league.wire.messages import Change
 from robobt.match.referee.positions import ball_placed, spot_free
 from robobt.match.referee.restarts import free_kick_spot, penalty
 from robobt.match.referee.settings import RefereeSettings
+from robobt.match.referee.stages import Stages
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
@@ -37,14 +38,9 @@ _PATIENCE = 5.0
 _PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
 """The controller goes on with a ball so near to its spot, so far from defence areas, so slow [m, m, m/s]."""
 
-_TEN, _LEAD = 10, 1
-"""A match is over when a team has so many goals and leads by more than this. Source: SSL rules."""
-
 _BREAKS = frozenset(
     {Stage.NORMAL_HALF_TIME, Stage.EXTRA_TIME_BREAK, Stage.EXTRA_HALF_TIME, Stage.PENALTY_SHOOTOUT_BREAK}
 )
-_LAST = frozenset({Stage.NORMAL_SECOND_HALF, Stage.EXTRA_SECOND_HALF})
-_HALVES = _LAST | {Stage.NORMAL_FIRST_HALF, Stage.EXTRA_FIRST_HALF}
 
 
 class People:
@@ -52,13 +48,14 @@ class People:
 
     Args:
         field: where it is played.
-        settings: how long the break between the halves lasts.
+        settings: which stages there are and how long the break between the halves lasts.
     """
 
     def __init__(self, field: FieldGeometry, settings: RefereeSettings) -> None:
         self._field, self._settings = field, settings
         self._state: tuple[RefereeCommand, Stage] | None = None
         self._since = 0.0
+        self._stages = Stages(settings)
 
     def clicks(self, frame: Frame, game: GameState) -> list[Change]:
         """Return what has to be told to the controller for the match to go on."""
@@ -78,14 +75,16 @@ class People:
         return []
 
     def _clicks_in_stop(self, game: GameState, lasted: float) -> list[Change]:
-        scores = game.blue_score, game.yellow_score
-        if max(scores) >= _TEN and max(scores) - min(scores) > _LEAD:
-            return [stage(Stage.POST_GAME)]
-        if game.stage in _HALVES and game.stage_time is not None and game.stage_time < 0.0:
-            if game.restart is Restart.PENALTY:
-                # It is still taken, but nothing goes on by itself any more.
-                return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
-            return [stage(Stage.POST_GAME if game.stage in _LAST else Stage(game.stage + 1))]
+        stages = self._stages
+        stages.stage = game.stage
+        if stages.length is not None and game.stage_time is not None:
+            stages.played = stages.length - game.stage_time
+        over = stages.over((game.blue_score, game.yellow_score)) if game.stage in _PLAYED else None
+        if over is not None and game.restart is Restart.PENALTY and not stages.shoot_out:
+            # It is still taken, but nothing goes on by itself any more.
+            return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
+        if over is not None:
+            return [stage(over)]
         if game.upcoming is None and lasted >= _IDLE:
             return [command("FORCE_START")]
         return []
@@ -102,6 +101,8 @@ class People:
         state = (game.command, game.stage)
         if state != self._state:
             self._state, self._since = state, frame.time
+            if state == (RefereeCommand.NORMAL_START, Stage.PENALTY_SHOOTOUT):
+                self._stages.begin_attempt()
         return frame.time - self._since
 
     def _spot(self, frame: Frame, game: GameState) -> Point | None:
@@ -110,7 +111,8 @@ class People:
             return penalty(self._field, game.restart_team).spot
         if preparing or (game.command is RefereeCommand.HALT and game.upcoming in _KICKOFFS):
             return (0.0, 0.0)
-        given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > _GIVEN_UP
+        wait = _GIVEN_UP if self._settings.placement == "robots" else self._settings.placement_delay
+        given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > wait
         spot = game.placement or free_kick_spot(self._field, *frame.ball.position)
         return spot if given_up and self._blocks(frame, spot) else None
 
@@ -124,4 +126,13 @@ class People:
         return far or near or ball_out(self._field, ball.position)
 
 
+_PLAYED = frozenset(
+    {
+        Stage.NORMAL_FIRST_HALF,
+        Stage.NORMAL_SECOND_HALF,
+        Stage.EXTRA_FIRST_HALF,
+        Stage.EXTRA_SECOND_HALF,
+        Stage.PENALTY_SHOOTOUT,
+    }
+)
 _KICKOFFS = frozenset({RefereeCommand.PREPARE_KICKOFF_BLUE, RefereeCommand.PREPARE_KICKOFF_YELLOW})

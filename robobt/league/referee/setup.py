@@ -8,37 +8,60 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import AutoRefConfig, Change, Command, Config, GameEvent
+from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.openings import Opening
+from robobt.match.referee.restarts import PLACE
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world.division import division_of
 from robobt.world.field import FieldGeometry
-from robobt.world.game import Stage, Team
+from robobt.world.game import RefereeCommand, Restart, Stage, Team
 
 ORIGIN = "robobt"
 """The name under which our automatic referee reports."""
+
+_FOR_EVER = 86_400.0
+"""Longer than any match [s]."""
 
 
 @dataclass(slots=True, frozen=True)
 class MatchSetup:
     """What the controller has to know of a match.
 
-    ``field`` is where it is played, by ``robots`` of each team, for halves as long as the ``settings`` say;
-    ``first_kickoff`` begins.
+    ``field`` is where it is played, by ``robots`` of each team, for as long as the ``settings`` say.
     """
 
     field: FieldGeometry
     settings: RefereeSettings
     robots: Mapping[Team, int]
-    first_kickoff: Team = Team.BLUE
 
     def game_settings(self) -> dict[str, object]:
-        """Return the settings of the controller that differ from its own.
+        """Return the settings of the controller's game: goals are approved at once, and times are ours.
 
-        Nobody is there to look at goals again, and halves without end last as long as it can count.
+        Halves without end last as long as it can count, and so does what is never to be raised.
         """
-        length = self.settings.half_length
-        seconds = 86_400.0 if length is None else length
-        return {"auto-approve-goals": True, "normal": {"half-duration": f"{seconds:.3f}s"}}
+        given = self.settings
+        normal, extra = (
+            {"half-duration": _time(length)} for length in (given.half_length, given.extra_length)
+        )
+        game: dict[str, object] = {
+            "auto-approve-goals": True,
+            "normal": normal,
+            "overtime": extra,
+            "preparation-time-before-resume": _time(given.stop_time),
+            "preparation-time-after-halt": _time(given.stop_after_halt),
+            "ball-placement-time": _time(given.placement_time),
+            "yellow-card-duration": _time(given.yellow_card_time),
+        }
+        for name, time in (
+            ("free-kick-timeout", given.kick_timeout),
+            ("no-progress-timeout", given.no_progress_time),
+            ("keeper-held-ball-timeout", given.keeper_hold_time),
+        ):
+            if time != "rules":
+                game[name] = dict.fromkeys(("DIV_A", "DIV_B"), _time(time))
+        return game
 
     def config(self) -> Config:
         """Return how the controller has to work: by itself, and believing our automatic referee."""
@@ -48,17 +71,18 @@ class MatchSetup:
             behaviours.game_event_behavior[name] = AutoRefConfig.BEHAVIOR_ACCEPT
         return config
 
-    def changes(self) -> list[Change]:
+    def changes(self, opening: Opening) -> list[Change]:
         """Return what sets the match up and begins it; blue defends -x."""
         division = division_of(self.field)
+        most = self.settings.max_robots or max(division.robots, *self.robots.values())
         update = Change.UpdateConfig(
             division="DIV_A" if division.name == "A" else "DIV_B",
-            first_kickoff_team=self.first_kickoff.name,
+            first_kickoff_team=self.settings.opening_team.name,
             match_type="FRIENDLY",
-            max_robots_per_team={"value": max(division.robots, *self.robots.values())},
+            max_robots_per_team={"value": most},
         )
-        begin = command("FORCE_START" if self.settings.opening == "force_start" else "STOP")
-        return [Change(update_config_change=update), *[self._team(team) for team in Team], begin]
+        set_up = [Change(update_config_change=update), *[self._team(team) for team in Team]]
+        return set_up + _begin(opening)
 
     def _team(self, team: Team) -> Change:
         update = Change.UpdateTeamState(
@@ -66,9 +90,43 @@ class MatchSetup:
             team_name={"value": team.value},
             goalkeeper={"value": self.settings.keeper(team).number},
             on_positive_half={"value": team is Team.YELLOW},
-            can_place_ball={"value": True},
+            can_place_ball={"value": self._places(team)},
         )
         return Change(update_team_state_change=update)
+
+    def _places(self, team: Team) -> bool:
+        given = self.settings
+        able = given.blue_can_place if team is Team.BLUE else given.yellow_can_place
+        return able and given.placement == "robots"
+
+
+def _begin(opening: Opening) -> list[Change]:
+    """Return what lets a match begin so: a restart follows from what the controller takes for its cause."""
+    if opening.command is RefereeCommand.FORCE_START:
+        return [command("FORCE_START")]
+    begin = [command("STOP")]
+    if opening.stage is not Stage.NORMAL_FIRST_HALF_PRE:
+        begin.insert(0, stage(opening.stage))
+    restart, team = opening.resumption.restart, opening.resumption.team
+    cause = _CAUSES.get(restart) if opening.stage is Stage.NORMAL_FIRST_HALF and restart else None
+    if cause is not None and team is not None:
+        event = write_event(RefereeEvent(0.0, cause, team.other, None, *opening.resumption.spot), 0.0, "UI")
+        event.ClearField("created_timestamp")
+        begin.append(game_event(event))
+    if team is not None and opening.command is PLACE[team]:
+        begin.append(command("BALL_PLACEMENT", team))
+    return begin
+
+
+_CAUSES = {
+    Restart.FREE_KICK: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
+    Restart.PENALTY: EventKind.DEFENDER_IN_DEFENSE_AREA,
+}
+"""Offences that lead to these restarts without being counted."""
+
+
+def _time(seconds: float | None) -> str:
+    return f"{_FOR_EVER if seconds is None else seconds:.3f}s"
 
 
 def command(kind: str, team: Team | None = None) -> Change:

@@ -16,6 +16,15 @@ from robobt.league.wire.messages import Change, CiInput, CiOutput, GameEvent, Re
 from robobt.league.wire.stream import MessageStream, StreamError
 
 OTHER = {"YELLOW": "BLUE", "BLUE": "YELLOW"}
+NAMES = {
+    "KICKOFF": "PREPARE_KICKOFF",
+    "PENALTY": "PREPARE_PENALTY",
+    "DIRECT": "DIRECT_FREE",
+    "BALL_PLACEMENT": "BALL_PLACEMENT",
+    "TIMEOUT": "TIMEOUT",
+}
+"""Commands of a team, and how its messages call them."""
+
 TEAM = {1: "YELLOW", 2: "BLUE"}
 
 
@@ -82,7 +91,8 @@ class FakeController:
         kind = change.WhichOneof("change")
         if kind == "new_command_change":
             given = change.new_command_change.command
-            self._command(type(given).Type.Name(given.type))
+            name = type(given).Type.Name(given.type)
+            self._command(f"{NAMES[name]}_{TEAM[given.for_team]}" if name in NAMES else name)
             return
         if kind == "change_stage_change":
             self._stage(change.change_stage_change.new_stage)

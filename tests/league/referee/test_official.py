@@ -115,7 +115,7 @@ def test_a_match_begins_by_itself(connect: Connect) -> None:
 def test_the_match_is_set_up_as_the_scenario_has_it(
     connect: Connect, field: FieldGeometry, division: int, robots: int
 ) -> None:
-    played = Played(connect, field, half_length=120.0, blue_keeper=3, yellow_keeper=1)
+    played = Played(connect, field, half_length=120.0, blue_keeper=3, yellow_keeper=1, no_progress_time=7.0)
     played.play(PERIOD)
     changes = [it.change for sent in played.fake.inputs for it in sent.api_inputs]
     config = next(it.update_config_change for it in changes if it.HasField("update_config_change"))
@@ -137,7 +137,42 @@ def test_the_match_is_set_up_as_the_scenario_has_it(
     assert set(delta.auto_ref_configs[ORIGIN].game_event_behavior.values()) == {1}
     sizes = [sent.geometry.field for sent in played.fake.inputs if sent.HasField("geometry")]
     assert [size.field_length for size in sizes] == [round(field.length * 1000)]
-    assert played.given == {"auto-approve-goals": True, "normal": {"half-duration": "120.000s"}}
+    assert played.given["auto-approve-goals"]
+    assert played.given["normal"] == {"half-duration": "120.000s"}
+    assert played.given["no-progress-timeout"] == {"DIV_A": "7.000s", "DIV_B": "7.000s"}
+    # By the rules: the controller knows them.
+    assert "free-kick-timeout" not in played.given
+
+
+@pytest.mark.parametrize(
+    ("opening", "sent"),
+    [
+        ("force_start", ["new_command_change"]),
+        ("kickoff", ["new_command_change"]),
+        ("shoot_out", ["change_stage_change", "new_command_change"]),
+        ("penalty", ["change_stage_change", "new_command_change", "add_game_event_change"]),
+        ("free_kick", ["change_stage_change", "new_command_change", "add_game_event_change"]),
+        (
+            "ball_placement",
+            ["change_stage_change", "new_command_change", "add_game_event_change", "new_command_change"],
+        ),
+    ],
+)
+def test_a_drill_begins_with_its_restart(connect: Connect, opening: str, sent: list[str]) -> None:
+    played = Played(connect, opening=opening, opening_team="yellow", opening_spot=(1.0, -1.0))
+    played.play(PERIOD)
+    changes = [it.change for given in played.fake.inputs for it in given.api_inputs]
+    kinds = [change.WhichOneof("change") for change in changes]
+    # After config and teams, without the marks that say that a change is done.
+    assert [kind for kind in kinds if kind not in (None, "set_status_message_change")][3:] == sent
+    events = [it.add_game_event_change.game_event for it in changes if it.HasField("add_game_event_change")]
+    for event in events:
+        # At once: it is not for an automatic referee to say.
+        assert list(event.origin) == ["UI"]
+    if opening == "free_kick":
+        (event,) = events
+        assert event.attacker_double_touched_ball.by_team == 2
+        assert event.attacker_double_touched_ball.location.x == 1.0
 
 
 def test_a_goal_counts_the_ball_is_carried_back_and_the_other_team_kicks_off(connect: Connect) -> None:

@@ -37,7 +37,7 @@ PENALTY = replace(FREE_KICK, restart=Restart.PENALTY, upcoming=RefereeCommand.PR
 
 class Field:
     def __init__(self, **settings: Any) -> None:
-        self.people = People(DIVISION_B, RefereeSettings(**settings))
+        self.people = People(DIVISION_B, RefereeSettings(**{"half_length": 300.0, **settings}))
 
     def clicks(self, game: GameState, *times: float) -> list[str]:
         """What is clicked at the last of these times."""
@@ -88,6 +88,29 @@ def test_a_half_whose_time_is_over_ends_with_the_next_stop() -> None:
     running = replace(over, command=RefereeCommand.DIRECT_FREE_BLUE)
     assert Field().clicks(running, 0.0) == []
     assert Field().clicks(FREE_KICK, 0.0) == []
+
+
+def test_a_draw_goes_on_to_overtime_and_a_shoot_out_where_there_are_some() -> None:
+    over = replace(FREE_KICK, stage=Stage.NORMAL_SECOND_HALF, stage_time=-0.1)
+    assert Field(extra_length=150.0).clicks(over, 0.0) == ["EXTRA_TIME_BREAK"]
+    assert Field(shoot_out=True).clicks(over, 0.0) == ["PENALTY_SHOOTOUT_BREAK"]
+    won = replace(over, blue_score=1)
+    assert Field(extra_length=150.0, shoot_out=True).clicks(won, 0.0) == ["POST_GAME"]
+
+
+def test_a_shoot_out_ends_after_five_kicks_each_when_it_is_decided() -> None:
+    field = Field(shoot_out=True)
+    stop = replace(PENALTY, stage=Stage.PENALTY_SHOOTOUT, blue_score=1, stage_time=0.0)
+    kick = replace(stop, command=RefereeCommand.NORMAL_START)
+    for attempt in range(10):
+        assert field.clicks(stop, 10.0 * attempt) == []
+        field.clicks(kick, 10.0 * attempt + 5.0)
+    assert field.clicks(replace(stop, yellow_score=1), 100.0) == []
+    assert field.clicks(stop, 100.0) == ["POST_GAME"]
+
+
+def test_a_ball_that_hands_place_is_carried_at_once() -> None:
+    assert Field(placement="by_hand").puts(FREE_KICK, BallState(1.0, 3.1), 0.0, 0.1) == (1.0, 1.0)
 
 
 def test_a_penalty_is_still_taken_at_the_end_of_a_half() -> None:
