@@ -22,6 +22,7 @@ class Division:
         kick_time: to take a free kick, to go on with a ball that is stuck, to get it out of the own
             defence area [s].
         aimless_kick: whether a kick from the own half over the far goal line is an offence.
+        must_place: whether a team may not decline to place the ball.
         failure_loses_kick: whether a team that cannot place the ball loses the free kick.
     """
 
@@ -29,11 +30,12 @@ class Division:
     robots: int
     kick_time: float
     aimless_kick: bool
+    must_place: bool
     failure_loses_kick: bool
 
 
-A = Division("A", 11, 5.0, aimless_kick=False, failure_loses_kick=True)
-B = Division("B", 6, 10.0, aimless_kick=True, failure_loses_kick=False)
+A = Division("A", 11, 5.0, aimless_kick=False, must_place=True, failure_loses_kick=True)
+B = Division("B", 6, 10.0, aimless_kick=True, must_place=False, failure_loses_kick=False)
 
 _BORDER = (FIELD_A.length + FIELD_B.length) / 2
 

@@ -27,7 +27,12 @@ class Discipline:
         self._card_time = settings.yellow_card_time
         most = division.robots if settings.max_robots is None else settings.max_robots
         self.records = {
-            team: TeamRecord(most, settings.keeper(team).number, settings.can_place(team)) for team in Team
+            team: TeamRecord(
+                most,
+                settings.keeper(team).number,
+                can_place=division.must_place or settings.can_place(team),
+            )
+            for team in Team
         }
 
     def count(self, event: RefereeEvent) -> Iterator[RefereeEvent]:

@@ -108,13 +108,9 @@ class Placing:
         self._records[team].failures += 1
         self._tried.add(team)
         self.team = None
-        return event, self.lost(following, team)
-
-    def lost(self, following: Resumption, team: Team) -> Resumption:
-        """Return how play goes on when ``team`` does not place the ball."""
         if self._division.failure_loses_kick and following.left_field and following.team is team:
-            return replace(following, team=team.other)
-        return following
+            following = replace(following, team=team.other)
+        return event, following
 
     def interfere(self, team: Team) -> bool:
         """Give the placing team more time; return whether this counts as a foul of ``team``."""

@@ -41,8 +41,8 @@ class RefereeSettings(Settings):
     placement_time: float = Field(
         30.0, gt=0, le=600, description="a team has that long to place the ball [s]"
     )
-    blue_can_place: bool = Field(True, description="whether blue is asked to place the ball")
-    yellow_can_place: bool = Field(True, description="whether yellow is asked to place the ball")
+    blue_can_place: bool = Field(True, description="division B: whether blue places the ball")
+    yellow_can_place: bool = Field(True, description="division B: whether yellow places the ball")
     stop_time: float = Field(
         2.0, ge=0, le=60, description="positions have to be right for so long before play goes on [s]"
     )

@@ -129,9 +129,6 @@ class MatchState:
 
     def stop(self, following: Resumption) -> None:
         """STOP, after which play goes on with ``following``."""
-        team = following.team
-        if team is not None and not self.records[team].places:
-            following = self.placing.lost(following, team)
         self.following = following
         self.placing.begin(following)
         for record in self.records.values():

@@ -28,7 +28,7 @@ class TeamRecord:
     Attributes:
         most: robots it may have without cards.
         keeper: number of its goalkeeper.
-        can_place: whether it says that it can place the ball.
+        can_place: whether it can place the ball, or has to.
         score: its goals.
         fouls: how many count.
         last_fouls: the kinds of those since its last card.

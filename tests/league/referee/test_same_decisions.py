@@ -353,3 +353,49 @@ def test_both_go_on_from_the_same_positions(field: FieldGeometry) -> None:
                 differing.append(f"{state} of {kicking}, {mine.name} / {theirs.name}: ball {ball}, {robots}")
     assert len(outcomes) > 6
     assert not differing, f"{len(differing)} of 160: " + "\n".join(differing)
+
+
+CANNOT: dict[str, dict[Team, dict[str, object]]] = {
+    "both can": {},
+    "they cannot": {Team.YELLOW: {"can_place_ball": False}},
+    "they failed": {Team.YELLOW: {"ball_placement_failures": 5}},
+    "nobody can": {team: {"can_place_ball": False} for team in Team},
+}
+
+
+@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
+@pytest.mark.parametrize("case", CANNOT)
+def test_both_ask_the_same_teams_to_place_a_ball_that_nobody_touches(field: FieldGeometry, case: str) -> None:
+    given = {f"{team.value}_can_place": "can_place_ball" not in told for team, told in CANNOT[case].items()}
+    ours = Controller(
+        field,
+        RefereeSettings(opening="force_start", **given),
+        np.random.default_rng(1),
+    )
+    ours.update(Frame(0.0, field, BallState(-1.0, 0.0)), ())
+    (event,) = before(field, "stop_free_kick", Team.YELLOW)
+    mine: list[object] = []
+    theirs: list[object] = []
+    with begun(field, by_itself=True) as official:
+        official.tick(12.0)
+        for team, told in CANNOT[case].items():
+            values = {name: {"value": value} for name, value in told.items()}
+            update = Change.UpdateTeamState(for_team=team.name, **values)  # type: ignore[arg-type]
+            official.change(Change(update_team_state_change=update))
+            ours.state.records[team].failures = int(told.get("ball_placement_failures", 0))  # type: ignore[call-overload]
+        official.change(command("STOP"), command("FORCE_START"))
+        official.report(event)
+        for tick in range(1, 300):
+            frame = Frame(12.0 + 0.25 * tick, field, BallState(-1.0, 0.0))
+            official.controller.ask(frame.time, frame)
+            official.follow(official.controller.answer() + official.controller.rest())
+            ours.update(replace(frame, time=0.25 * tick), (event,) if tick == 1 else ())
+            for states, game in ((mine, ours.game), (theirs, official.follower.game)):
+                state = game.command, game.upcoming
+                if game.command is not RefereeCommand.STOP and state not in states[-1:]:
+                    states.append(state)
+        assert (ours.game.command, ours.game.upcoming) == (
+            RefereeCommand.STOP,
+            official.follower.game.upcoming,
+        )
+    assert mine == theirs

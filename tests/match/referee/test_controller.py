@@ -284,7 +284,9 @@ def test_a_team_that_fails_is_followed_by_the_other_and_by_a_hand() -> None:
 
 
 def test_in_division_a_a_failure_loses_the_kick_where_the_ball_had_left() -> None:
-    assert placing(DIVISION_A).until(C.BALL_PLACEMENT_BLUE).game.upcoming is C.DIRECT_FREE_BLUE
+    match = placing(DIVISION_A).until(C.BALL_PLACEMENT_BLUE)
+    assert match.game.upcoming is C.DIRECT_FREE_BLUE
+    assert match.until(C.STOP).game.upcoming is C.DIRECT_FREE_YELLOW
     assert placing(DIVISION_A, left=False).until(C.BALL_PLACEMENT_BLUE).game.upcoming is C.DIRECT_FREE_YELLOW
 
 
@@ -292,6 +294,18 @@ def test_a_team_that_cannot_place_is_not_asked() -> None:
     assert placing(yellow_can_place=False).until(C.BALL_PLACEMENT_BLUE, 0.2).game.status(BLUE).can_place_ball
     match = placing(yellow_can_place=False, blue_can_place=False).until(C.DIRECT_FREE_YELLOW, 2.3)
     assert not match.game.status(BLUE).can_place_ball
+
+
+def test_in_division_a_every_team_is_asked() -> None:
+    assert placing(DIVISION_A, yellow_can_place=False).until(C.BALL_PLACEMENT_YELLOW, 0.2)
+
+
+@pytest.mark.parametrize("field", [DIVISION_A, DIVISION_B], ids=["a", "b"])
+def test_where_a_team_is_not_asked_any_more_the_other_places_and_the_kick_stays(field: FieldGeometry) -> None:
+    match = Match(field).lie(-1.0, 0.0)
+    match.controller.state.records[YELLOW].failures = 5
+    match.happens(K.BALL_LEFT_FIELD_TOUCH_LINE, BLUE, 1.0, field.half_width)
+    assert match.until(C.BALL_PLACEMENT_BLUE, 0.2).game.upcoming is C.DIRECT_FREE_YELLOW
 
 
 def test_after_five_failures_a_team_is_not_asked_any_more() -> None:
