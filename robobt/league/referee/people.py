@@ -5,7 +5,7 @@ Source of what the controller leaves to them: ssl-game-controller, ``engine/proc
 
 from __future__ import annotations
 
-from robobt.league.referee.setup import command, stage
+from robobt.league.referee.setup import ball_position, command, stage
 from robobt.league.wire.messages import Change
 from robobt.match.referee.positions import ball_placed, spot_free
 from robobt.match.referee.restarts import free_kick_spot, penalty
@@ -34,6 +34,9 @@ _GIVEN_UP = 2.0
 
 _PATIENCE = 5.0
 """The ball is put down after this long even if a robot stands on the spot [s]."""
+
+_MOVED = 0.1
+"""The controller's place is not the one of the restart from this distance on [m]."""
 
 _PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
 """The controller goes on with a ball so near to its spot, so far from defence areas, so slow [m, m, m/s]."""
@@ -85,6 +88,11 @@ class People:
             return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
         if over is not None:
             return [stage(over)]
+        spot = self._prepared(game)
+        if spot is not None and game.placement is not None and distance(game.placement, spot) > _MOVED:
+            # A ball that left the field while a penalty was being given has moved its place, and the
+            # controller waits for the ball to be there.
+            return [ball_position(spot)]
         if game.upcoming is None and lasted >= _IDLE:
             return [command("FORCE_START")]
         return []
@@ -105,12 +113,19 @@ class People:
                 self._stages.begin_attempt()
         return frame.time - self._since
 
-    def _spot(self, frame: Frame, game: GameState) -> Point | None:
-        preparing = game.restart in (Restart.KICKOFF, Restart.PENALTY) and not game.may_touch
-        if preparing and game.restart is Restart.PENALTY and game.restart_team is not None:
+    def _prepared(self, game: GameState) -> Point | None:
+        """Return where the ball belongs for a kick-off or penalty kick that is to come, None without one."""
+        if game.restart is Restart.PENALTY and game.restart_team is not None and not game.may_touch:
             return penalty(self._field, game.restart_team).spot
-        if preparing or (game.command is RefereeCommand.HALT and game.upcoming in _KICKOFFS):
+        kickoff = game.restart is Restart.KICKOFF and not game.may_touch
+        if kickoff or (game.command is RefereeCommand.HALT and game.upcoming in _KICKOFFS):
             return (0.0, 0.0)
+        return None
+
+    def _spot(self, frame: Frame, game: GameState) -> Point | None:
+        prepared = self._prepared(game)
+        if prepared is not None:
+            return prepared
         wait = _GIVEN_UP if self._settings.placement == "robots" else self._settings.placement_delay
         given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > wait
         spot = game.placement or free_kick_spot(self._field, *frame.ball.position)

@@ -17,6 +17,7 @@ from robobt.match.referee.settings import RefereeSettings
 from robobt.world.division import division_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import RefereeCommand, Restart, Stage, Team
+from robobt.world.geometry import Point
 
 ORIGIN = "robobt"
 """The name under which our automatic referee reports."""
@@ -138,6 +139,11 @@ def command(kind: str, team: Team | None = None) -> Change:
 def stage(new: Stage) -> Change:
     """Return the change that brings on a stage, which is never an earlier one."""
     return Change(change_stage_change={"new_stage": new.name})
+
+
+def ball_position(spot: Point) -> Change:
+    """Return the change that says where the ball has to be for the next restart [m]."""
+    return Change(set_ball_placement_pos_change={"pos": {"x": spot[0], "y": spot[1]}})
 
 
 def game_event(event: GameEvent) -> Change:

@@ -32,7 +32,12 @@ KICKOFF = replace(
     placement=(0.0, 0.0),
     upcoming=RefereeCommand.PREPARE_KICKOFF_BLUE,
 )
-PENALTY = replace(FREE_KICK, restart=Restart.PENALTY, upcoming=RefereeCommand.PREPARE_PENALTY_BLUE)
+PENALTY = replace(
+    FREE_KICK,
+    restart=Restart.PENALTY,
+    placement=(-1.5, 0.0),
+    upcoming=RefereeCommand.PREPARE_PENALTY_BLUE,
+)
 
 
 class Field:
@@ -52,6 +57,9 @@ class Field:
 
 
 def told(change: Any) -> str:
+    if change.HasField("set_ball_placement_pos_change"):
+        spot = change.set_ball_placement_pos_change.pos
+        return f"ball to {spot.x:g}, {spot.y:g}"
     if change.HasField("change_stage_change"):
         return Referee.Stage.Name(change.change_stage_change.new_stage)
     command = change.new_command_change.command
@@ -116,6 +124,13 @@ def test_a_ball_that_hands_place_is_carried_at_once() -> None:
 def test_a_penalty_is_still_taken_at_the_end_of_a_half() -> None:
     assert Field().clicks(replace(PENALTY, stage_time=-1.0), 0.0, 4.9) == []
     assert Field().clicks(replace(PENALTY, stage_time=-1.0), 0.0, 5.0) == ["PENALTY BLUE"]
+
+
+def test_a_ball_that_left_after_the_foul_does_not_move_the_penalty() -> None:
+    # The controller takes a second to stop play, and then believes both.
+    assert Field().clicks(replace(PENALTY, placement=(-4.3, 2.8)), 0.0) == ["ball to -1.5, 0"]
+    assert Field().clicks(replace(PENALTY, placement=(-1.5, 0.0)), 0.0) == []
+    assert Field().clicks(replace(KICKOFF, placement=(4.3, 2.8)), 0.0) == ["ball to 0, 0"]
 
 
 @pytest.mark.parametrize(("score", "over"), [((10, 8), True), ((10, 9), False), ((9, 0), False)])
