@@ -25,7 +25,7 @@ from robobt.world import (
     RobotState,
     Team,
 )
-from robobt.world.rules import in_own_defense_area, touches
+from robobt.world.rules import in_own_defense_area, touches, without_absent
 from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, penalty_in_play, stop_before
@@ -367,7 +367,8 @@ def played(request: pytest.FixtureRequest) -> Played:
     ball: Point = (0.0, 0.0)
     ticks = 0
     while match.tick():
-        game, frame = match.game, match.world.truth()
+        # A robot that a card has cost is behind the wall.
+        game, frame = match.game, without_absent(match.world.truth(), match.game)
         everybody = (*frame.own, *frame.opponents)
         ticks += 1
         if game.command is not before.command:

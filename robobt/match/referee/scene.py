@@ -63,6 +63,7 @@ class Scene:
         self.penalty: Team | None = None
         self.out = False
         self.inside: Point = (0.0, 0.0)
+        self._read: GameState | None = None
         self._state: object = None
         self._seen = False
 
@@ -77,6 +78,9 @@ class Scene:
         self.out = ball_out(self.field, ball)
         if not self.out:
             self.inside = ball
+        if game is self._read:
+            return False
+        self._read = game
         state = (game.command, game.restart, game.restart_team)
         if state == self._state:
             return False

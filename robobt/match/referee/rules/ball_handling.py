@@ -35,10 +35,12 @@ class Dribbling(Rule):
         carrier = touches.carrier
         if carrier is None or touches.carried <= self._most:
             self._told = None
-        elif carrier != self._told:
-            self._told = carrier
-            start, end = touches.carry_start, scene.frame.ball.position
-            yield event(scene, EventKind.BOT_DRIBBLED_BALL_TOO_FAR, carrier, start, start=start, end=end)
+            return ()
+        if carrier == self._told:
+            return ()
+        self._told = carrier
+        start, end = touches.carry_start, scene.frame.ball.position
+        return (event(scene, EventKind.BOT_DRIBBLED_BALL_TOO_FAR, carrier, start, start=start, end=end),)
 
 
 class BallSpeed(Rule):
@@ -53,16 +55,14 @@ class BallSpeed(Rule):
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report a kick once."""
         ball, last = scene.frame.ball, scene.touches.last
-        fast = ball.vx * ball.vx + ball.vy * ball.vy > self._most * self._most
-        if fast and not self._fast and last is not None:
-            yield event(
-                scene,
-                EventKind.BOT_KICKED_BALL_TOO_FAST,
-                last,
-                initial_ball_speed=ball.speed,
-                chipped=False,
-            )
-        self._fast = fast
+        was_fast = self._fast
+        self._fast = ball.vx * ball.vx + ball.vy * ball.vy > self._most * self._most
+        if was_fast or not self._fast or last is None:
+            return ()
+        speed = ball.speed
+        return (
+            event(scene, EventKind.BOT_KICKED_BALL_TOO_FAST, last, initial_ball_speed=speed, chipped=False),
+        )
 
 
 class DoubleTouch(Rule):
@@ -96,9 +96,10 @@ class DoubleTouch(Rule):
         """Report the second touch once."""
         kicker, touches = self._kicker, scene.touches
         if scene.phase is Phase.KICK or kicker is None:
-            return
+            return ()
         if touches.last != kicker or any(robot != kicker for robot in touches.now):
             self._kicker = None
         elif kicker in touches.now:
             self._kicker = None
-            yield event(scene, EventKind.ATTACKER_DOUBLE_TOUCHED_BALL, kicker, self._spot)
+            return (event(scene, EventKind.ATTACKER_DOUBLE_TOUCHED_BALL, kicker, self._spot),)
+        return ()

@@ -82,4 +82,5 @@ class KeeperHeld(Rule):
             self._team, self._since = defender, scene.time
         elif scene.time - self._since > self._limit:
             duration, self._since = scene.time - self._since, scene.time
-            yield team_event(scene, EventKind.KEEPER_HELD_BALL, defender, duration=duration)
+            return (team_event(scene, EventKind.KEEPER_HELD_BALL, defender, duration=duration),)
+        return ()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from math import inf
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Cooldown, Rule, team_event
@@ -38,7 +39,8 @@ class NoProgress(Rule):
             self._place, self._since = ball, time
         elif time - self._since > self._limit:
             stuck, self._since = time - self._since, time
-            yield team_event(scene, EventKind.NO_PROGRESS_IN_GAME, None, time=stuck)
+            return (team_event(scene, EventKind.NO_PROGRESS_IN_GAME, None, time=stuck),)
+        return ()
 
 
 class TooManyRobots(Rule):
@@ -47,7 +49,7 @@ class TooManyRobots(Rule):
     phases = frozenset({Phase.KICK, Phase.PLAY})
 
     def __init__(self) -> None:
-        self._most: dict[Team, int] = {}
+        self._most: tuple[int | None, int | None] = (None, None)
         self._cards: dict[Team, list[float]] = {Team.BLUE: [], Team.YELLOW: []}
         self._played = 0.0
         self._again = Cooldown()
@@ -55,17 +57,25 @@ class TooManyRobots(Rule):
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report a team every two seconds: its opponents may want play to go on."""
         self._played += scene.frame.period
-        for team, status, robots in (
-            (Team.BLUE, scene.game.blue, scene.frame.own),
-            (Team.YELLOW, scene.game.yellow, scene.frame.opponents),
+        blue, yellow = scene.game.blue.max_robots, scene.game.yellow.max_robots
+        frame = scene.frame
+        if (
+            (blue, yellow) == self._most
+            and len(frame.own) <= _any(blue)
+            and len(frame.opponents) <= _any(yellow)
         ):
-            most, cards = status.max_robots, self._cards[team]
+            return ()
+        return self._count(scene, {Team.BLUE: blue, Team.YELLOW: yellow})
+
+    def _count(self, scene: Scene, allowed: Mapping[Team, int | None]) -> Iterator[RefereeEvent]:
+        before = dict(zip(allowed, self._most, strict=True))
+        self._most = allowed[Team.BLUE], allowed[Team.YELLOW]
+        for team, most in allowed.items():
             if most is None:
                 continue
-            before = self._most.get(team, most)
-            if most != before:
-                cards += [self._played] * (before - most)
-            self._most[team] = most
+            robots, cards, was = scene.team(team), self._cards[team], before[team]
+            if was is not None:
+                cards += [self._played] * (was - most)
             if len(robots) <= most or scene.elapsed < _RUNNING:
                 continue
             recent = [card for card in cards if self._played - card < _TIME_TO_LEAVE]
@@ -78,3 +88,7 @@ class TooManyRobots(Rule):
                     num_robots_on_field=len(robots),
                     ball_location=scene.frame.ball.position,
                 )
+
+
+def _any(most: int | None) -> float:
+    return inf if most is None else most
