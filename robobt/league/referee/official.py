@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from zlib import crc32
@@ -27,8 +27,8 @@ from robobt.match.referee.openings import opening_of
 from robobt.match.refereeing import referee_settings
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
-from robobt.world.rules import taken_off
-from robobt.world.state import Frame, RobotState
+from robobt.world.rules import without_absent
+from robobt.world.state import Frame
 
 _log = logging.getLogger(__name__)
 
@@ -99,7 +99,7 @@ class OfficialReferee:
                     events += self._hear(controller.change(changes), frame.time)
                 pause = _IN_PLAY if self._follower.game.in_play else _STOPPED
                 self._due = frame.time + (_DECIDING if frame.time < self._decided else pause)
-                controller.ask(frame.time, self._on_field(frame))
+                controller.ask(frame.time, without_absent(frame, self._follower.game))
         except GameControllerError as error:
             crash = "" if self._process is None else self._process.crash()
             raise GameControllerError(f"{error}: {crash}" if crash else str(error)) from error
@@ -141,18 +141,6 @@ class OfficialReferee:
                     events.append(read)
         del self._known[:-_REMEMBERED]
         return events
-
-    def _on_field(self, frame: Frame) -> Frame:
-        """Return the frame without the robots that their handlers have taken off."""
-        game = self._follower.game
-        own = _left(frame.field, frame.own, game.blue.max_robots)
-        opponents = _left(frame.field, frame.opponents, game.yellow.max_robots)
-        return replace(frame, own=own, opponents=opponents)
-
-
-def _left(field: FieldGeometry, robots: tuple[RobotState, ...], most: int | None) -> tuple[RobotState, ...]:
-    off = taken_off(field, robots, most)
-    return tuple(robot for robot in robots if robot.id not in off) if off else robots
 
 
 @dataclass(slots=True, frozen=True)

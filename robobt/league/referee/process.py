@@ -5,6 +5,7 @@ Source of flags and settings: ssl-game-controller, ``cmd/ssl-game-controller`` a
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
@@ -107,12 +108,11 @@ class GameControllerProcess:
         return Path(self._folder.name) / "log"
 
     def _write_settings(self, game: Mapping[str, object]) -> None:
-        # JSON is YAML. Without an address of its own it publishes to the league's, on every interface.
-        import json
-
         config = Path(self._folder.name) / "config"
         config.mkdir()
+        # An address that is left out is the league's, on every interface.
         settings = {"network": {"publish-address": ""}, "game": dict(game)}
+        # JSON is YAML.
         (config / f"{PROGRAM}.yaml").write_text(json.dumps(settings))
 
     def _start(self, program: Path) -> MessageStream:
