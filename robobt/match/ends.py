@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from enum import StrEnum
 from math import ceil
 
+from robobt.match.referee.events import EventKind
 from robobt.match.scenario.scenario import Scenario
-from robobt.world.game import GameState, Stage, Team
+from robobt.world.game import GameState, Restart, Stage, Team
 from robobt.world.geometry import Point
 from robobt.world.rules import ALL_AROUND, ball_out, has_ball, scorer
 from robobt.world.state import Frame, RobotId
@@ -29,6 +30,9 @@ class Outcome(StrEnum):
     TIME = "time"
     SCORE = "score"
     """A team has reached the score limit."""
+    PLACED = "placed"
+    """A ball placement succeeded."""
+    NOT_PLACED = "not_placed"
     FULL_TIME = "full_time"
     """The referee has ended the match."""
 
@@ -60,6 +64,7 @@ class EndJudge:
         self._last = (ceil(ends.time_limit / scenario.period - 1e-9) - 0.5) * scenario.period
         self._ball_before: Point | None = None
         self._was_out = False
+        self._placing: Team | None = None
         self._held_since: float | None = None
         self._rest_since: float | None = None
 
@@ -80,6 +85,9 @@ class EndJudge:
             return Outcome.SCORE
         if game.stage is Stage.POST_GAME:
             return Outcome.FULL_TIME
+        placed = self._placed(game)
+        if placed is not None and self._ends.placement:
+            return placed
         if self._was_out and self._out_ends and goal_by is None:
             return Outcome.OUT
         if _lasted(self._since_held(truth), self._ends.held_by_goalkeeper, truth.time):
@@ -89,6 +97,14 @@ class EndJudge:
         if _lasted(self._since_rest(truth, kicks), self._ends.ball_at_rest, truth.time):
             return Outcome.REST
         return Outcome.TIME if truth.time >= self._last else None
+
+    def _placed(self, game: GameState) -> Outcome | None:
+        """Return how a ball placement ended at this frame; None where none did."""
+        placing = game.restart_team if game.restart is Restart.BALL_PLACEMENT else None
+        before, self._placing = self._placing, placing
+        if before is None or placing is before:
+            return None
+        return Outcome.PLACED if EventKind.PLACEMENT_SUCCEEDED in game.events else Outcome.NOT_PLACED
 
     def _goal_by(self, truth: Frame, game: GameState) -> Team | None:
         """Return who has scored since the frame before."""

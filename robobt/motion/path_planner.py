@@ -14,6 +14,7 @@ from functools import lru_cache
 from math import cos, hypot, inf, sqrt
 
 from robobt.motion.detour import Circle, detour, first_hit
+from robobt.motion.give_way import give_way
 from robobt.motion.pilot import drive
 from robobt.motion.stadium import outside_stadium
 from robobt.world.command import RobotCommand
@@ -61,7 +62,8 @@ def travel(
     A target that may not be driven to is replaced by :func:`allowed_target`.
     While the referee has stopped the game the robot keeps to the speed and, as
     in the opponents' restarts, to the distance from the ball that the rules ask. It keeps
-    out of the way of a ball that the opponents place.
+    out of the way of a ball that the opponents place, and gives way to opponents while the
+    ball is not in play.
 
     Args:
         frame: what is on the field.
@@ -93,7 +95,8 @@ def travel(
         placing=placing,
         ball_gap=ball_gap,
     )
-    return drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
+    order = drive(me, point, heading, limits, frame.period, final_speed if point == goal else speed)
+    return order if game.in_play or not avoid_robots else give_way(frame, me, order)
 
 
 @lru_cache(maxsize=256)

@@ -14,6 +14,7 @@ from robobt.plays.attack_main import attack_main
 from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.goalkeeper import goalkeeper
+from robobt.plays.penalty_kick import penalty_kick
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
@@ -151,14 +152,13 @@ def ball_dead() -> Behaviour:
 
 
 def take_penalty(farthest: float | None) -> Behaviour:
-    """Take an own penalty kick when nearest to it: the ball has to go forward."""
+    """Take an own penalty kick when nearest to it: carry the ball on, draw the goalkeeper, shoot in time."""
     return when(
         "our penalty",
         IsRestart(kind=Restart.PENALTY, ours=True),
         IsAttacker(farthest=farthest),
-        first_of("where to", SelectShot(), AimUpfield()),
         first_of("wait", MayTouchBall(), PrepareRestart()),
-        KickToTarget(),
+        penalty_kick(),
     )
 
 

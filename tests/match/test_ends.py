@@ -17,6 +17,8 @@ from robobt.world import (
     BallState,
     Frame,
     GameState,
+    RefereeCommand,
+    Restart,
     RobotId,
     RobotState,
     Stage,
@@ -161,3 +163,23 @@ def test_a_ball_at_rest_ends_the_trial_once_it_was_kicked() -> None:
     assert trial.see(speed=1.0, kicks=1) is None
     assert trial.wait(0.1, kicks=1) == [None] * 5
     assert trial.see(kicks=1) is Outcome.REST
+
+
+@pytest.mark.parametrize(
+    ("event", "outcome"),
+    [("placement_succeeded", Outcome.PLACED), ("placement_failed", Outcome.NOT_PLACED)],
+)
+def test_a_drill_ends_with_its_ball_placement(event: str, outcome: Outcome) -> None:
+    placing = GameState(
+        RefereeCommand.BALL_PLACEMENT_BLUE, restart=Restart.BALL_PLACEMENT, restart_team=Team.BLUE
+    )
+    over = GameState(RefereeCommand.STOP, events=(event,))
+    for ends, last in (({"placement": True}, outcome), ({}, None)):
+        trial = Trial(ends, referee={})
+        assert trial.see(game=placing) is None
+        assert trial.see(game=over) is last
+
+
+def test_a_drill_of_placements_needs_a_referee() -> None:
+    with pytest.raises(ValueError, match=r"ends\.placement.*referee"):
+        Trial({"placement": True})

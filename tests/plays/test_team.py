@@ -382,7 +382,8 @@ def played(request: pytest.FixtureRequest) -> Played:
             seen.fastest_in_stop = max(seen.fastest_in_stop, *(robot.speed for robot in everybody))
         seen.in_play += game.in_play
         border = frame.field.margin - 0.08
-        seen.outside += sum(not frame.field.contains(robot.x, robot.y, border) for robot in everybody)
+        present = without_absent(frame, game).robots().values()
+        seen.outside += sum(not frame.field.contains(robot.x, robot.y, border) for robot in present)
         step = hypot(frame.ball.x - ball[0], frame.ball.y - ball[1])
         seen.ball_way += step if step < 0.3 else 0.0
         ball, before = frame.ball.position, game

@@ -8,7 +8,7 @@ from math import cos, hypot, pi, sin
 import numpy as np
 
 from robobt.config.errors import FieldError, short_repr
-from robobt.match.scenario.starts import Around, BallStart, Box, Disc, RobotStart
+from robobt.match.scenario.starts import Anywhere, Around, BallStart, Box, Disc, RobotStart
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point, wrap_angle
@@ -113,10 +113,15 @@ class Placer:
 
     def _sample_ball(self) -> None:
         position = self._ball_start.position
-        assert isinstance(position, Box | Disc)
+        assert isinstance(position, Anywhere | Box | Disc)
         for _ in range(_TRIES):
-            place = position.sample(self._rng)
-            if self._free(place, BALL_RADIUS):
+            if isinstance(position, Anywhere):
+                place = position.sample(self._rng, self._field)
+                free = self._clear(place, BALL_RADIUS)
+            else:
+                place = position.sample(self._rng)
+                free = self._free(place, BALL_RADIUS)
+            if free:
                 self._put_ball(place)
                 return
         raise FieldError("ball.position", _full(position))
@@ -132,10 +137,11 @@ class Placer:
         return position.sample(self._rng)
 
     def _free(self, place: Point, radius: float) -> bool:
+        return self._field.contains(*place) and self._clear(place, radius)
+
+    def _clear(self, place: Point, radius: float) -> bool:
         gap = radius + self._clearance
-        return self._field.contains(*place) and all(
-            hypot(place[0] - x, place[1] - y) >= gap + other for x, y, other in self._taken
-        )
+        return all(hypot(place[0] - x, place[1] - y) >= gap + other for x, y, other in self._taken)
 
     def _put_ball(self, place: Point) -> None:
         self._ball = place

@@ -50,6 +50,7 @@ class Ends(Part):
         None, ge=0, le=60, description="after a kick the ball has lain still for this long [s]"
     )
     score_limit: int | None = Field(None, ge=1, le=100, description="a team has this many goals")
+    placement: bool = Field(False, description="a ball placement is over, whether it succeeded or not")
 
 
 class Scenario(Part):
@@ -118,6 +119,8 @@ class Scenario(Part):
     def _startable(self) -> Self:
         if self.ends.score_limit is not None and self.referee is None:
             raise FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
+        if self.ends.placement and self.referee is None:
+            raise FieldError("ends.placement", "needs the referee, who asks for it")
         self._check_starts()
         return self
 

@@ -91,11 +91,48 @@ class Around(Part):
         return f"{self.distance[0]:g} to {self.distance[1]:g} m from the {self.around}{turned}"
 
 
+class Anywhere(Part):
+    """Anywhere a ball may lie within the walls, uniformly, a share of it where it is hard to get at."""
+
+    at_walls: float = Field(
+        ge=0, le=1, description="share that lies at a wall, in a corner or in a goal, each as likely"
+    )
+
+    def sample(self, rng: np.random.Generator, field: FieldGeometry) -> Point:
+        """Sample a point of the field or of the margin around it [m]."""
+        most_x, most_y = field.outer[0] - _OFF_WALL, field.outer[1] - _OFF_WALL
+        x, y = (float(rng.uniform(-1.0, 1.0)) for _ in range(2))
+        side_x, side_y = (float(side) for side in rng.choice((-1.0, 1.0), 2))
+        goal = field.goal_width / 2 - _OFF_WALL
+        if rng.random() >= self.at_walls:
+            # Not on the goal line between the posts either, where there may be a post.
+            inside = field.half_length - _OFF_WALL if abs(y * most_y) < field.goal_width else most_x
+            return (x * inside, y * most_y)
+        kind = rng.integers(3)
+        if kind == 0:
+            return (side_x * (field.half_length + field.goal_depth - _OFF_WALL), y * goal)
+        if kind == 1:
+            return (side_x * most_x, side_y * most_y)
+        if rng.random() < field.length / (field.length + field.width):
+            return (x * most_x, side_y * most_y)
+        beside = field.goal_width / 2 + _OFF_WALL + field.margin / 10
+        return (side_x * most_x, side_y * (beside + abs(y) * (most_y - beside)))
+
+    def __str__(self) -> str:
+        return f"anywhere within the walls, {self.at_walls:.0%} at walls, in corners and in goals"
+
+
+_OFF_WALL = 0.025
+"""From a wall to the centre of a ball that lies at it [m]."""
+
+
 def _position_kind(value: object) -> str:
-    if isinstance(value, Box | Disc | Around):
+    if isinstance(value, Box | Disc | Around | Anywhere):
         return type(value).__name__
     if not isinstance(value, dict):
         return "Place"
+    if "at_walls" in value:
+        return "Anywhere"
     return "Around" if "around" in value else "Disc" if "center" in value or "radius" in value else "Box"
 
 
@@ -103,7 +140,8 @@ Position = Annotated[
     Annotated[Place, Tag("Place")]
     | Annotated[Box, Tag("Box")]
     | Annotated[Disc, Tag("Disc")]
-    | Annotated[Around, Tag("Around")],
+    | Annotated[Around, Tag("Around")]
+    | Annotated[Anywhere, Tag("Anywhere")],
     Discriminator(_position_kind),
 ]
 """A fixed point or a distribution of points."""
@@ -152,7 +190,9 @@ class RobotStart(Part):
 class BallStart(Part):
     """The ball at the start, in world coordinates, which are blue's view."""
 
-    position: Position | None = Field(None, description="[x, y], a box {x, y} or a disc {center, radius} [m]")
+    position: Position | None = Field(
+        None, description="[x, y], a box {x, y} or a disc {center, radius} [m], or {at_walls}"
+    )
     velocity: tuple[Annotated[float, Field(ge=-20, le=20)], Annotated[float, Field(ge=-20, le=20)]] = Field(
         (0.0, 0.0), description="vx, vy [m/s]"
     )

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from robobt.match.scenario.starts import Around, BallStart, Box, Disc, RobotStart
+from robobt.match.scenario.starts import Anywhere, Around, BallStart, Box, Disc, RobotStart
 from robobt.world import DIVISION_B
+from robobt.world.state import BALL_RADIUS
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -105,3 +106,17 @@ def test_a_position_that_cannot_be_is_refused(value: Any) -> None:
 def test_a_ball_has_one_place(values: dict[str, Any], problem: str) -> None:
     with pytest.raises(ValidationError, match=problem):
         BallStart(**values)
+
+
+def test_anywhere_is_within_the_walls_and_as_often_at_them_as_asked() -> None:
+    rng, places = np.random.default_rng(0), []
+    wall_x, wall_y = DIVISION_B.outer
+    for _ in range(2000):
+        x, y = Anywhere(at_walls=0.3).sample(rng, DIVISION_B)
+        assert abs(x) < wall_x - BALL_RADIUS
+        assert abs(y) < wall_y - BALL_RADIUS
+        # Never in the wall or a post of a goal.
+        assert abs(x) < DIVISION_B.half_length or abs(abs(y) - DIVISION_B.goal_width / 2) > BALL_RADIUS
+        in_goal = abs(x) > DIVISION_B.half_length and abs(y) < DIVISION_B.goal_width / 2
+        places.append(in_goal or abs(x) > wall_x - 0.03 or abs(y) > wall_y - 0.03)
+    assert np.mean(places) == pytest.approx(0.3, abs=0.05)

@@ -1,0 +1,60 @@
+"""Not running into opponents while the ball is not in play."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robobt.motion.give_way import give_way
+from robobt.motion.path_planner import travel
+from robobt.world import RobotCommand, RobotState
+from robobt.world.game import Team
+from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.refereed import OPEN, STOP, free_kick
+
+FULL = RobotCommand(3.0, 0.0, 0.0)
+speed = st.floats(-3.0, 3.0)
+
+
+def order(me: RobotState, *others: RobotState) -> RobotCommand:
+    return give_way(frame(me, opponents=others), me, RobotCommand(3.0, 0.0, 0.0))
+
+
+def test_a_robot_brakes_before_one_that_stands_in_its_way() -> None:
+    me, other = robot(number=1), robot(1.5, 0.0)
+    for _ in range(180):
+        before = me
+        me = moved(me, order(me, other), 1 / 60)
+        if hypot(other.x - me.x, other.y - me.y) < 0.19:
+            break
+    assert before.speed < 1.4
+
+
+def test_it_stops_for_one_that_comes_at_full_speed() -> None:
+    oncoming = robot(0.8, 0.0, velocity=(-3.0, 0.0, 0.0))
+    assert order(robot(number=1), oncoming).vx == 0.0
+
+
+def test_what_passes_by_or_is_far_away_does_not_matter() -> None:
+    assert order(robot(number=1), robot(0.5, 0.6)) == FULL
+    assert order(robot(number=1), robot(-0.3, 0.0)) == FULL
+    assert order(robot(number=1), robot(2.5, 0.0)) == FULL
+
+
+@given(x=st.floats(-2, 2), y=st.floats(-2, 2), vx=speed, vy=speed, asked=speed, across=speed)
+def test_nobody_is_made_to_go_faster(
+    x: float, y: float, vx: float, vy: float, asked: float, across: float
+) -> None:
+    me, other = robot(number=1), robot(x, y, velocity=(vx, vy, 0.0))
+    given_way = give_way(frame(me, opponents=(other,)), me, RobotCommand(asked, across, 0.0))
+    assert hypot(given_way.vx, given_way.vy) <= hypot(asked, across) + 1e-9
+
+
+def test_only_while_the_ball_is_not_in_play() -> None:
+    me, other = robot(number=1, velocity=(3.0, 0.0, 0.0)), robot(0.6, 0.05, velocity=(-3.0, 0.0, 0.0))
+    for game, slower in ((OPEN, False), (STOP, True), (free_kick(Team.YELLOW, (0.0, 2.0)), True)):
+        seen = frame(me, (0.0, 2.0), opponents=(other,), game=game)
+        command = travel(seen, me, (2.0, 0.0), 0.0, me.limits)
+        assert (command.vx < 0.1) is slower
