@@ -9,6 +9,9 @@ from robobt.plays.attack_nn import attack_nn as attack_nn
 from robobt.plays.attack_support import attack_support as attack_support
 from robobt.plays.base import PLAYS as PLAYS
 from robobt.plays.base import Play as Play
+from robobt.plays.baselines.team_2026_11 import defender_2026_11 as defender_2026_11
+from robobt.plays.baselines.team_2026_11 import field_player_2026_11 as field_player_2026_11
+from robobt.plays.baselines.team_2026_11 import keeper_2026_11 as keeper_2026_11
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball_and_shoot
 from robobt.plays.goalkeeper import fitted_goalkeeper as fitted_goalkeeper
 from robobt.plays.goalkeeper import goalkeeper as goalkeeper
