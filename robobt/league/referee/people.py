@@ -5,17 +5,21 @@ Source of what the controller leaves to them: ssl-game-controller, ``engine/proc
 
 from __future__ import annotations
 
+import logging
+
 from robobt.league.referee.setup import ball_position, command, stage
+from robobt.league.referee.waiting import ball_problems, waits_for
 from robobt.league.wire.messages import Change
 from robobt.match.referee.positions import ball_placed, spot_free
 from robobt.match.referee.restarts import free_kick_spot, penalty
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.stages import Stages
 from robobt.world.field import FieldGeometry
-from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
+from robobt.world.game import GameState, RefereeCommand, Restart, Stage
 from robobt.world.geometry import Point, distance
-from robobt.world.rules import ball_out, in_defense_area
 from robobt.world.state import Frame
+
+_log = logging.getLogger(__name__)
 
 _HALT_TIME = 2.0
 """Robots have this long to stand, and people to carry the ball, before a HALT ends [s]. Source: SSL rules."""
@@ -35,11 +39,14 @@ _GIVEN_UP = 2.0
 _PATIENCE = 5.0
 """The ball is put down after this long even if a robot stands on the spot [s]."""
 
+_ROLLS = 0.15
+"""A ball that is faster is not put down yet [m/s]."""
+
 _MOVED = 0.1
 """The controller's place is not the one of the restart from this distance on [m]."""
 
-_PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
-"""The controller goes on with a ball so near to its spot, so far from defence areas, so slow [m, m, m/s]."""
+_LONG = 60.0
+"""A stop that lasts longer than this is told, with what the controller waits for [s]."""
 
 _BREAKS = frozenset(
     {Stage.NORMAL_HALF_TIME, Stage.EXTRA_TIME_BREAK, Stage.EXTRA_HALF_TIME, Stage.PENALTY_SHOOTOUT_BREAK}
@@ -58,6 +65,7 @@ class People:
         self._field, self._settings = field, settings
         self._state: tuple[RefereeCommand, Stage] | None = None
         self._since = 0.0
+        self._told = False
         self._stages = Stages(settings)
 
     def clicks(self, frame: Frame, game: GameState) -> list[Change]:
@@ -108,10 +116,15 @@ class People:
         """Return for how long the present command and stage have been in force [s]."""
         state = (game.command, game.stage)
         if state != self._state:
-            self._state, self._since = state, frame.time
+            self._state, self._since, self._told = state, frame.time, False
             if state == (RefereeCommand.NORMAL_START, Stage.PENALTY_SHOOTOUT):
                 self._stages.begin_attempt()
-        return frame.time - self._since
+        lasted = frame.time - self._since
+        if lasted > _LONG and not self._told and not game.in_play:
+            self._told = True
+            reasons = ", ".join(waits_for(self._field, frame, game)) or "nothing that can be seen"
+            _log.warning("%s lasts for %.0f s: %s", game.command.name, lasted, reasons)
+        return lasted
 
     def _prepared(self, game: GameState) -> Point | None:
         """Return where the ball belongs for a kick-off or penalty kick that is to come, None without one."""
@@ -128,17 +141,9 @@ class People:
             return prepared
         wait = _GIVEN_UP if self._settings.placement == "robots" else self._settings.placement_delay
         given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > wait
-        spot = game.placement or free_kick_spot(self._field, *frame.ball.position)
-        return spot if given_up and self._blocks(frame, spot) else None
-
-    def _blocks(self, frame: Frame, spot: Point) -> bool:
-        """Return whether the ball lies where the controller does not go on."""
-        ball = frame.ball
-        if ball.speed >= _STILL:
-            return False
-        far = distance(ball.position, spot) > _PLACED
-        near = any(in_defense_area(self._field, team, ball.x, ball.y, _AREA_GAP) for team in Team)
-        return far or near or ball_out(self._field, ball.position)
+        if not given_up or frame.ball.speed > _ROLLS or not ball_problems(self._field, frame, game):
+            return None
+        return game.placement or free_kick_spot(self._field, *frame.ball.position)
 
 
 _PLAYED = frozenset(

@@ -1,0 +1,61 @@
+"""What the official controller waits for, in words: it does not say so itself.
+
+Source: ssl-game-controller, ``engine/process_continue_next_command.go``.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.world.field import FieldGeometry
+from robobt.world.game import GameState, RefereeCommand, Restart, Team
+from robobt.world.geometry import distance
+from robobt.world.rules import ball_out, in_defense_area, own_side, without_absent
+from robobt.world.state import ROBOT_RADIUS, Frame
+
+_NEAR_BALL = 0.54
+"""No robot's centre may be nearer to the ball in STOP [m]."""
+
+_PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
+"""The ball has to lie so near to its place, so far from defence areas, so slow [m, m, m/s]."""
+
+
+def ball_problems(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
+    """Return what is wrong with the place of the ball for play to go on; nothing where it is right."""
+    ball, problems = frame.ball, []
+    if ball.speed >= _STILL:
+        problems.append("the ball rolls")
+    if game.placement is not None and distance(ball.position, game.placement) > _PLACED:
+        problems.append(f"the ball is {distance(ball.position, game.placement):.2f} m from its place")
+    if any(in_defense_area(field, team, ball.x, ball.y, _AREA_GAP) for team in Team):
+        problems.append("the ball is too near to a defence area")
+    if ball_out(field, ball.position):
+        problems.append("the ball is out of the field")
+    return problems
+
+
+def waits_for(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
+    """Return what keeps a STOP or the preparation of a kick-off from going on, in words.
+
+    The frame is a true one, seen from blue's side.
+    """
+    robots = without_absent(frame, game).robots()
+    if game.restart is Restart.KICKOFF and game.command is not RefereeCommand.STOP:
+        return [
+            f"{robot} is not in its own half"
+            for robot, state in robots.items()
+            if state.x * own_side(robot.team) < ROBOT_RADIUS
+        ]
+    if game.command is not RefereeCommand.STOP:
+        return []
+    problems = ball_problems(field, frame, game)
+    for robot, state in robots.items():
+        gap = hypot(state.x - frame.ball.x, state.y - frame.ball.y)
+        taker = game.restart is Restart.FREE_KICK and robot.team is game.restart_team
+        if gap < _NEAR_BALL and not taker:
+            problems.append(f"{robot} is {gap:.2f} m from the ball")
+    for team in Team:
+        most, there = game.status(team).max_robots, sum(robot.team is team for robot in robots)
+        if most is not None and there > most:
+            problems.append(f"{team.value} has {there} robots and may have {most}")
+    return problems
