@@ -22,6 +22,7 @@ from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.messages import Change
 from robobt.match.referee.controller import Controller
 from robobt.match.referee.events import Detail, EventKind, RefereeEvent
+from robobt.match.referee.openings import opening_of
 from robobt.match.referee.restarts import free_kick, kickoff, penalty
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world import (
@@ -47,6 +48,7 @@ pytestmark = [
 ]
 
 K = EventKind
+GENERATOR = np.random.default_rng(1)
 STATES = ("play", "free_kick", "kickoff", "penalty", "stop_free_kick", "stop_kickoff")
 STOPPED = (RefereeCommand.STOP, RefereeCommand.HALT)
 IN_STOP = (
@@ -231,7 +233,8 @@ def begun(field: FieldGeometry, *, by_itself: bool) -> Iterator[Official]:
         config.auto_continue = by_itself
         controller.ask(0.0)
         controller.answer()
-        controller.change(setup.changes(), config)
+        opening = opening_of(setup.settings, field, Frame(0.0, field, BallState(0.0, 0.0)), GENERATOR)
+        controller.change(setup.changes(opening), config)
         controller.ask(0.0, None, write_geometry(field))
         controller.answer()
         yield Official(controller, field)
