@@ -59,6 +59,7 @@ class RefereeFollower:
         game: the current state, in the coordinates of the packets; HALT before the first.
         blue_on_positive_half: whether blue defends +x; None until a packet says so.
         counts: what happened to the packets.
+        news: game events that were new in the packets; whoever uses them empties the list.
     """
 
     def __init__(self) -> None:
@@ -67,6 +68,8 @@ class RefereeFollower:
         )
         self.blue_on_positive_half: bool | None = None
         self.counts = PacketCounts()
+        self.news: list[GameEvent] = []
+        self._told: set[bytes] = set()
         self._counter: tuple[int, int, int] | None = None
         self._ready: tuple[Point, float] | None = None
         self._sender: tuple[str, int] | None = None
@@ -105,6 +108,13 @@ class RefereeFollower:
             if not on_field(*placement):
                 return None
         command = _command(message.command)
+        events = message.game_events[:MAX_OBJECTS]
+        told = {event.SerializeToString(): event for event in events}
+        # They stay in the packets until play goes on.
+        self.news = (self.news + [event for each, event in told.items() if each not in self._told])[
+            -MAX_OBJECTS:
+        ]
+        self._told = set(told)
         if message.HasField("blue_team_on_positive_half"):
             self.blue_on_positive_half = message.blue_team_on_positive_half
         upcoming = _command(message.next_command) if message.HasField("next_command") else None
@@ -129,9 +139,7 @@ class RefereeFollower:
             blue=_status(message.blue),
             yellow=_status(message.yellow),
             upcoming=upcoming,
-            events=tuple(
-                [GameEvent.Type.Name(event.type).lower() for event in message.game_events[:MAX_OBJECTS]]
-            ),
+            events=tuple([GameEvent.Type.Name(event.type).lower() for event in events]),
             action_time=_seconds(message, "current_action_time_remaining"),
             stage_time=_seconds(message, "stage_time_left"),
         )

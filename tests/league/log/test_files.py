@@ -16,11 +16,15 @@ from robobt.league.log.world import LogWorld, record_log
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.gameevents import write_event
+from robobt.league.wire.messages import Referee
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match import Match, load_scenario
 from robobt.match.recording import load_recording
+from robobt.match.recording.statistics import recorded_statistics
+from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.world import World
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_A
@@ -220,6 +224,20 @@ def test_a_log_becomes_a_recording(tmp_path: Path, played: Path) -> None:
         "yellow 0",
         "yellow 1",
     ]
+
+
+def test_a_logs_game_events_are_recorded_once_and_counted(tmp_path: Path, played: Path) -> None:
+    crash = RefereeEvent(0.5, EventKind.BOT_CRASH_UNIQUE, Team.YELLOW, RobotId(Team.YELLOW, 1))
+    records = list(read_log(played))
+    for i, record in enumerate(records):
+        if record.kind == LogKind.REFEREE and i > len(records) // 2:
+            message = Referee.FromString(record.data)
+            message.game_events.append(write_event(crash, 0.0, "test"))
+            records[i] = record._replace(data=message.SerializeToString())
+    told = write(tmp_path / "told.log", records)
+    recording = load_recording(record_log(told, tmp_path / "told.robobt.arrows"))
+    assert [(event.kind, event.team) for event in recording.events] == [("bot_crash_unique", Team.YELLOW)]
+    assert recorded_statistics(recording)["yellow"].fouls == 1
 
 
 def test_a_scenarios_robots_watch_a_log(played: Path) -> None:
