@@ -53,6 +53,15 @@ def deployed(
         typer.Option("--defenders", min=0, max=2, help="Besides the goalkeeper. 0, 1 and 2 by default."),
     ] = None,
     workers: Workers = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FOLDER",
+            help="Keep the trials here as they finish: the command, given again, goes on where it stopped.",
+        ),
+    ] = None,
     picture: Annotated[
         Path | None,
         typer.Option(
@@ -113,6 +122,7 @@ def deployed(
             attackers=attackers,
             progress=progress.advance,
             world=factory,
+            out=out,
         )
         if picture is not None:
             judged_goal_line(situations[0], used, picture, factory)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
+from pathlib import Path
 from statistics import fmean
 from typing import TypedDict
 
@@ -155,6 +157,7 @@ def deployed(
     attackers: Sequence[str] = tuple(ATTACKERS),
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
+    out: Path | None = None,
 ) -> Deployed:
     """Play every attacker in every situation.
 
@@ -169,8 +172,10 @@ def deployed(
         attackers: some of :data:`ATTACKERS`.
         progress: called after every trial.
         world: where it is played; one of the league takes one worker.
+        out: folder that keeps the trials as they finish; those that it holds are not played again.
 
     Raises:
+        ResultsFileError: the folder holds trials of other settings.
         ScenarioError: a play cannot be made, as where a model is missing.
     """
 
@@ -184,7 +189,8 @@ def deployed(
         found: dict[str, Attacker] = {}
         for name in attackers:
             scenario = deployed_scenario(situation, name)
-            results = run_trials(scenario, world, shots, workers, seed, on_result=played).results
+            kept = None if out is None else out / f"{_file_name(situation, name)}.jsonl"
+            results = run_trials(scenario, world, shots, workers, seed, kept, on_result=played).results
             first = results if first is None else first
             published = PAPER[situation.speed].get(name) if not situation.defenders else None
             match = (name, situation.goalkeeper, situation.starts, situation.defenders)
@@ -202,6 +208,10 @@ def deployed(
             )
         )
     return {"shots": shots, "seed": seed, "cells": cells}
+
+
+def _file_name(situation: Situation, attacker: str) -> str:
+    return re.sub(r"[^\w.]+", "-", f"{situation} {attacker}")
 
 
 def deployed_scenario(situation: Situation, attacker: str) -> Scenario:

@@ -17,7 +17,8 @@ from robobt.experiments.deployed import (
 )
 from robobt.experiments.goal_map import draw_goal_map, goal_map
 from robobt.match.loop import Match
-from robobt.match.scenario.scenario import load_scenario
+from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.world.protocol import World
 from robobt.worlds import sim_world
 
 PNG = b"\x89PNG"
@@ -43,6 +44,25 @@ def test_every_attacker_is_judged_on_the_same_starts_beside_the_papers_figures()
         assert sum(one["outcomes"].values()) == one["distinct"] == 3
     pairs = full["attack_nn"]["against_half_speed"]
     assert pairs["only_this"] - pairs["only_other"] == full["attack_nn"]["goals"] - half["attack_nn"]["goals"]
+
+
+@pytest.mark.integration
+def test_what_was_played_before_a_kill_is_not_played_again(tmp_path: Path):
+    situations, attackers = NEAR[:1], ("attack_main", "attack_nn")
+    whole = deployed(2, seed=11, situations=situations, attackers=attackers, out=tmp_path)
+    kept = sorted(tmp_path.iterdir())
+    assert len(kept) == 2
+    # As if it had been killed in the first trial of the last attacker.
+    kept[1].write_text("".join(kept[1].read_text().splitlines(keepends=True)[:1]))
+    made = []
+
+    def counted(scenario: Scenario) -> World:
+        made.append(scenario)
+        return sim_world(scenario)
+
+    again = deployed(2, seed=11, situations=situations, attackers=attackers, out=tmp_path, world=counted)
+    assert again == whole
+    assert len(made) == 2
 
 
 @pytest.mark.parametrize(("speed", "factor"), [("half", 0.5), ("full", 1.0)])
