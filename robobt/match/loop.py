@@ -14,7 +14,8 @@ import numpy as np
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
-from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
+from robobt.match.recorder import match_recorder
+from robobt.match.recording import Recorder
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.measures import Measures, Trace
@@ -26,7 +27,6 @@ from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import World
 from robobt.world.rules import own_side, without_absent
 from robobt.world.state import Frame, RobotId
@@ -100,7 +100,10 @@ class Match:
         self._spoilers: set[RobotId] = set()
         self._time = 0.0
         with uninterrupted:
-            self._recorder = None if record is None else self._make_recorder(Path(record))
+            self._recorder: Recorder | None = None
+            if record is not None:
+                first = self.world.truth()
+                self._recorder = match_recorder(Path(record), scenario, trial, seed, first, self.players)
 
     def play(self) -> MatchResult:
         """Play to the end."""
@@ -253,33 +256,6 @@ class Match:
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
         return decision.events
-
-    def _make_recorder(self, path: Path) -> Recorder:
-        scenario = self.scenario
-        header = RecordingHeader(
-            scenario=scenario.name,
-            trial=self.trial,
-            seed=self.seed,
-            period=scenario.period,
-            field=self._field,
-            played=scenario.model_dump(mode="json"),
-            robots=tuple(
-                RecordedRobot(
-                    team=robot.team, number=robot.number, play=setup.play, limits=self._limits_of(robot)
-                )
-                for robot, setup in scenario.robots
-            ),
-        )
-        return Recorder(
-            path,
-            header,
-            {player.robot: player.runner for player in self.players},
-            {player.robot: player.store for player in self.players},
-        )
-
-    def _limits_of(self, robot: RobotId) -> RobotLimits:
-        state = self.world.truth().seen_by(robot.team).robot(robot.number)
-        return DEFAULT_LIMITS if state is None else state.limits
 
     def _record(self, recorder: Recorder, truth: Frame, packed: bytes, observed: Frame) -> None:
         for robot in self.measures.kicked:
