@@ -41,8 +41,6 @@ While it has something to decide, while play is stopped, while the ball is in pl
 _DECIDES = 1.5
 """The controller takes a second to believe a report; for so long it has something to decide [s]."""
 
-_REMEMBERED = 200
-
 
 class OfficialReferee:
     """Tells the official controller what is on the field and what happened, and decides as it does.
@@ -64,7 +62,6 @@ class OfficialReferee:
         self._process: GameControllerProcess | None = None
         self._controller: LockstepController | None = None
         self._reports: list[Change] = []
-        self._known: list[str] = []
         self._due = self._decided = 0.0
 
     def update(self, frame: Frame) -> Decision:
@@ -132,14 +129,11 @@ class OfficialReferee:
         for message in messages:
             if not self._follower.follow(message):
                 raise GameControllerError("the game controller names a place that is on no field")
-            for event in message.game_events:
-                if event.id in self._known:
-                    continue
-                self._known.append(event.id)
+            for event in self._follower.news:
                 read = read_event(event, EPOCH, now)
                 if read is not None:
                     events.append(read)
-        del self._known[:-_REMEMBERED]
+            self._follower.news.clear()
         return events
 
 
