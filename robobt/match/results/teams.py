@@ -37,8 +37,11 @@ _SHORTEST_PASS = 0.3
 
 _TAKEN = (Restart.KICKOFF, Restart.FREE_KICK)
 
-_JUMP = 0.5
-"""A robot or ball that is farther from where it was a frame before was put there [m]."""
+_STRIDE = 0.1
+"""The way of robots is measured in straight pieces of this time [s]."""
+
+_JUMP = 1.0
+"""A robot that is farther from where it was a piece before was put there [m]."""
 
 
 class TeamEvent(Protocol):
@@ -107,6 +110,7 @@ class TeamStatistics:
         self._teams = {team: TeamResult() for team in Team}
         self._touches = Touches()
         self._before: Frame | None = None
+        self._marked: tuple[float, dict[RobotId, Point]] | None = None
         self._holder: RobotId | None = None
         self._flight: _Flight | None = None
         self._placing: Team | None = None
@@ -163,15 +167,16 @@ class TeamStatistics:
             self._teams[team].yellow_cards += max(0, self._cards[team] - before[team])
 
     def _drive(self, frame: Frame) -> None:
-        if self._before is None:
+        if self._marked is not None and frame.time - self._marked[0] < _STRIDE:
             return
-        known = self._before.robots()
-        for robot, state in frame.robots().items():
-            last = known.get(robot)
-            if last is not None:
-                way = distance(last.position, state.position)
+        places = {robot: state.position for robot, state in frame.robots().items()}
+        if self._marked is not None:
+            known = self._marked[1]
+            for robot, place in places.items():
+                way = distance(known.get(robot, place), place)
                 if way < _JUMP:
                     self._teams[robot.team].distance += way
+        self._marked = frame.time, places
 
     def _follow_restart(self, game: GameState) -> None:
         placing = game.restart_team if game.restart is Restart.BALL_PLACEMENT else None

@@ -169,9 +169,8 @@ def test_fouls_cards_and_placements_are_the_referees() -> None:
 
 def test_the_way_that_robots_drive_is_added_up_but_not_where_they_are_put() -> None:
     story = match()
-    story.frame((1.0, 1.0))
-    story.blue[1] = (0.1, 0.0)
-    story.frame((1.0, 1.0))
-    story.blue[1] = (-4.0, 0.0)
-    story.frame((1.0, 1.0))
+    for place in ((0.0, 0.0), (0.1, 0.0), (-4.0, 0.0)):
+        story.blue[1] = place
+        for _ in range(7):
+            story.frame((1.0, 1.0))
     assert story.of(Team.BLUE).distance == pytest.approx(0.1)
