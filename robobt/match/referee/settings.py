@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from robobt.config.validation import Settings
 from robobt.world.division import Division
@@ -13,7 +13,7 @@ from robobt.world.geometry import Point
 from robobt.world.rules import CARRY_DISTANCE, IN_PLAY_DISTANCE, STOP_DISTANCE, STOP_SPEED
 from robobt.world.state import RobotId
 
-Time = float | Literal["rules"]
+Time = Annotated[float, Field(ge=0)] | Literal["rules"]
 """A time, or the one of the rules for the division that the field belongs to [s]."""
 
 
@@ -107,6 +107,11 @@ class RefereeSettings(Settings):
     shoot_out: bool = Field(False, description="whether a shoot-out decides a draw")
     blue_keeper: int = Field(0, ge=0, le=31, description="number of blue's goalkeeper")
     yellow_keeper: int = Field(0, ge=0, le=31, description="number of yellow's goalkeeper")
+
+    @field_validator("opening_spot", mode="before")
+    @classmethod
+    def _spot_of_a_file(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
 
     def keeper(self, team: Team) -> RobotId:
         """Return ``team``'s goalkeeper at the start."""

@@ -30,7 +30,7 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
     taken: list[tuple[str, float, float, float]] = []
     holder = _robot_called(ball.held_by)
     if ball.position is not None:
-        _check_inside(ball.position, field, "ball.position")
+        check_inside(ball.position, field, "ball.position")
         if isinstance(ball.position, tuple):
             taken.append(("the ball", *ball.position, BALL_RADIUS))
     elif holder not in robots:
@@ -39,7 +39,7 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
     for robot, start in robots.items():
         where = _field_of(robot, robots)
         position = start.position
-        _check_inside(position, field, f"{where}.position")
+        check_inside(position, field, f"{where}.position")
         if robot == holder and isinstance(position, Around) and position.around == "ball":
             raise FieldError(f"{where}.position", "it holds the ball, so it cannot start around the ball")
         if robot == holder and start.heading == "towards ball":
@@ -162,7 +162,12 @@ def _full(position: object) -> str:
     return f"no free place {position} found in {_TRIES} tries"
 
 
-def _check_inside(position: object, field: FieldGeometry, where: str) -> None:
+def check_inside(position: object, field: FieldGeometry, where: str) -> None:
+    """Check that places lie on the field: a place, or all of a box or the centre of a disc.
+
+    Raises:
+        FieldError: one does not; ``where`` is its field.
+    """
     points: Sequence[Point] = ()
     if isinstance(position, Box):
         points = [(x, y) for x in position.x for y in position.y]

@@ -15,7 +15,7 @@ from robobt.config.resources import bundled_scenarios
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
-from robobt.match.scenario.placing import Placer, check_starts
+from robobt.match.scenario.placing import Placer, check_inside, check_starts
 from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
 from robobt.plays.files import is_play_file
@@ -121,6 +121,9 @@ class Scenario(Part):
             raise FieldError("ends.score_limit", "needs the referee, who restarts play after a goal")
         if self.ends.placement and self.referee is None:
             raise FieldError("ends.placement", "needs the referee, who asks for it")
+        spot = None if self.referee is None else self.referee.opening_spot
+        if isinstance(spot, tuple):
+            check_inside(spot, self.field, "referee.opening_spot")
         self._check_starts()
         return self
 

@@ -138,7 +138,10 @@ class TestFields:
         assert (limits.max_speed, limits.acceleration) == (1.0, 2.0)
 
     def test_it_survives_its_own_json(self):
-        loaded = scenario(ball={"position": {"center": [0, 0], "radius": 1}}, referee=True)
+        referee = {"opening": "free_kick", "opening_spot": [1, -2.5]}
+        loaded = scenario(ball={"position": {"center": [0, 0], "radius": 1}}, referee=referee)
+        assert loaded.referee is not None
+        assert loaded.referee.opening_spot == (1.0, -2.5)
         again = scenario_from(json.loads(loaded.model_dump_json()), "again")
         assert again.model_dump() == loaded.model_dump()
 
@@ -181,6 +184,12 @@ class TestFields:
                 "referee.max_dribbel: there is no such field; there are opening",
             ),
             ({"referee": "on"}, "referee: input should be"),
+            ({"referee": {"opening_spot": [50, 0]}}, "referee.opening_spot: (50, 0) lies outside the field"),
+            (
+                {"referee": {"opening_spot": ["1", 0]}},
+                "referee.opening_spot.0: input should be a valid number",
+            ),
+            ({"referee": {"kick_timeout": -1}}, "referee.kick_timeout: input should be greater"),
             ({"seed": -1}, "seed: input should be greater"),
             ({"seed": 2**60}, "seed: input should be less"),
         ],
