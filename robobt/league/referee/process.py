@@ -36,9 +36,13 @@ _TRIES = 5
 _GUARD = """
 exec 3<&0
 "$@" 3<&- & child=$!
-{ read -r _ <&3; kill "$child"; } 2>/dev/null & wait "$child"
+{ read -r _ <&3; kill -KILL 0; } & wait "$child"
 """
-"""A shell that ends with the program, and ends it when its own input ends, however this process does."""
+"""A shell that ends with the program, and ends it when its own input ends, however this process does.
+
+It leads a group of processes, all of which it kills: a program may be a script that started another, stand
+still or mind no other signal.
+"""
 
 
 class GameControllerError(RobobtError, RuntimeError):
@@ -52,10 +56,13 @@ def find_game_controller(path: str | Path | None = None) -> Path:
         GameControllerError: there is none; the message says where to get it.
     """
     named = path or os.environ.get(VARIABLE)
-    found = shutil.which(named or PROGRAM)
+    # A Path has lost the "./" without which only the PATH would be searched.
+    found = (shutil.which(Path(named).absolute()) if named else None) or shutil.which(named or PROGRAM)
     if found is not None:
         return Path(found).absolute()
     problem = f"{one_line(str(named))} is no program" if named else f"{PROGRAM} is not on PATH"
+    if named and Path(named).is_file():
+        problem += " until it may be executed (chmod +x)"
     raise GameControllerError(
         f"{problem}: the official game controller is a program of its own, which "
         "https://github.com/RoboCup-SSL/ssl-game-controller/releases has for every system; name it with "

@@ -71,6 +71,21 @@ def test_the_option_goes_before_the_environment_and_that_before_the_path(
     assert find_game_controller(program) == program
 
 
+def test_a_program_in_the_present_folder_needs_no_dot_before_its_name(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(program.parent)
+    assert find_game_controller(Path("./") / program.name) == program
+
+
+def test_a_program_that_was_only_downloaded_is_said_to_need_its_permission(tmp_path: Path) -> None:
+    downloaded = tmp_path / PROGRAM
+    downloaded.write_text("#!/bin/sh\n")
+    downloaded.chmod(0o644)
+    with pytest.raises(GameControllerError, match=r"is no program until it may be executed \(chmod \+x\)"):
+        find_game_controller(downloaded)
+
+
 def test_what_is_not_the_controller_is_an_error_that_names_it(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong"
     wrong.write_text("#!/bin/sh\necho panic: this is something else; exit 3\n")
@@ -91,6 +106,21 @@ def test_it_publishes_nothing_and_ends_when_it_is_closed(program: Path, tmp_path
     assert gone("fake_controller")
     assert not folder.exists()
     assert not running(name)
+
+
+@pytest.mark.integration
+def test_it_ends_at_once_even_if_it_minds_no_signal_and_has_started_others(
+    program: Path, tmp_path: Path
+) -> None:
+    deaf = tmp_path / "deaf"
+    # What a shell ignores is ignored by the programs that it starts.
+    deaf.write_text(f'#!/bin/sh\ntrap "" TERM INT HUP\n{program} "$@" & sleep 8\n')
+    deaf.chmod(0o755)
+    with GameControllerProcess(deaf, GAME):
+        assert running(str(deaf))
+        begun = time.monotonic()
+    assert gone(str(deaf))
+    assert time.monotonic() - begun < 6.0
 
 
 @pytest.mark.integration
