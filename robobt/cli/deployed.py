@@ -80,8 +80,8 @@ def deployed(
     Keys of --json: shots, seed; cells, a list with goalkeeper, speed, starts, defenders and
     attackers, by name: goals, rate with its 95 % Wilson interval (low, high; interval as
     text), attempts (trials with a shot), distinct (trials that differ), outcomes,
-    time_to_shot [s], waiting (how much longer than the first attacker from the same start
-    [s]), errors, against_first and against_half_speed (McNemar: only_this, only_other, p),
+    time_to_shot (seconds), waiting (how many seconds longer than the first attacker from the
+    same start), errors, against_first and against_half_speed (McNemar: only_this, only_other, p),
     paper (goals, shots).
     """
     from robobt.experiments.deployed import (

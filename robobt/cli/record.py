@@ -74,7 +74,7 @@ def statistics(
     """Count what each team did in a match: goals, shots, passes, possession, restarts, fouls.
 
     Keys of --json: by team ("blue", "yellow") goals, passes, passes_completed,
-    passes_intercepted, shots_on_goal, expected_goals, possession (share), distance [m], fouls,
+    passes_intercepted, shots_on_goal, expected_goals, possession (share), distance (metres), fouls,
     yellow_cards, red_cards, placements, placements_succeeded, restarts, restarts_kept.
     """
     from dataclasses import asdict

@@ -152,14 +152,16 @@ def draw(
     model: Annotated[
         str, typer.Option("--model", help="Predictor of a shot's scene: a shipped model or a file.")
     ] = "shot_expected",
-    spacing: Annotated[float, typer.Option("--spacing", min=0.02, max=1.0, help="Between places [m].")] = 0.1,
+    spacing: Annotated[
+        float, typer.Option("--spacing", min=0.02, max=1.0, help="Metres between places.")
+    ] = 0.1,
     as_json: Json = False,
 ) -> None:
     """Draw the probability of a goal from everywhere in the opponents' half.
 
     For a shooter at rest with the ball and a goalkeeper that covers the angle.
 
-    Keys of --json: picture, x, y (coordinates of the grid [m]) and probability, a
+    Keys of --json: picture, x, y (coordinates of the grid in metres) and probability, a
     row for each y, null where nobody may shoot from.
     """
     from robobt.experiments.goal_map import draw_goal_map, goal_map

@@ -109,7 +109,7 @@ def demonstrations(
 ) -> None:
     """Record a hand-written skill playing a task, for replay buffers to begin with.
 
-    Keys of --json: task, file, episodes, steps, success (share), mean_time [s].
+    Keys of --json: task, file, episodes, steps, success (share), mean_time (seconds).
     """
     from robobt.learning.training.demonstrations import record
     from robobt.learning.training.settings import environment_of, load_settings
