@@ -55,7 +55,11 @@ ControllerOption = Annotated[
 
 StagesOption = Annotated[
     Stages | None,
-    typer.Option("--stages", help="full: two halves of five minutes of playing time."),
+    typer.Option(
+        "--stages",
+        help="full: two halves of five minutes of playing time, whatever ends.time_limit, ends.score_limit "
+        "and referee.half_length are.",
+    ),
 ]
 
 
