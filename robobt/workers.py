@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import multiprocessing
 import os
 import pickle
@@ -19,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Generic, TypeVar
 
+from robobt.config.telling import tell_warnings
 from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 
 TaskT = TypeVar("TaskT")
@@ -169,8 +169,7 @@ def _serve(setup: Callable[[], object] | None, packed: bytes, connection: Connec
     # One core a worker; numeric libraries that start threads of their own would take the others'.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
-    # What trees raise is counted in the results; a line on stderr each tick helps nobody.
-    logging.getLogger("robobt").setLevel(logging.ERROR)
+    tell_warnings()
     # The connection fails once the parent has closed its end: nobody waits for an answer any more.
     with ending(TERMINATE), suppress(EOFError, OSError):
         try:

@@ -6,7 +6,6 @@ is imported by the command that needs it, so that ``robobt --help`` is quick.
 
 from __future__ import annotations
 
-import logging
 import sys
 from collections.abc import Mapping
 from importlib import import_module
@@ -15,7 +14,8 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import console, log, one_line_errors
+from robobt.cli.common import console, one_line_errors
+from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
 
 _COMMANDS = {
@@ -102,7 +102,7 @@ def _main(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    log.setLevel(logging.DEBUG if debug else logging.ERROR)
+    tell_warnings(debug)
     for stream in (sys.stdout, sys.stderr):
         # A terminal or file that lacks a sign is shown a question mark for it.
         if isinstance(stream, TextIOWrapper):

@@ -29,3 +29,14 @@ def test_a_stream_that_is_closed_from_the_start_is_no_failure(closed: str) -> No
     command = " ".join([*ROBOBT, "--version", closed])
     ended = subprocess.run(["sh", "-c", command], capture_output=True, check=False)
     assert (ended.returncode, ended.stderr) == (0, b"")
+
+
+def test_warnings_are_told_but_not_each_failure_of_a_tree() -> None:
+    program = (
+        "import logging, sys; from robobt.cli import app;"
+        "sys.argv = ['robobt', 'plays']; app(standalone_mode=False);"
+        "logging.getLogger('robobt.league.wire.links').warning('two senders');"
+        "logging.getLogger('robobt.tree.runner').warning('tree stopped')"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert done.stderr == "two senders\n"
