@@ -114,11 +114,12 @@ def test_the_ball_is_teleported_before_the_step(connect: Connect) -> None:
 
 def test_of_several_clients_nobody_is_answered_before_all_have_asked(connect: Connect) -> None:
     blue, yellow = connect("blue"), connect("yellow")
-    # Both are known once they have been answered.
-    blue.send(0.0)
+    # Both are known once they have been answered; who asks before the other is known is answered alone.
     yellow.send(0.0)
-    blue.answer()
-    yellow.answer()
+    blue.ask(0.0)
+    if yellow.stream.receive(0.5) is None:
+        blue.ask(0.0)
+        yellow.answer()
     blue.send(PERIOD, write_control({0: RobotCommand(vx=1.0)}))
     assert blue.stream.receive(0.2) is None
     yellow.send(PERIOD, write_control({5: RobotCommand(vx=1.0)}))
