@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from robobt.config.telling import OFTEN
+
 StartPython = Callable[..., "subprocess.Popen[str]"]
 
 
@@ -31,11 +33,12 @@ def moments(request: pytest.FixtureRequest) -> int:
 @pytest.fixture(autouse=True)
 def _the_log_as_it_was() -> Iterator[None]:
     """A command that ran in this process has set how much is logged; the next test starts afresh."""
-    log = logging.getLogger("robobt")
-    level, propagate = log.level, log.propagate
+    logs = [logging.getLogger(name) for name in ("robobt", *OFTEN)]
+    before = [(log.level, log.propagate) for log in logs]
     yield
-    log.setLevel(level)
-    log.propagate = propagate
+    for log, (level, propagate) in zip(logs, before, strict=True):
+        log.setLevel(level)
+        log.propagate = propagate
 
 
 @pytest.fixture(scope="session", autouse=True)
