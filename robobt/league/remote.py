@@ -130,9 +130,7 @@ class TeamConnection(_Connection):
         port: int = TEAM_PORT,
         key: Path | None = None,
     ) -> None:
-        registration = TeamRegistration(team_name=name)
-        if team is not None:
-            registration.team = _number(team)
+        registration = TeamRegistration(team_name=name, team=None if team is None else team.name)
         super().__init__(registration, ControllerToTeam, (host, port), key)
 
     def keeper(self, number: int) -> None:
@@ -190,7 +188,7 @@ class RemoteControl(_Connection):
     def __init__(
         self, team: Team, host: str = LOOPBACK, port: int = REMOTE_PORT, key: Path | None = None
     ) -> None:
-        registration = RemoteControlRegistration(team=_number(team))
+        registration = RemoteControlRegistration(team=team.name)
         super().__init__(registration, ControllerToRemoteControl, (host, port), key)
 
     def state(self) -> RemoteControlTeamState:
@@ -267,7 +265,3 @@ def sign(data: bytes, key: Path) -> bytes:
         reason = one_line(done.stderr.decode(errors="replace")) or "openssl refuses it"
         raise RemoteError(f"{key}: no private RSA key: {reason}")
     return done.stdout
-
-
-def _number(team: Team) -> Any:
-    return {Team.YELLOW: 1, Team.BLUE: 2}[team]

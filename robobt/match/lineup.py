@@ -61,14 +61,17 @@ class Lineup:
             self._forget_roles()
         return leaving
 
+    @property
+    def complete(self) -> bool:
+        """Whether all robots play: none has to leave, and none is away."""
+        return not self._leaving and not self._away
+
     def carried(self, view: Frame) -> Iterator[tuple[int, Point]]:
         """Find the robots that their handlers carry now, and where to, as their team sees it.
 
         One that has to leave is taken behind the wall from where it left the field; one that may play
         again is put back there, once there is room.
         """
-        if not self._leaving and not self._away:
-            return
         field = view.field
         wall, margin = field.outer[1], (field.half_width + field.outer[1]) / 2
         self._away = frozenset(robot.id for robot in view.own if abs(robot.y) > wall)

@@ -232,6 +232,8 @@ class Match:
     def _carry(self, frame: Frame) -> None:
         """Do what handlers do with robots that have left the field or come back."""
         for team, lineup in self._lineups.items():
+            if lineup.complete:
+                continue
             side = -own_side(team)
             for number, (x, y) in lineup.carried(frame.seen_by(team)):
                 self.world.carry_robot(RobotId(team, number), side * x, side * y)

@@ -142,7 +142,7 @@ class GameState:
     @property
     def in_play(self) -> bool:
         """Whether the ball is free for both teams."""
-        return self.restart is None and self.command in _STARTED
+        return self.restart is None and self.command in STARTED
 
     @property
     def next_team(self) -> Team | None:
@@ -157,7 +157,7 @@ class GameState:
 
 
 _HALTED = frozenset({RefereeCommand.HALT, RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW})
-_STARTED = frozenset(
+STARTED = frozenset(
     {
         RefereeCommand.NORMAL_START,
         RefereeCommand.FORCE_START,
@@ -165,6 +165,7 @@ _STARTED = frozenset(
         RefereeCommand.DIRECT_FREE_YELLOW,
     }
 )
+"""Commands under which a team may play the ball, and time is counted."""
 _TEAMS = {
     command: Team.BLUE if command.name.endswith("_BLUE") else Team.YELLOW
     for command in RefereeCommand

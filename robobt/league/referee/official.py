@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -29,8 +28,6 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import without_absent
 from robobt.world.state import Frame
-
-_log = logging.getLogger(__name__)
 
 _DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.4
 """Time from one look of the controller at the match to the next [s].

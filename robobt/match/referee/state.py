@@ -18,22 +18,11 @@ from robobt.match.referee.settings import RefereeSettings, in_seconds
 from robobt.match.referee.stages import Stages
 from robobt.world.division import division_of
 from robobt.world.field import FieldGeometry
-from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
+from robobt.world.game import STARTED, GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point
 
 PREPARATION_TIME = 10.0
 """A kick-off and a penalty kick are prepared in this time, and taken in as much. Source: SSL rules [s]."""
-
-RUNNING = frozenset(
-    {
-        RefereeCommand.NORMAL_START,
-        RefereeCommand.FORCE_START,
-        RefereeCommand.DIRECT_FREE_BLUE,
-        RefereeCommand.DIRECT_FREE_YELLOW,
-    }
-)
-"""Commands under which a team may play the ball, and time is counted."""
-
 
 _TIME_OUTS = {command: team for team, command in TIME_OUT.items()}
 
@@ -92,13 +81,13 @@ class MatchState:
     @property
     def running(self) -> bool:
         """Whether a team may play the ball."""
-        return self.game.command in RUNNING
+        return self.game.command in STARTED
 
     def pass_time(self, seconds: float) -> None:
         """Let the match's clock go on [s]."""
         self.time += seconds
         command = self.game.command
-        if command in RUNNING:
+        if command in STARTED:
             self.stages.played += seconds
             for record in self.records.values():
                 record.play_on(seconds)

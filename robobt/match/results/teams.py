@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from math import hypot
+from math import atan2, hypot
 from typing import Protocol
 
 import numpy as np
@@ -19,7 +19,7 @@ from robobt.match.referee.verdicts import FOULS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.world.game import GameState, Restart, Team
-from robobt.world.geometry import Point, distance
+from robobt.world.geometry import Point, distance, line_crossing_x
 from robobt.world.rules import ball_out
 from robobt.world.state import Frame, RobotId, RobotState
 
@@ -250,10 +250,8 @@ class TeamStatistics:
 def _goal_crossing(view: Frame) -> float | None:
     """Return the y at which the ball's line enters the opponents' goal [m]; None where it does not."""
     ball, field = view.ball, view.field
-    if ball.vx <= 0.0 or ball.x >= field.half_length:
-        return None
-    y = ball.y + ball.vy * (field.half_length - ball.x) / ball.vx
-    return y if abs(y) < field.goal_width / 2 else None
+    y = line_crossing_x(ball.position, atan2(ball.vy, ball.vx), field.half_length)
+    return None if y is None or abs(y) >= field.goal_width / 2 else y
 
 
 def _is_pass(view: Frame, me: RobotState) -> bool:
