@@ -15,6 +15,7 @@ from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner
 from robobt.world import (
     DIVISION_B,
+    BallState,
     FieldGeometry,
     Frame,
     Placement,
@@ -23,7 +24,6 @@ from robobt.world import (
     RobotLimits,
     Team,
 )
-from robobt.world.geometry import Point
 from robobt.world.rules import scorer
 
 Pose = tuple[float, float, float]
@@ -72,10 +72,10 @@ def goal_for_them() -> Predicate:
 
 
 def _goal_for(team: Team) -> Predicate:
-    seen: list[Point] = []
+    seen: list[BallState] = []
 
     def scores(frame: Frame) -> bool:
-        seen.append(frame.ball.position)
+        seen.append(frame.ball)
         return scorer(frame.field, seen[-2:][0], seen[-1]) is team
 
     return scores

@@ -9,9 +9,8 @@ from math import ceil
 from robobt.match.referee.events import EventKind
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.game import GameState, Restart, Stage, Team
-from robobt.world.geometry import Point
 from robobt.world.rules import ALL_AROUND, ball_out, has_ball, scorer
-from robobt.world.state import Frame, RobotId
+from robobt.world.state import BallState, Frame, RobotId
 
 _REST_SPEED = 0.05
 """A ball slower than this lies still [m/s]."""
@@ -62,7 +61,7 @@ class EndJudge:
         self._keepers = {RobotId(team, number) for team, number in scenario.goalkeepers().items()}
         # Half a period early, as frames of a world of its own pace are not on the tick.
         self._last = (ceil(ends.time_limit / scenario.period - 1e-9) - 0.5) * scenario.period
-        self._ball_before: Point | None = None
+        self._ball_before: BallState | None = None
         self._was_out = False
         self._placing: Team | None = None
         self._held_since: float | None = None
@@ -108,15 +107,15 @@ class EndJudge:
 
     def _goal_by(self, truth: Frame, game: GameState) -> Team | None:
         """Return who has scored since the frame before."""
-        before = self._ball_before or truth.ball.position
-        self._ball_before = truth.ball.position
+        before = self._ball_before or truth.ball
+        self._ball_before = truth.ball
         self._was_out = ball_out(truth.field, truth.ball.position)
         if self._referee:
             score = {Team.BLUE: game.blue_score, Team.YELLOW: game.yellow_score}
             scorers = [team for team in Team if score[team] > self.scores[team]]
             self.scores = score
             return scorers[0] if scorers else None
-        team = scorer(truth.field, before, truth.ball.position)
+        team = scorer(truth.field, before, truth.ball)
         if team is not None:
             self.scores[team] += 1
         return team

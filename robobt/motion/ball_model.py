@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from itertools import accumulate
+from math import cos, inf, sin, sqrt
 
 from pydantic import Field
 
 from robobt.config.validation import Settings
+from robobt.world.command import CHIP_ANGLE
+from robobt.world.state import GRAVITY
+
+_LAST_APEX = 0.01
+"""A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
 
 
 class BallModel(Settings):
@@ -67,4 +73,49 @@ class BallModel(Settings):
         return sqrt(squared)
 
 
+class ChipModel(Settings):
+    """A chipped ball that flies, hops and rolls: what skills assume about it.
+
+    It leaves at 45 degrees. At each touch-down it keeps a share of its speed along the ground and rises with
+    a share of the speed with which it fell; it rolls once the next hop would be lower than 1 cm. The defaults
+    are those of the default simulator; the model is that of the league's vision packet (chip_fixed_loss).
+    """
+
+    first_hop: float = Field(0.8, ge=0, le=1, description="share of the speed kept at the first touch-down")
+    other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
+    rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
+
+    def touch_downs(self, speed: float) -> list[tuple[float, float]]:
+        """Return when and how far from the kick a ball chipped at ``speed`` [m/s] touches down [s, m]."""
+        rises = [speed * sin(CHIP_ANGLE)]
+        while (rises[-1] * self.rebound) ** 2 >= 2.0 * GRAVITY * _LAST_APEX:
+            rises.append(rises[-1] * self.rebound)
+        times = [2.0 * rise / GRAVITY for rise in rises]
+        ways = [self.along(speed, hop) * time for hop, time in enumerate(times)]
+        return list(zip(accumulate(times), accumulate(ways), strict=True))
+
+    def along(self, speed: float, touch_downs: int) -> float:
+        """Return its speed along the ground after so many touch-downs [m/s]."""
+        kept = self.first_hop * self.other_hops ** (touch_downs - 1) if touch_downs else 1.0
+        return speed * cos(CHIP_ANGLE) * kept
+
+    def kick_speed(self, distance: float, touch_downs: int = 1) -> float:
+        """Return the speed of the chip that is ``distance`` away at that touch-down [m/s, m].
+
+        That is v in F v^2 sin(a) cos(a) 2 / g, where F sums the hops as shares of the first.
+        """
+        share = sum(self.along(1.0, hop) * self.rebound**hop for hop in range(touch_downs))
+        return sqrt(max(distance, 0.0) * GRAVITY / (2.0 * share * sin(CHIP_ANGLE)))
+
+    def clears(self, speed: float, height: float) -> tuple[float, float] | None:
+        """Return from where to where the first hop is above ``height``, None if it never is [m/s, m]."""
+        rise = speed * sin(CHIP_ANGLE)
+        under = rise * rise - 2.0 * GRAVITY * height
+        if under <= 0.0:
+            return None
+        along = speed * cos(CHIP_ANGLE) / GRAVITY
+        return along * (rise - sqrt(under)), along * (rise + sqrt(under))
+
+
 DEFAULT_BALL = BallModel()
+DEFAULT_CHIP = ChipModel()

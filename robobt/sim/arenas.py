@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from robobt.sim.bodies import BEYOND, fill, moment_of_inertia, walls_of
 from robobt.sim.chipmunk import BodyBuffer
-from robobt.sim.columns import COMMAND, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
-from robobt.sim.kernels import control_tick, report
+from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
+from robobt.sim.kernels import control_tick
+from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
 from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
@@ -36,11 +37,14 @@ class Arenas:
     Attributes:
         robots: (n, R, 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
         balls: (n, 4) x, y, vx, vy [m, m/s].
+        flight: (n, FLIGHT) the balls' heights, 0 on the ground, how fast they rise, and how often
+            they touched down since the kick [m, m/s].
         contact: (n, R) whether the ball lies in the robot's mouth.
         kicked: (n, R) whether the robot kicked during the last step.
         touch: (n,) index of the last robot to touch the ball, -1 before the first.
         history: (sub_steps, n, R + 1, 6) states after every sub-step in space
-            coordinates, the ball's last; empty unless ``keep_history``.
+            coordinates, the ball's last, with z and vz for heading and omega; empty unless
+            ``keep_history``.
         sub_steps: physics steps a control period.
         arena_parameters, robot_parameters, wheel_parameters: what the kernels use; columns are
             named in :mod:`robobt.sim.columns`. Writing to them randomises arenas.
@@ -80,6 +84,7 @@ class Arenas:
         self._buffer = BodyBuffer(self._space, n * (count + 1))
         self.robots = np.zeros((n, count, 6))
         self.balls = np.zeros((n, 4))
+        self.flight = np.zeros((n, FLIGHT))
         self.contact: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
         self.kicked: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
         self.touch: NDArray[np.int64] = np.full(n, -1, dtype=np.int64)
@@ -130,6 +135,7 @@ class Arenas:
         self._velocity[which] = ball[:, 2:]
         self._spin[which] = ball[:, 2:] if self.settings.ball.placed_rolls else 0.0
         self._twist[which] = 0.0
+        self.flight[which] = 0.0
         self._cooldown[which] = 0.0
         self._wheels[which] = 0.0
         self.touch[which] = -1
@@ -140,7 +146,15 @@ class Arenas:
         self._refresh()
 
     def place_ball(
-        self, arena: int, x: float, y: float, vx: float = 0.0, vy: float = 0.0, rolls: bool = True
+        self,
+        arena: int,
+        x: float,
+        y: float,
+        vx: float = 0.0,
+        vy: float = 0.0,
+        rolls: bool = True,
+        z: float = 0.0,
+        vz: float = 0.0,
     ) -> None:
         """Put one arena's ball somewhere; the robots go on as they were.
 
@@ -151,6 +165,8 @@ class Arenas:
             vx: its velocity, at rest by default [m/s].
             vy: likewise.
             rolls: whether a moving ball rolls; one that does not slides, as after a kick.
+            z: its height above where it lies [m].
+            vz: how fast it rises [m/s].
         """
         count = self.contact.shape[1]
         self._wheels[arena, :, HELD] = 0.0
@@ -162,6 +178,7 @@ class Arenas:
         self._velocity[arena] = vx, vy
         self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
         self._twist[arena] = 0.0
+        self.flight[arena] = z, vz, 0.0
         self._buffer.write()
         self._refresh()
 
@@ -196,10 +213,13 @@ class Arenas:
         Args:
             commands: (n, R, 6) vx, vy, omega in the robots' frames, kick speed
                 (0 none), 1 to kick on contact or 0 for now only, 1 for the
-                dribbler. Must be finite.
+                dribbler; or (n, R, 7) with the kick's angle from the ground [rad],
+                0 for a flat one. Must be finite.
         """
         oldest = self._pipeline.pop(0)
-        np.copyto(oldest, commands)
+        given = commands.shape[-1]
+        oldest[..., :given] = commands
+        oldest[..., given:] = 0.0
         self._pipeline.append(oldest)
         buffer = self._buffer
         control_tick(
@@ -220,6 +240,7 @@ class Arenas:
             self._velocity,
             self._spin,
             self._twist,
+            self.flight,
             self._cooldown,
             self.contact,
             self.touch,
@@ -240,6 +261,7 @@ class Arenas:
             self.origins,
             self.arena_parameters,
             self._velocity,
+            self.flight,
             self.contact,
             self.robots,
             self.balls,

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from math import radians
+
 import numpy as np
 
 from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import BALL_RADIUS, GRAVITY, ROBOT_RADIUS
 
 SOFT = 0.008
 """How far inside a robot's core, where there is one, the ball meets something hard [m]."""
 
-GRAVITY = 9.81
-"""Acceleration of free fall [m/s^2]."""
-
 # Columns of a command.
-VX, VY, OMEGA, KICK, ON_CONTACT, DRIBBLE = range(6)
-COMMAND = 6
+VX, VY, OMEGA, KICK, ON_CONTACT, DRIBBLE, ANGLE = range(7)
+COMMAND = 7
+
+# Columns of a ball's height above where it lies, how fast it rises, and its touch-downs since the kick.
+Z, RISE, HOPS = range(3)
+FLIGHT = 3
 
 # Columns of a robot's parameters.
 (
@@ -68,8 +71,14 @@ ROBOT_PARAMETERS = 7
     JAW,
     HALF_OPENING,
     ROUNDING,
-) = range(34)
-ARENA_PARAMETERS = 34
+    CHIP_ANGLE,
+    CHIP_MAX,
+    HOP_FIRST,
+    HOP_OTHER,
+    HOP_UP,
+    BOUNCE_WALL,
+) = range(40)
+ARENA_PARAMETERS = 40
 
 # Columns of the parameters of an arena's robots' wheels; those from LOAD_REST on are four, one a wheel.
 (
@@ -113,6 +122,10 @@ def arena_row(settings: SimSettings) -> FloatArray:
     row[KICK_MAX] = kicker.max_speed
     row[KICK_DAMPING] = kicker.damping
     row[RECHARGE] = kicker.recharge
+    row[CHIP_ANGLE] = radians(kicker.chip_angle or 0.0)
+    row[CHIP_MAX] = kicker.max_chip_speed
+    row[HOP_FIRST], row[HOP_OTHER], row[HOP_UP] = ball.first_hop, ball.other_hops, ball.rebound
+    row[BOUNCE_WALL] = settings.contact.wall_restitution
     row[BALL_R] = BALL_RADIUS
     row[ROBOT_R] = ROBOT_RADIUS
     row[BALL_M] = ball.mass

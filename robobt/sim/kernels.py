@@ -1,8 +1,9 @@
 """One control tick of the league's physics, over arrays and any number of arenas.
 
 pymunk moves the bodies and resolves contacts; what it does not know is written once,
-compiled: how robots and ball move (:mod:`robobt.sim.motion`), dribbler and kicker
-(:mod:`robobt.sim.mouth`), and contacts within a step (:mod:`robobt.sim.sweep`).
+compiled: how robots and ball move (:mod:`robobt.sim.motion`), a ball in the air
+(:mod:`robobt.sim.flight`), dribbler and kicker (:mod:`robobt.sim.mouth`), and contacts
+within a step (:mod:`robobt.sim.sweep`).
 
 numba keeps compiled code by the file of the function that is called: after an edit in
 one of those modules, this one has to be touched for it to be compiled anew.
@@ -10,105 +11,49 @@ one of those modules, this one has to be touched for it to be compiled anew.
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, sin
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.sim.chipmunk import call_each_body, call_step
 from robobt.sim.columns import (
+    ANGLE,
     BALL_R,
     CORE,
     DRIBBLE,
     GLUE,
     IDLE_HOLD,
-    JAW,
     KICK,
     MASS,
     ON_CONTACT,
     REACH,
     RECHARGE,
-    ROBOT_R,
+    RISE,
     ROLLER,
     SENSOR,
+    Z,
 )
+from robobt.sim.flight import fly, pass_over
 from robobt.sim.motion import drive, friction
 from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick
+from robobt.sim.reports import BoolArray, IntArray, note_touch, report
 from robobt.sim.roller import CONTACTS, SCRATCH, roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import HELD, drive_wheels
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
+from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT
 
 _OVERLAP = 3e-4
 """How deep a swept ball is put into what it hits, so that the solver sees the contact [m]."""
 
-_TOUCH = 2e-3
-"""Gap between ball and robot that still counts as a touch [m]."""
-
 _BACKING = -0.02
 """A robot slower than this along its heading backs away from the ball [m/s]."""
 
-
-@compiled
-def _note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: IntArray, a: int) -> None:
-    """Remember who touches the ball; of several, one that did not touch it before."""
-    ball = rows[first + robots]
-    found = -1
-    for i in range(robots):
-        row = rows[first + i]
-        px, py = ball[0] - row[0], ball[1] - row[1]
-        reach = p[ROBOT_R] + p[BALL_R] + _TOUCH
-        if px * px + py * py > reach * reach:
-            continue
-        if cos(row[2]) * px + sin(row[2]) * py > p[JAW] + p[BALL_R] + _TOUCH:
-            continue
-        if found < 0 or found == touch[a]:
-            found = i
-    if found >= 0:
-        touch[a] = found
-
-
-@compiled
-def _report(row: FloatArray, origin: FloatArray, out: FloatArray) -> None:
-    """Copy a robot's row relative to its arena, heading in (-pi, pi]."""
-    out[0] = row[0] - origin[0]
-    out[1] = row[1] - origin[1]
-    heading = row[2] % (2.0 * pi)
-    out[2] = heading - 2.0 * pi if heading > pi else heading
-    out[3] = row[3]
-    out[4] = row[4]
-    out[5] = row[5]
-
-
-@compiled
-def report(
-    rows: FloatArray,
-    origins: FloatArray,
-    arena_parameters: FloatArray,
-    ball_velocity: FloatArray,
-    contact: BoolArray,
-    robots_out: FloatArray,
-    balls_out: FloatArray,
-) -> None:
-    """Fill the outputs of :func:`control_tick` from the rows."""
-    arenas, robots = contact.shape
-    for a in range(arenas):
-        first = a * (robots + 1)
-        ball = rows[first + robots]
-        for i in range(robots):
-            row = rows[first + i]
-            p = arena_parameters[a]
-            contact[a, i] = in_mouth(ball, row, p, p[SENSOR])
-            _report(row, origins[a], robots_out[a, i])
-        balls_out[a, 0] = ball[0] - origins[a, 0]
-        balls_out[a, 1] = ball[1] - origins[a, 1]
-        balls_out[a, 2] = ball_velocity[a, 0]
-        balls_out[a, 3] = ball_velocity[a, 1]
+_ELSEWHERE = 1e4
+"""Coordinate of the place, clear of all arenas, where the space has the balls that fly high [m]."""
 
 
 @compiled
@@ -130,6 +75,7 @@ def control_tick(
     ball_velocity: FloatArray,
     ball_spin: FloatArray,
     ball_twist: FloatArray,
+    flight: FloatArray,
     cooldown: FloatArray,
     contact: BoolArray,
     touch: IntArray,
@@ -159,13 +105,15 @@ def control_tick(
         ball_velocity: (N, 2), kept between calls [m/s].
         ball_spin: (N, 2), kept between calls [m/s].
         ball_twist: (N, 1) turning about the vertical, kept between calls [rad/s].
+        flight: (N, FLIGHT) of the balls, kept between calls [m, m/s, touch-downs].
         cooldown: (N, R) time until a kicker is ready again [s].
         contact: (N, R) out: ball in the mouth.
         touch: (N,) last robot to touch the ball, -1 before the first.
         kicked: (N, R) out: kicks fired in this call.
         robots_out: (N, R, 6) out: states relative to the arena.
         balls_out: (N, 4) out: likewise.
-        history: (sub_steps or 0, N, R + 1, 6) out: rows after every sub-step.
+        history: (sub_steps or 0, N, R + 1, 6) out: rows after every sub-step; a ball's has its
+            height and the rate of that where a robot's has the heading and its rate.
     """
     arenas, robots = contact.shape
     width = robots + 1
@@ -175,13 +123,18 @@ def control_tick(
     driven = np.zeros(robots)
     contacts = np.zeros((robots, CONTACTS, SCRATCH))
     target = np.zeros((arenas, 2))
+    # Where the balls are that pass over everything, for the time of a step.
+    aloft = np.zeros((arenas, 2))
+    high = np.zeros(arenas, dtype=np.bool_)
     kicked[:] = False
     for step in range(sub_steps):
         for a in range(arenas):
             first = a * width
             p = arena_parameters[a]
             ball = rows[first + robots]
-            velocity, spin, twist = ball_velocity[a], ball_spin[a], ball_twist[a]
+            velocity, spin, twist, air = ball_velocity[a], ball_spin[a], ball_twist[a], flight[a]
+            low = air[Z] < RECEIVED_HEIGHT
+            high[a] = False
             commands = new[a] if step >= switch[a] else old[a]
             glued = -1
             held = fired = False
@@ -201,8 +154,8 @@ def control_tick(
                     cooldown[a, i] -= dt
                     continue
                 if command[KICK] > 0.0:
-                    if in_mouth(ball, robot, p, p[SENSOR]):
-                        kick(velocity, spin, robot, command[KICK], p)
+                    if low and in_mouth(ball, robot, p, p[SENSOR]):
+                        kick(velocity, spin, air, robot, command[KICK], command[ANGLE], p)
                         command[KICK] = 0.0
                         kicked[a, i] = fired = True
                         touch[a] = i
@@ -214,7 +167,7 @@ def control_tick(
                         continue
                     if command[ON_CONTACT] == 0.0 and p[ROLLER] == 0.0:
                         command[KICK] = 0.0
-                if fired:
+                if fired or not low:
                     continue
                 if p[CORE] > 0.0:
                     if begins:
@@ -252,6 +205,11 @@ def control_tick(
                     drag(ball, velocity, move, rows[first + glued], p, wheel_parameters[a], dt)
                 velocity[0] = spin[0] = move[0]
                 velocity[1] = spin[1] = move[1]
+                air[:] = 0.0
+            elif air[Z] > 0.0 or air[RISE] > 0.0:
+                velocity[0] += pull[0] * dt
+                velocity[1] += pull[1] * dt
+                high[a] = fly(air, velocity, spin, rows, first, robots, origins[a], walls, p, dt, move)
             elif held:
                 velocity[0] += pull[0] * dt
                 velocity[1] += pull[1] * dt
@@ -261,14 +219,19 @@ def control_tick(
                 move[0], move[1] = velocity[0], velocity[1]
             else:
                 friction(velocity, spin, p, dt, move)
-            if glued < 0 and p[CORE] > 0.0:
+            if glued < 0 and p[CORE] > 0.0 and not high[a]:
                 before_x, before_y = velocity[0], velocity[1]
                 for i in range(robots):
                     meet(ball, velocity, spin, twist, rows[first + i], p, wheel_parameters[a], dt, hit)
                 if velocity[0] != before_x or velocity[1] != before_y:
                     # Pushed, it moves as it leaves the contact: what friction took is made up for.
                     move[0], move[1] = velocity[0], velocity[1]
-            if glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
+            if high[a]:
+                pass_over(ball, velocity, origins[a], walls, move, p, dt)
+                aloft[a, 0], aloft[a, 1] = ball[0], ball[1]
+                ball[0], ball[1] = _ELSEWHERE * (a + 1), _ELSEWHERE
+                move[0] = move[1] = 0.0
+            elif glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
                 share = sweep(rows, first, robots, walls, origins[a], move, p, dt)
                 if share < 1.0:
                     length = hypot(move[0], move[1]) * dt
@@ -286,14 +249,25 @@ def control_tick(
             first = a * width
             p = arena_parameters[a]
             ball = rows[first + robots]
-            # What contacts did to the mean velocity, they did to the velocity.
-            ball_velocity[a, 0] += ball[3] - target[a, 0]
-            ball_velocity[a, 1] += ball[4] - target[a, 1]
-            _note_touch(rows, first, robots, p, touch, a)
+            if high[a]:
+                ball[0], ball[1] = aloft[a, 0], aloft[a, 1]
+                ball[3], ball[4] = ball_velocity[a, 0], ball_velocity[a, 1]
+            else:
+                # What contacts did to the mean velocity, they did to the velocity.
+                ball_velocity[a, 0] += ball[3] - target[a, 0]
+                ball_velocity[a, 1] += ball[4] - target[a, 1]
+                if flight[a, Z] < ROBOT_HEIGHT:
+                    note_touch(rows, first, robots, p, touch, a)
             if history.shape[0] > 0:
                 for i in range(width):
                     for k in range(6):
                         history[step, a, i, k] = rows[first + i, k]
                 history[step, a, robots, 3] = ball_velocity[a, 0]
                 history[step, a, robots, 4] = ball_velocity[a, 1]
-    report(rows, origins, arena_parameters, ball_velocity, contact, robots_out, balls_out)
+                history[step, a, robots, 2] = flight[a, Z]
+                history[step, a, robots, 5] = flight[a, RISE]
+    if high.any():
+        # The bodies of these are still elsewhere.
+        cursor[0] = 0
+        call_each_body(handles[1], handles[4], handles[3], handles[5])
+    report(rows, origins, arena_parameters, ball_velocity, flight, contact, robots_out, balls_out)

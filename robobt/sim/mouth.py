@@ -7,6 +7,8 @@ from math import cos, hypot, sin
 from robobt.sim.columns import (
     BALL_R,
     CENTRING,
+    CHIP_ANGLE,
+    CHIP_MAX,
     CORE,
     FACE,
     HALF_MOUTH,
@@ -14,6 +16,7 @@ from robobt.sim.columns import (
     KICK_MAX,
     PULL,
     REACH,
+    RISE,
     SIDE,
 )
 from robobt.world.compiled import compiled
@@ -104,16 +107,45 @@ def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: F
 
 
 @compiled
-def kick(velocity: FloatArray, spin: FloatArray, robot: FloatArray, speed: float, p: FloatArray) -> None:
-    """Send the ball along the heading; its sideways velocity stays, its spin is lost."""
+def kick(
+    velocity: FloatArray,
+    spin: FloatArray,
+    air: FloatArray,
+    robot: FloatArray,
+    speed: float,
+    angle: float,
+    p: FloatArray,
+) -> None:
+    """Send the ball along the heading; its sideways velocity stays, its spin is lost.
+
+    Args:
+        velocity: of the ball, changed [m/s].
+        spin: its rolling as a velocity, changed [m/s].
+        air: (FLIGHT,) its height, speed upwards and touch-downs, changed.
+        robot: the robot's row.
+        speed: commanded [m/s].
+        angle: commanded, from the ground; 0 is a flat kick, any other a chip [rad].
+        p: parameters of the arena.
+    """
+    air[:] = 0.0
+    most = p[KICK_MAX]
+    if angle > 0.0:
+        most = p[CHIP_MAX]
+        if p[CHIP_ANGLE] > 0.0:
+            angle = p[CHIP_ANGLE]
+        air[RISE] = speed * sin(angle)
+        speed *= cos(angle)
     c, s = cos(robot[2]), sin(robot[2])
     forward = c * velocity[0] + s * velocity[1]
     sideways = c * velocity[1] - s * velocity[0]
     forward = speed - p[KICK_DAMPING] * forward
     fast = hypot(forward, sideways)
-    if fast > p[KICK_MAX]:
-        forward *= p[KICK_MAX] / fast
-        sideways *= p[KICK_MAX] / fast
+    if angle > 0.0:
+        fast = hypot(fast, air[RISE])
+    if fast > most:
+        forward *= most / fast
+        sideways *= most / fast
+        air[RISE] *= most / fast
     velocity[0] = c * forward - s * sideways
     velocity[1] = s * forward + c * sideways
     spin[0] = spin[1] = 0.0

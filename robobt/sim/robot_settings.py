@@ -119,3 +119,7 @@ class KickerSettings(Settings):
         0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
     )
     recharge: float = Field(0.1, ge=0, le=10, description="no kick and no dribbling after a kick [s]")
+    chip_angle: float | None = Field(
+        45.0, gt=0, lt=90, description="of every chip, from the ground [deg]; none for the one commanded"
+    )
+    max_chip_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a chip [m/s]")

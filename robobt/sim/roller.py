@@ -22,7 +22,6 @@ from robobt.sim.columns import (
     BOUNCE_HULL,
     BOUNCE_IDLE,
     FACE,
-    GRAVITY,
     GROUND_FRICTION,
     HALF_MOUTH,
     HALF_OPENING,
@@ -37,6 +36,7 @@ from robobt.sim.columns import (
 )
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
+from robobt.world.state import GRAVITY
 
 # Columns of a contact, kept for the length of a step: whether there is one, its normal towards the ball, the
 # robot's velocity there, the least speed of parting, friction, how fast the surface moves down, impulses.

@@ -25,11 +25,13 @@ from robobt.world.limits import RobotLimits
 
 
 class BallSettings(Settings):
-    """A ball that slides, then rolls.
+    """A ball that slides, then rolls, and hops where it was chipped.
 
     A kicked ball slides with constant deceleration and picks up spin until it
     rolls, at ``switch_share`` of the speed it started with; from there it rolls
-    with a smaller constant deceleration until it rests.
+    with a smaller constant deceleration until it rests. A chipped ball keeps a share of
+    its speed along the ground and one of its speed upwards at each touch-down, and rolls
+    once the next hop would be lower than 1 cm (the league's model chip_fixed_loss).
     """
 
     mass: float = Field(0.046, gt=0.001, le=1, description="mass [kg]")
@@ -40,6 +42,11 @@ class BallSettings(Settings):
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
     stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
     placed_rolls: bool = Field(True, description="whether a ball that is placed moving rolls, or slides")
+    first_hop: float = Field(
+        0.8, ge=0, le=1, description="share of the speed along the ground kept at the first touch-down"
+    )
+    other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
+    rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
 
 
 class ContactSettings(Settings):
@@ -114,15 +121,18 @@ class SimSettings(Settings):
     sub_step: float = Field(0.005, gt=0.0005, le=0.01, description="longest physics step [s]")
 
 
+_GRSIM_BALL = BallSettings(
+    mass=0.043,
+    slide_deceleration=10.3,
+    switch_share=0.695,
+    roll_deceleration=0.701,
+    first_hop=0.7,
+    other_hops=1.0,
+    rebound=0.5,
+)
+
 _GRSIM = SimSettings(
-    ball=BallSettings(
-        mass=0.043,
-        slide_deceleration=10.3,
-        switch_share=0.695,
-        roll_deceleration=0.701,
-        stop_speed=0.01,
-        placed_rolls=False,
-    ),
+    ball=_GRSIM_BALL.model_copy(update={"stop_speed": 0.01, "placed_rolls": False}),
     body=BodySettings(mass=2.82, face=0.0805, mouth_width=0.08, sensor_depth=0.01),
     wheels=WheelSettings(),
     shell=ShellSettings(),
@@ -139,7 +149,7 @@ _GRSIM = SimSettings(
         reaction=1 / 60,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
-    kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6),
+    kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, max_chip_speed=10.0),
     contact=ContactSettings(
         front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
     ),
@@ -150,7 +160,7 @@ PRESETS: dict[str, SimSettings] = {
     "default": SimSettings(),
     "grsim": _GRSIM,
     "rsim": SimSettings(
-        ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
+        ball=_GRSIM_BALL,
         body=BodySettings(mass=2.42, face=0.081, mouth_width=0.08, sensor_depth=0.01),
         limits=RobotLimits(
             max_speed=4.0,
@@ -164,11 +174,21 @@ PRESETS: dict[str, SimSettings] = {
             hold_acceleration=50.0,
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
-        kicker=KickerSettings(max_speed=20.0, damping=0.2, recharge=0.25),
+        kicker=KickerSettings(
+            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, max_chip_speed=20.0
+        ),
         contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
     ),
     "erforce": SimSettings(
-        ball=BallSettings(mass=0.046, slide_deceleration=3.9, switch_share=0.645, roll_deceleration=0.36),
+        ball=BallSettings(
+            mass=0.046,
+            slide_deceleration=3.9,
+            switch_share=0.645,
+            roll_deceleration=0.36,
+            first_hop=0.715,
+            other_hops=1.0,
+            rebound=0.566,
+        ),
         body=BodySettings(mass=1.5, face=0.064, mouth_width=0.07, sensor_depth=0.0015, jaws=JawSettings()),
         limits=RobotLimits(
             max_speed=3.0,
@@ -183,7 +203,8 @@ PRESETS: dict[str, SimSettings] = {
             reaction=0.02,
         ),
         dribbler=DribblerSettings(kind="roller"),
-        kicker=KickerSettings(max_speed=6.5),
+        # The chip that first touches down after 3 m.
+        kicker=KickerSettings(max_speed=6.5, max_chip_speed=5.425),
         contact=ContactSettings(
             front_restitution=0.2,
             hull_restitution=0.6,
@@ -208,15 +229,15 @@ PRESETS: dict[str, SimSettings] = {
             hold_acceleration=15.0,
         ),
         dribbler=DribblerSettings(kind="force", pull=20.0, side=20.0, reach=0.01),
-        kicker=KickerSettings(max_speed=7.5),
+        kicker=KickerSettings(max_speed=7.5, max_chip_speed=5.5),
         contact=ContactSettings(front_restitution=0.0, goal_restitution=0.3),
     ),
     "robobulls": SimSettings(
-        ball=BallSettings(mass=0.043, slide_deceleration=10.3, switch_share=0.695, roll_deceleration=0.701),
+        ball=_GRSIM_BALL,
         body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
         limits=_GRSIM.limits.model_copy(update={"braking": 4.6, "catch_speed": 4.0, "reaction": 0.0}),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-        kicker=KickerSettings(max_speed=7.5, damping=0.2),
+        kicker=KickerSettings(max_speed=7.5, damping=0.2, chip_angle=None, max_chip_speed=10.0),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
     ),
 }

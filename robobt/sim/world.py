@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from robobt.sim.arenas import Arenas
+from robobt.sim.columns import COMMAND, KICK
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import FieldGeometry
@@ -53,7 +54,7 @@ class SimWorld(World):
         self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
         self._lossy = any((realism.missing_ball, realism.missing_robot))
         self._arenas = self._make_arenas()
-        self._commands = np.zeros((1, len(self._ids), 6))
+        self._commands = np.zeros((1, len(self._ids), COMMAND))
         self._rng = np.random.default_rng(0)
         self._ticks = 0
         self.kicks: list[RobotId] = []
@@ -101,12 +102,13 @@ class SimWorld(World):
             return self.truth()
         rows = self._report
         robots = rows.tolist()
-        x, y, _, vx, vy, _ = robots.pop()
-        return self._frame(robots, [x, y, vx, vy])
+        x, y, z, vx, vy, vz = robots.pop()
+        return self._frame(robots, [x, y, vx, vy, z, vz])
 
     def truth(self) -> Frame:
         """Return the simulated state itself."""
-        return self._frame(self._arenas.robots[0].tolist(), self._arenas.balls[0].tolist())
+        ball = self._arenas.balls[0].tolist() + self._arenas.flight[0, :2].tolist()
+        return self._frame(self._arenas.robots[0].tolist(), ball)
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands and simulate one control period.
@@ -123,7 +125,7 @@ class SimWorld(World):
         else:
             rows[~lost] = 0.0
             # A lost command is not sent twice: the robot drives on but does not kick again.
-            rows[lost, 3] = 0.0
+            rows[lost, KICK] = 0.0
         for robot, command in commands.items():
             i = self._index[robot]
             if not command.finite():
@@ -136,6 +138,7 @@ class SimWorld(World):
                     command.kick_speed,
                     command.kick_trigger == KickTrigger.ON_CONTACT,
                     bool(command.dribbler),
+                    command.kick_angle,
                 )
         self._arenas.step(self._commands)
         self._ticks += 1
@@ -170,11 +173,12 @@ class SimWorld(World):
         return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
 
     def _rows(self) -> FloatArray:
-        """Return robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, 0, vx, vy, 0)."""
+        """Return robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, z, vx, vy, vz)."""
         rows = np.zeros((len(self._ids) + 1, 6))
         rows[:-1] = self._arenas.robots[0]
         rows[-1, :2] = self._arenas.balls[0, :2]
         rows[-1, 3:5] = self._arenas.balls[0, 2:]
+        rows[-1, 2::3] = self._arenas.flight[0, :2]
         return rows
 
     def _perceive(self) -> FloatArray:

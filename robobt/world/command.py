@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isfinite
+from math import isfinite, pi
 
 
 class KickTrigger(StrEnum):
@@ -16,6 +16,10 @@ class KickTrigger(StrEnum):
     """As soon as the ball is in the mouth, while the command stands."""
 
 
+CHIP_ANGLE = pi / 4
+"""Angle from the ground at which robots chip [rad]."""
+
+
 @dataclass(slots=True)
 class RobotCommand:
     """One robot's command, in the robot's own frame (x forward, y left).
@@ -23,9 +27,12 @@ class RobotCommand:
     Attributes:
         vx, vy: velocity [m/s].
         omega: turning rate, counter-clockwise positive [rad/s].
-        kick_speed: speed at which the ball is to leave [m/s]; 0 is no kick.
+        kick_speed: speed at which the ball is to leave [m/s]; 0 is no kick. That of a chip is
+            the one in space, not the one along the ground.
         kick_trigger: when the kick fires.
         dribbler: whether the dribbler turns.
+        kick_angle: angle from the ground at which the ball is to leave [rad]: 0 is a flat kick,
+            :data:`CHIP_ANGLE` a chip. Most robots chip at one angle, whichever is commanded.
     """
 
     vx: float = 0.0
@@ -34,7 +41,14 @@ class RobotCommand:
     kick_speed: float = 0.0
     kick_trigger: KickTrigger = KickTrigger.ON_CONTACT
     dribbler: bool = False
+    kick_angle: float = 0.0
 
     def finite(self) -> bool:
         """Return whether every number in it is finite; one that is not must not reach a robot."""
-        return isfinite(self.vx) and isfinite(self.vy) and isfinite(self.omega) and isfinite(self.kick_speed)
+        return (
+            isfinite(self.vx)
+            and isfinite(self.vy)
+            and isfinite(self.omega)
+            and isfinite(self.kick_speed)
+            and isfinite(self.kick_angle)
+        )

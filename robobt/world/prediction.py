@@ -10,7 +10,15 @@ from math import ceil, cos, hypot, sin, sqrt
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.protocol import Placement, World, WrappedWorld
-from robobt.world.state import BALL_RADIUS, BallState, Frame, RobotId, RobotState
+from robobt.world.state import (
+    BALL_RADIUS,
+    GRAVITY,
+    ROBOT_HEIGHT,
+    BallState,
+    Frame,
+    RobotId,
+    RobotState,
+)
 
 _STEP = 0.005
 """Longest step of the motion model [s]."""
@@ -113,11 +121,14 @@ class PredictedWorld(WrappedWorld):
                 )
         age = self.vision_delay + self.command_delay
         rolled = BallState(ball.x + ball.vx * age, ball.y + ball.vy * age, ball.vx, ball.vy)
+        if ball.z > 0.0 or ball.vz > 0.0:
+            rolled.z = max(ball.z + (ball.vz - 0.5 * GRAVITY * age) * age, 0.0)
+            rolled.vz = ball.vz - GRAVITY * age if rolled.z > 0.0 else 0.0
         for robot in now:
             dx, dy = rolled.x - robot.x, rolled.y - robot.y
             gap, least = hypot(dx, dy), _FRONT + BALL_RADIUS
             # No ball lies inside a robot.
-            if 0.0 < gap < least:
+            if 0.0 < gap < least and rolled.z < ROBOT_HEIGHT:
                 rolled.x, rolled.y = robot.x + dx / gap * least, robot.y + dy / gap * least
         return rolled
 

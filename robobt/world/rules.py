@@ -19,7 +19,17 @@ from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Team
 from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
+from robobt.world.state import (
+    BALL_RADIUS,
+    GOAL_HEIGHT,
+    RECEIVED_HEIGHT,
+    ROBOT_HEIGHT,
+    ROBOT_RADIUS,
+    BallState,
+    Frame,
+    RobotId,
+    RobotState,
+)
 
 IN_PLAY_DISTANCE = 0.05
 """The ball is in play once it has moved this far from a restart's spot. Source: SSL rules [m]."""
@@ -131,10 +141,17 @@ def exit_point(field: FieldGeometry, before: Point, after: Point) -> tuple[Point
     return (x, y), goal_line
 
 
-def scorer(field: FieldGeometry, before: Point, after: Point) -> Team | None:
-    """Return the team that scores as the ball goes from ``before`` to ``after``; see :func:`goal_side`."""
-    side = goal_side(*before, *after, field.half_length, field.half_width, field.goal_width / 2)
-    return None if side == 0 else Team.BLUE if side > 0 else Team.YELLOW
+def scorer(field: FieldGeometry, before: BallState, after: BallState) -> Team | None:
+    """Return the team that scores as the ball goes by :func:`goal_side`'s rule, as a whole below the bar."""
+    side = goal_side(
+        *before.position, *after.position, field.half_length, field.half_width, field.goal_width / 2
+    )
+    if side == 0:
+        return None
+    share = (field.half_length + BALL_RADIUS - abs(before.x)) / (abs(after.x) - abs(before.x))
+    if before.z + share * (after.z - before.z) + 2.0 * BALL_RADIUS > GOAL_HEIGHT:
+        return None
+    return Team.BLUE if side > 0 else Team.YELLOW
 
 
 # Defence areas.
@@ -226,6 +243,8 @@ def touches(robot: RobotState, ball: BallState) -> bool:
     """Return whether the ball lies in the robot's mouth or against its hull."""
     if robot.ball_contact:
         return True
+    if ball.z >= ROBOT_HEIGHT:
+        return False
     dx, dy = ball.x - robot.x, ball.y - robot.y
     reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
     if dx * dx + dy * dy > reach * reach:
@@ -239,13 +258,14 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
 
     The sensor may be silent for a tick while the ball bounces on the dribbler, so a
     ball within ``sector`` of the heading and within :data:`HELD_GAP` of the hull counts too.
+    One that is too high to be received does not.
 
     ``sector`` is on which side of the robot that may be, :data:`MOUTH_SECTOR` or :data:`ALL_AROUND` [rad].
     """
     if robot.ball_contact:
         return True
     dx, dy = ball.x - robot.x, ball.y - robot.y
-    if dx > _REACH or dx < -_REACH or dy > _REACH or dy < -_REACH:
+    if dx > _REACH or dx < -_REACH or dy > _REACH or dy < -_REACH or ball.z > RECEIVED_HEIGHT:
         return False
     gap = hypot(dx, dy)
     if gap >= _REACH:

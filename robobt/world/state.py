@@ -21,6 +21,18 @@ ROBOT_RADIUS = 0.09
 BALL_RADIUS = 0.0215
 """Radius of a golf ball [m]."""
 
+ROBOT_HEIGHT = 0.15
+"""Height of the tallest robot the rules allow; a ball above it passes over robots [m]."""
+
+RECEIVED_HEIGHT = 0.05
+"""Below it a ball can be kicked and held. Source: ER-Force's simulator and Sumatra [m]."""
+
+GOAL_HEIGHT = 0.155
+"""Height of a goal's inside, up to its bar. Source: ER-Force's simulator; the rules say 0.16 [m]."""
+
+GRAVITY = 9.81
+"""Acceleration of free fall [m/s^2]."""
+
 
 class RobotId(NamedTuple):
     """A robot's team and its number on that team."""
@@ -69,12 +81,21 @@ class RobotState:
 
 @dataclass(slots=True)
 class BallState:
-    """The ball: position [m] and velocity [m/s] in field coordinates."""
+    """The ball, in field coordinates.
+
+    Attributes:
+        x, y: centre [m].
+        vx, vy: velocity along the ground [m/s].
+        z: height above where it lies, 0 on the ground [m].
+        vz: how fast it rises [m/s].
+    """
 
     x: float
     y: float
     vx: float = 0.0
     vy: float = 0.0
+    z: float = 0.0
+    vz: float = 0.0
 
     @property
     def position(self) -> tuple[float, float]:
@@ -83,7 +104,7 @@ class BallState:
 
     @property
     def speed(self) -> float:
-        """Magnitude of the velocity [m/s]."""
+        """Magnitude of the velocity along the ground [m/s]."""
         return hypot(self.vx, self.vy)
 
 
@@ -128,7 +149,7 @@ class Frame:
         """Return all of its numbers but the game's, as little-endian float64.
 
         Time; x, y, vx, vy of the ball; how many own robots there are, and the id, x, y, heading,
-        vx, vy, omega and ball contact of each; the same of the opponents.
+        vx, vy, omega and ball contact of each; the same of the opponents; z and vz of a ball in the air.
         """
         ball = self.ball
         numbers = [self.time, ball.x, ball.y, ball.vx, ball.vy]
@@ -136,6 +157,8 @@ class Frame:
             numbers.append(len(robots))
             for it in robots:
                 numbers += (it.id, it.x, it.y, it.heading, it.vx, it.vy, it.omega, it.ball_contact)
+        if ball.z or ball.vz:
+            numbers += (ball.z, ball.vz)
         return pack(f"<{len(numbers)}d", *numbers)
 
     def others(self, number: int) -> list[RobotState]:
@@ -156,7 +179,7 @@ class Frame:
         return Frame(
             self.time,
             self.field,
-            BallState(-ball.x, -ball.y, -ball.vx, -ball.vy),
+            BallState(-ball.x, -ball.y, -ball.vx, -ball.vy, ball.z, ball.vz),
             tuple([_turned(robot) for robot in self.opponents]),
             tuple([_turned(robot) for robot in self.own]),
             self.team.other,

@@ -2,13 +2,14 @@ from math import inf
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robobt.motion.ball_model import BallModel
+from robobt.motion.ball_model import BallModel, ChipModel
 from robobt.sim import SimSettings
+from robobt.world.state import ROBOT_HEIGHT
 
-BALL = BallModel()
+BALL, CHIP = BallModel(), ChipModel()
 
 
 def rolled(model: BallModel, speed: float, time: float) -> tuple[float, float]:
@@ -64,3 +65,43 @@ def test_the_time_for_a_way_inverts_the_way_in_a_time(time: float, speed: float,
 def test_a_way_longer_than_the_ball_rolls_takes_for_ever() -> None:
     assert BALL.time_for(0.0, 0.0) == 0.0
     assert BALL.time_for(2.0, 1.0) == inf
+
+
+# Chips.
+
+
+@given(distance=st.floats(0.1, 4.0), touch_downs=st.integers(1, 3))
+def test_a_chip_for_a_distance_touches_down_there(distance: float, touch_downs: int) -> None:
+    speed = CHIP.kick_speed(distance, touch_downs)
+    # Weak chips roll before they have touched down so often.
+    assume(len(CHIP.touch_downs(speed)) >= touch_downs)
+    assert CHIP.touch_downs(speed)[touch_downs - 1][1] == pytest.approx(distance)
+
+
+# Source: a table worked out from Sumatra's constants.
+@pytest.mark.parametrize(
+    ("speed", "over", "downs", "rolls"),
+    [
+        (3.0, (0.19, 0.73), (0.92, 1.26, 1.40), 1.2),
+        (4.0, (0.17, 1.46), (1.63, 2.24, 2.49), 1.6),
+        (5.0, (0.16, 2.39), (2.55, 3.51, 3.89), 2.0),
+        (6.2, (0.16, 3.76), (3.92, 5.39, 5.98, 6.22), 2.2),
+    ],
+)
+def test_chips_go_as_far_as_sumatras(
+    speed: float, over: tuple[float, float], downs: tuple[float, ...], rolls: float
+) -> None:
+    found = CHIP.touch_downs(speed)
+    assert [way for _, way in found] == pytest.approx(downs, abs=0.01)
+    assert CHIP.along(speed, len(found)) == pytest.approx(rolls, abs=0.05)
+    assert CHIP.clears(speed, ROBOT_HEIGHT) == pytest.approx(over, abs=0.01)
+
+
+def test_a_weak_chip_clears_no_robot() -> None:
+    assert CHIP.clears(2.4, ROBOT_HEIGHT) is None
+
+
+def test_skills_believe_in_the_hops_of_the_default_simulator() -> None:
+    real = SimSettings().ball
+    for name in ChipModel.model_fields:
+        assert getattr(CHIP, name) == getattr(real, name)

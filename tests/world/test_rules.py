@@ -31,6 +31,7 @@ from robobt.world.rules import (
     taken_off,
     touches,
 )
+from robobt.world.state import GOAL_HEIGHT, RECEIVED_HEIGHT, ROBOT_HEIGHT
 
 FIELD = DIVISION_B
 EDGE_X, EDGE_Y = FIELD.half_length + BALL_RADIUS, FIELD.half_width + BALL_RADIUS
@@ -115,36 +116,51 @@ def test_going_farther_along_the_same_way_moves_no_exit(before: Point, after: Po
 # Goals.
 
 
+def scoring(before: Point, after: Point, *heights: float) -> Team | None:
+    low, high = heights or (0.0, 0.0)
+    return scorer(FIELD, BallState(*before, z=low), BallState(*after, z=high))
+
+
 def test_a_goal_is_scored_where_the_whole_ball_passes_between_the_posts() -> None:
-    assert scorer(FIELD, (4.4, 0.2), (EDGE_X + 1e-6, 0.2)) is Team.BLUE
-    assert scorer(FIELD, (4.4, 0.2), (EDGE_X - 1e-6, 0.2)) is None
-    assert scorer(FIELD, (-4.4, 0.2), (-EDGE_X - 1e-6, 0.2)) is Team.YELLOW
-    assert scorer(FIELD, (4.4, POST + 0.01), (EDGE_X + 0.1, POST + 0.01)) is None
+    assert scoring((4.4, 0.2), (EDGE_X + 1e-6, 0.2)) is Team.BLUE
+    assert scoring((4.4, 0.2), (EDGE_X - 1e-6, 0.2)) is None
+    assert scoring((-4.4, 0.2), (-EDGE_X - 1e-6, 0.2)) is Team.YELLOW
+    assert scoring((4.4, POST + 0.01), (EDGE_X + 0.1, POST + 0.01)) is None
 
 
 def test_the_crossing_decides_not_where_the_ball_is_seen_next() -> None:
     before = (EDGE_X - 0.1, POST - 0.1)
-    assert scorer(FIELD, before, (EDGE_X + 0.1, POST + 0.05)) is Team.BLUE
-    assert scorer(FIELD, before, (EDGE_X + 0.1, POST + 0.15)) is None
-    assert scorer(FIELD, (EDGE_X - 0.1, POST + 0.2), (EDGE_X + 0.1, POST - 0.1)) is None
+    assert scoring(before, (EDGE_X + 0.1, POST + 0.05)) is Team.BLUE
+    assert scoring(before, (EDGE_X + 0.1, POST + 0.15)) is None
+    assert scoring((EDGE_X - 0.1, POST + 0.2), (EDGE_X + 0.1, POST - 0.1)) is None
 
 
 def test_a_ball_that_was_out_scores_no_goal() -> None:
-    assert scorer(FIELD, (EDGE_X + 0.01, 0.0), (EDGE_X + 0.1, 0.0)) is None
-    assert scorer(FIELD, (EDGE_X - 0.1, EDGE_Y + 0.01), (EDGE_X + 0.1, 0.0)) is None
+    assert scoring((EDGE_X + 0.01, 0.0), (EDGE_X + 0.1, 0.0)) is None
+    assert scoring((EDGE_X - 0.1, EDGE_Y + 0.01), (EDGE_X + 0.1, 0.0)) is None
+
+
+def test_a_ball_above_the_bar_scores_no_goal() -> None:
+    low, high = GOAL_HEIGHT - 2 * BALL_RADIUS - 1e-6, GOAL_HEIGHT - 2 * BALL_RADIUS + 1e-6
+    before, after = (EDGE_X - 0.1, 0.0), (EDGE_X + 0.1, 0.0)
+    assert scoring(before, after, low, low) is Team.BLUE
+    assert scoring(before, after, high, high) is None
+    # What counts is the height half-way, where it crosses.
+    assert scoring(before, after, low + 0.1, low - 0.1) is Team.BLUE
+    assert scoring(before, after, high + 0.1, high - 0.1) is None
 
 
 @given(inside, anywhere)
 def test_half_a_turn_gives_the_goal_to_the_other_team(before: Point, after: Point) -> None:
-    team = scorer(FIELD, before, after)
-    assert scorer(FIELD, turned(before), turned(after)) is (None if team is None else team.other)
+    team = scoring(before, after)
+    assert scoring(turned(before), turned(after)) is (None if team is None else team.other)
 
 
 @given(inside, anywhere)
 def test_a_goal_leaves_the_field_over_a_goal_line_between_the_posts(before: Point, after: Point) -> None:
     (_, y), goal_line = exit_point(FIELD, before, after)
     scored = ball_out(FIELD, after) and goal_line and abs(y) <= POST
-    team = scorer(FIELD, before, after)
+    team = scoring(before, after)
     assert (team is not None) is scored
     if team is not None:
         assert copysign(1.0, after[0]) == -own_side(team)
@@ -318,3 +334,18 @@ def test_no_more_robots_are_off_than_there_are_too_many() -> None:
     assert taken_off(FIELD, robots, 3) == {2}
     assert taken_off(FIELD, robots, 2) == {1, 2}
     assert taken_off(FIELD, robots, 1) == {1, 2}
+
+
+# In the air.
+
+
+def test_a_ball_above_the_robots_touches_none() -> None:
+    me, (x, y) = robot(), ball_at(robot(), 0.098).position
+    assert touches(me, BallState(x, y, z=ROBOT_HEIGHT - 1e-6))
+    assert not touches(me, BallState(x, y, z=ROBOT_HEIGHT))
+
+
+def test_nobody_has_a_ball_that_is_too_high_to_be_received() -> None:
+    me, (x, y) = robot(), ball_at(robot(), 0.098).position
+    assert has_ball(me, BallState(x, y, z=RECEIVED_HEIGHT))
+    assert not has_ball(me, BallState(x, y, z=RECEIVED_HEIGHT + 1e-6))

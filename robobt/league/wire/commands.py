@@ -80,7 +80,7 @@ def clamp_command(command: RobotCommand, limits: RobotLimits, max_kick: float) -
     vx, vy = limit_norm(command.vx, command.vy, limits.max_speed)
     omega = min(max(command.omega, -limits.max_turn), limits.max_turn)
     kick = min(max(command.kick_speed, 0.0), max_kick)
-    return RobotCommand(vx, vy, omega, kick, command.kick_trigger, command.dribbler)
+    return RobotCommand(vx, vy, omega, kick, command.kick_trigger, command.dribbler, command.kick_angle)
 
 
 def velocity_from_wheels(speeds: list[float]) -> tuple[float, float, float]:

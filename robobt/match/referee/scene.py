@@ -9,7 +9,6 @@ from robobt.match.referee.touches import Touches
 from robobt.world.division import Division, division_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
-from robobt.world.geometry import Point
 from robobt.world.rules import ball_out, without_absent
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
@@ -47,7 +46,7 @@ class Scene:
         penalty: whose penalty kick this phase is, or was last.
         touches: who touches the ball and who did.
         out: whether the ball is out of the field.
-        inside: where the ball was when it was last in the field [m].
+        inside: the ball when it was last in the field.
     """
 
     def __init__(self, field: FieldGeometry, settings: RefereeSettings) -> None:
@@ -62,7 +61,7 @@ class Scene:
         self.stopped = 0.0
         self.penalty: Team | None = None
         self.out = False
-        self.inside: Point = (0.0, 0.0)
+        self.inside = BallState(0.0, 0.0)
         self._read: GameState | None = None
         self._state: object = None
         self._seen = False
@@ -74,10 +73,9 @@ class Scene:
         self.frame = frame = without_absent(frame, game)
         self.game = game
         self.touches.watch(frame)
-        ball = frame.ball.position
-        self.out = ball_out(self.field, ball)
+        self.out = ball_out(self.field, frame.ball.position)
         if not self.out:
-            self.inside = ball
+            self.inside = frame.ball
         if game is self._read:
             return False
         self._read = game

@@ -46,9 +46,9 @@ class BallLeft(Rule):
         return (self._left(scene),)
 
     def _left(self, scene: Scene) -> RefereeEvent:
-        ball, last = scene.frame.ball.position, scene.touches.last
+        ball, last = scene.frame.ball, scene.touches.last
         team = None if last is None else last.team
-        crossing, over_goal_line = exit_point(scene.field, scene.inside, ball)
+        crossing, over_goal_line = exit_point(scene.field, scene.inside.position, ball.position)
         if scene.phase is Phase.PENALTY and scorer(scene.field, scene.inside, ball) is not scene.penalty:
             reason = "the ball has left the field"
             return team_event(
