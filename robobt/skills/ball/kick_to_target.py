@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from math import atan2, cos, radians, sin
 from typing import Literal
 
+from robobt.motion.ball_model import DEFAULT_CHIP
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
@@ -17,12 +18,15 @@ from robobt.skills.driving import DrivingSkill
 from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick
 from robobt.skills.store import Pass
 from robobt.tree import Status
-from robobt.world.command import KickTrigger
+from robobt.world.command import CHIP_ANGLE, KickTrigger
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.rules import has_ball
 
 SHOT_SPEED = 6.4
 """Kick speed of a shot [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
+
+MAX_CHIP_SPEED = 6.4
+"""Fastest chip [m/s]; like :data:`SHOT_SPEED`, it counts in space."""
 
 _SHOT_TOLERANCE = (radians(0.5), radians(4.0))
 """Least and most angle by which a shot may be off its point [rad]."""
@@ -56,6 +60,12 @@ class _Order:
     tolerance: float
     speed: float
     pass_: Pass | None
+    angle: float = 0.0
+
+    @property
+    def along(self) -> float:
+        """How fast the ball leaves along the ground [m/s]."""
+        return self.speed * cos(self.angle)
 
 
 @skill
@@ -69,11 +79,15 @@ class KickToTarget(DrivingSkill):
     The ball leaves along the heading with whatever sideways velocity it has, so
     the robot aims that much to the other side, and may kick while it still turns.
 
+    A chip flies over robots and first touches down at the target, or as near to it as the rules' speed
+    lets it; from there it hops and rolls on.
+
     Args:
         target: where to kick [m]; None takes ``store.shot``, else ``store.pass_``.
         style: "default", or "robobulls" for the paper's baseline
             (:class:`~robobt.skills.robobulls.kick.RobobullsKick`).
-        kick_speed: [m/s]; None is the pass's own speed, or a full shot.
+        kick_speed: [m/s]; None is the pass's own speed, or a full shot, or for a chip what
+            the distance needs.
         tolerance: angle by which the kick may be off [rad]; None is half the
             shot's own tolerance, 1.5 degrees for a pass.
         max_turn: turning rate with the ball [rad/s].
@@ -81,9 +95,11 @@ class KickToTarget(DrivingSkill):
             RoboBulls' in that style.
         speed: factor on the top speed.
         goalkeeper: may enter the own defence area.
+        chip: lift the ball over what stands on its way.
+        touch_downs: at which of a chip's touch-downs it is to be at the target.
 
     Raises:
-        ValueError: no such style.
+        ValueError: no such style, a chip in RoboBulls' or fewer than one touch-down.
     """
 
     reads = ("shot", "pass_")
@@ -95,6 +111,8 @@ class KickToTarget(DrivingSkill):
     tolerance: float | None = None
     max_turn: float = 4.0
     goalkeeper: bool = False
+    chip: bool = False
+    touch_downs: int = 1
     _kicking: _Order | None = field(default=None, init=False)
     _was_near: bool = field(default=False, init=False)
 
@@ -102,6 +120,10 @@ class KickToTarget(DrivingSkill):
         super().__post_init__()
         if self.style not in ("default", "robobulls"):
             raise ValueError(f"style must be 'default' or 'robobulls', not {self.style!r}")
+        if self.chip and self.style == "robobulls":
+            raise ValueError("RoboBulls' style has no chip; leave style at 'default'")
+        if self.touch_downs < 1:
+            raise ValueError(f"touch_downs must be at least 1, not {self.touch_downs}")
         self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
         self._robobulls: RobobullsKick | None = None
         if self.style == "robobulls":
@@ -155,11 +177,15 @@ class KickToTarget(DrivingSkill):
         return None
 
     def _with(self, target: Point, tolerance: float, speed: float, pass_: Pass | None) -> _Order:
+        if self.chip:
+            away = distance(self.ball.position, target)
+            speed = min(DEFAULT_CHIP.kick_speed(away, self.touch_downs), MAX_CHIP_SPEED)
         return _Order(
             target,
             tolerance if self.tolerance is None else self.tolerance,
             speed if self.kick_speed is None else self.kick_speed,
             pass_,
+            CHIP_ANGLE if self.chip else 0.0,
         )
 
     def _turn_with_ball(self, order: _Order) -> None:
@@ -172,7 +198,7 @@ class KickToTarget(DrivingSkill):
         near = distance(me.position, ball.position) < _NEAR
         x, y = ball.position if near else meeting_point(frame, me, limits)
         line = direction((x, y), order.target)
-        facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.speed)
+        facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.along)
         ux, uy = cos(facing), sin(facing)
         # How far the robot is behind the ball and beside the line of the kick.
         back = (x - me.x) * ux + (y - me.y) * uy
@@ -216,10 +242,11 @@ class KickToTarget(DrivingSkill):
         if gap > _NEAR:
             return False
         sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
-        leaving = me.heading + atan2(sideways, order.speed)
+        leaving = me.heading + atan2(sideways, order.along)
         if abs(wrap_angle(direction(ball.position, order.target) - leaving)) > order.tolerance:
             return False
         self.store.command.kick_speed = order.speed
+        self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
         if has_ball(me, ball):
             self._note_pass(order)
@@ -230,7 +257,7 @@ class KickToTarget(DrivingSkill):
         if me.ball_contact:
             return False
         line = direction(ball.position, order.target)
-        return ball.vx * cos(line) + ball.vy * sin(line) > _LEFT_SHARE * order.speed
+        return ball.vx * cos(line) + ball.vy * sin(line) > _LEFT_SHARE * order.along
 
     def _as_robobulls(self, kick: RobobullsKick, order: _Order) -> Status:
         default = _ROBOBULLS_TOLERANCE["shot" if order.pass_ is None else "pass"]

@@ -4,11 +4,13 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 
 import pytest
 
+from robobt.motion.ball_model import DEFAULT_CHIP
 from robobt.skills import KickToTarget
-from robobt.skills.ball.kick_to_target import SHOT_SPEED
+from robobt.skills.ball.kick_to_target import MAX_CHIP_SPEED, SHOT_SPEED
 from robobt.skills.store import Pass, Shot
 from robobt.tree import Status
 from robobt.world import Frame, KickTrigger
+from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import wrap_angle
 from tests.simulation import Trial, blue, eventually, goal_for_us, inside_the_field, never, yellow
 from tests.skills.fixed_world import Alone, frame, held, pass_to, robot, shot_at
@@ -202,3 +204,49 @@ def test_robobulls_style_kicks_too_but_takes_its_time() -> None:
         )
         times[style] = trial.kicks[0][0]
     assert times["default"] < 0.7 * times["robobulls"]
+
+
+def test_a_chip_is_as_fast_as_its_first_touch_down_needs() -> None:
+    alone, me = Alone(KickToTarget(target=(2.0, 0.0), chip=True)), robot(contact=True)
+    ball = held(me)
+    alone.tick(frame(me, ball=ball))
+    assert alone.command.kick_angle == CHIP_ANGLE
+    assert alone.command.kick_speed == pytest.approx(DEFAULT_CHIP.kick_speed(2.0 - ball[0]))
+    far = Alone(KickToTarget(target=(9.0, 0.0), chip=True))
+    far.tick(frame(me, ball=ball))
+    assert far.command.kick_speed == MAX_CHIP_SPEED
+
+
+def test_a_kick_is_flat_unless_told_otherwise() -> None:
+    alone, me = Alone(KickToTarget(target=GOAL)), robot(contact=True)
+    alone.tick(frame(me, ball=held(me)))
+    assert alone.command.kick_angle == 0.0
+
+
+@pytest.mark.parametrize(("touch_downs", "target"), [(1, (1.5, 0.3)), (2, (2.0, -0.4))])
+def test_a_chip_flies_over_a_robot_and_touches_down_at_its_target(
+    touch_downs: int, target: tuple[float, float]
+) -> None:
+    kick = KickToTarget(target=target, chip=True, touch_downs=touch_downs)
+    robots = {blue(0): (-1.5, 0.0, 0.0), yellow(0): (0.5 * target[0], 0.5 * target[1], pi)}
+    trial = Trial({blue(0): kick}, robots, (-0.8, 0.0), settings="default", period=0.005)
+    trial.run(4.0, eventually("the skill succeeds", lambda _: kick.status is Status.SUCCESS))
+    down: list[Frame] = []
+
+    def touched_down(frame: Frame) -> bool:
+        ball, before = frame.ball, trial.frames[-2].ball
+        if ball.vz > before.vz:
+            down.append(frame)
+        return len(down) == touch_downs
+
+    trial.run(2.0, eventually("it touches down", touched_down))
+    ball = down[-1].ball
+    assert hypot(ball.x - target[0], ball.y - target[1]) < 0.1
+    assert down[-1].last_touch == blue(0)
+
+
+def test_what_cannot_be_chipped_is_refused() -> None:
+    with pytest.raises(ValueError, match="no chip"):
+        KickToTarget(style="robobulls", chip=True)
+    with pytest.raises(ValueError, match="touch_downs"):
+        KickToTarget(chip=True, touch_downs=0)
