@@ -23,14 +23,15 @@ def penalty_kick(
     model: str = "shot_expected_strong",
     threshold: float = 0.85,
     distance: float = 2.8,
-    patience: float = 1.2,
+    patience: float = 2.5,
     carry: float = 0.8,
-    dribble_speed: float = 1.5,
+    dribble_speed: float = 1.0,
 ) -> Behaviour:
     """Carry the ball towards the goal, there draw the goalkeeper to one side and shoot into the other.
 
     The kick is over after 10 s. Until it shoots the robot lets the ball go now and
-    then, because nobody may carry it farther than a metre.
+    then, because nobody may carry it farther than a metre; it is slow enough with
+    the ball to stand within that way and draw the goalkeeper at rest.
 
     Args:
         model: predictor of the ``expected_goal`` rater: a shipped model or a file.
@@ -43,8 +44,8 @@ def penalty_kick(
     rater = ExpectedGoal(model=model, threshold=threshold)
     return first_of(
         "penalty kick",
-        when("score", SelectShot(rater=rater, min_score=threshold), KickToTarget()),
         when("let go", CarriedFar(limit=carry), Stop()),
+        when("score", SelectShot(rater=rater, min_score=threshold), KickToTarget()),
         when(
             "draw",
             HasBall(),

@@ -30,8 +30,11 @@ from robobt.skills.conditions.is_restart import IsRestart
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
 from robobt.skills.conditions.team_has_ball import TeamHasBall
 from robobt.skills.conditions.under_pressure import UnderPressure
+from robobt.skills.defence.block_shot import BlockShot
+from robobt.skills.defence.close_down import CloseDown
 from robobt.skills.defence.cover_angle import CoverAngle
 from robobt.skills.defence.mark_opponent import MarkOpponent
+from robobt.skills.defence.shot_coming import ShotComing
 from robobt.skills.defence.wall import Wall
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
@@ -45,6 +48,10 @@ from robobt.world.game import Restart
 
 UPFIELD_SPEED = 2.0
 """Of a kick that is neither shot nor pass: fast enough to get away, too slow to leave the field [m/s]."""
+
+
+_KICKED = 2.5
+"""A ball that approaches the goal faster than this was kicked, not rolled on [m/s]."""
 
 
 class Shooting(NamedTuple):
@@ -142,7 +149,17 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
+        when("their penalty", IsRestart(kind=Restart.PENALTY, ours=False), save_penalty(speed)),
         goalkeeper(speed=speed),
+    )
+
+
+def save_penalty(speed: float) -> Behaviour:
+    """Come out to the kicker of a penalty kick, who is alone; get onto the line of what it kicks."""
+    return first_of(
+        "save",
+        when("shot", ShotComing(min_speed=_KICKED, margin=0.1), BlockShot(speed=speed)),
+        CloseDown(speed=speed),
     )
 
 

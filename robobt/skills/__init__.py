@@ -47,6 +47,7 @@ from robobt.skills.conditions.team_has_ball import TeamHasBall as TeamHasBall
 from robobt.skills.conditions.under_pressure import UnderPressure as UnderPressure
 from robobt.skills.defence.block_shot import BlockShot as BlockShot
 from robobt.skills.defence.challenge_ball import ChallengeBall as ChallengeBall
+from robobt.skills.defence.close_down import CloseDown as CloseDown
 from robobt.skills.defence.cover_angle import CoverAngle as CoverAngle
 from robobt.skills.defence.cover_near_post import CoverNearPost as CoverNearPost
 from robobt.skills.defence.mark_opponent import MarkOpponent as MarkOpponent

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.integration
 def shoot_out() -> tuple[MatchResult, list[str]]:
     """The first kick of each team."""
     happened: list[str] = []
-    with Match(load_scenario("shoot_out").lasting(19.0), 1, sim_world) as match:
+    with Match(load_scenario("shoot_out").lasting(23.0), 1, sim_world) as match:
         update = match._referee.update  # type: ignore[union-attr]
 
         def told(frame):  # type: ignore[no-untyped-def]

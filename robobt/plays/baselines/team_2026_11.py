@@ -156,7 +156,7 @@ def _take_penalty(farthest: float | None) -> Behaviour:
         IsRestart(kind=Restart.PENALTY, ours=True),
         IsAttacker(farthest=farthest),
         first_of("wait", MayTouchBall(), PrepareRestart()),
-        penalty_kick(),
+        penalty_kick(patience=1.2, dribble_speed=1.5),
     )
 
 

@@ -7,6 +7,8 @@ from math import hypot
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import Point
 from robobt.world.rules import in_own_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -34,10 +36,7 @@ class CoverAngle(DrivingSkill):
             return self.fail("the ball is behind the goal line")
         half_goal = field.goal_width / 2
         line = -field.half_length
-        to_left = hypot(ball.x - line, half_goal - ball.y)
-        to_right = hypot(ball.x - line, half_goal + ball.y)
-        # The bisector of an angle divides the opposite side as the other two sides.
-        foot = half_goal * (to_right - to_left) / (to_right + to_left)
+        foot = bisector_foot(field, ball.position)
         dx, dy = ball.x - line, ball.y - foot
         gap = hypot(dx, dy)
         hides = ROBOT_RADIUS / half_goal * gap
@@ -55,3 +54,11 @@ class CoverAngle(DrivingSkill):
             thereabouts=True,
         )
         return self.run("covering the angle")
+
+
+def bisector_foot(field: FieldGeometry, ball: Point) -> float:
+    """Return where the bisector of the angle between our posts, as the ball sees them, meets the line [m]."""
+    half_goal, ahead = field.goal_width / 2, ball[0] + field.half_length
+    to_left, to_right = hypot(ahead, half_goal - ball[1]), hypot(ahead, half_goal + ball[1])
+    # The bisector of an angle divides the opposite side as the other two sides.
+    return half_goal * (to_right - to_left) / (to_right + to_left)
