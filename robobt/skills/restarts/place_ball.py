@@ -39,6 +39,9 @@ _AT_WALL = 0.05
 _CLEAR_OF_WALL = 0.1
 """How far inside the lines it is free of them [m]."""
 
+_IN_MOUTH = 0.12
+"""A ball in the goal's mouth nearer to its line is pulled straight out first, past the posts [m]."""
+
 _BESIDE_GOAL = 0.25
 """A ball behind the goal line this near to a goal lies in the corner beside it [m]."""
 
@@ -111,13 +114,16 @@ class PlaceBall(DrivingSkill):
         """Return where the ball is pulled to now: from goals, walls and corners straight inwards first."""
         lines, (x, y) = self.frame.field, self.ball.position
         slack = _CLEAR_OF_WALL if self._inwards else 0.0
-        most_x, most_y = lines.half_length + _AT_WALL - slack, lines.half_width + _AT_WALL - slack
+        in_mouth = abs(y) < lines.goal_width / 2
+        most_x = lines.half_length + (-_IN_MOUTH if in_mouth else _AT_WALL) - slack
+        most_y = lines.half_width + _AT_WALL - slack
         self._inwards = abs(x) > most_x or abs(y) > most_y
         if not self._inwards:
             return spot
         inside_x, inside_y = lines.half_length - _CLEAR_OF_WALL, lines.half_width - _CLEAR_OF_WALL
-        if abs(y) < lines.goal_width / 2:
+        if in_mouth:
             # Out of the goal past its posts.
+            inside_x -= _IN_MOUTH + _CLEAR_OF_WALL
             inside_y = lines.goal_width / 2 - ROBOT_RADIUS - _CLEAR_OF_WALL
         elif abs(x) > lines.half_length and abs(y) < lines.goal_width / 2 + _BESIDE_GOAL:
             # Aslant from beside the goal, whose wall leaves the robot no room straight behind the ball.

@@ -42,6 +42,7 @@ def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
         ((4.77, 0.56), (1.0, -2.0)),
         ((4.1, 0.4), (-1.4, 1.2)),
         ((1.1, -1.7), (4.0, 2.75)),
+        ((4.49, -0.37), (4.3, -2.8)),
     ],
     ids=[
         "across the field",
@@ -53,6 +54,7 @@ def place(ball: Point, spot: Point, seconds: float, settings: str) -> Trial:
         "from beside their goal",
         "out of their area",
         "towards a corner",
+        "on the goal line by a post",
     ],
 )
 def test_the_ball_comes_to_rest_on_the_spot_and_the_robot_leaves_it(
