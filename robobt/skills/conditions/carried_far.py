@@ -8,7 +8,7 @@ from math import hypot, inf
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point
-from robobt.world.rules import has_ball, keeps_ball
+from robobt.world.rules import has_ball, keeps_ball, touches
 from robobt.world.state import RobotId
 
 _LETTING_GO = 0.15
@@ -46,7 +46,7 @@ class CarriedFar(Skill):
             self._start = None
             return self.fail("it has no ball")
         if self._start is None or paused:
-            if not has_ball(self.me, ball):
+            if not (touches(self.me, ball) or has_ball(self.me, ball)):
                 return self.fail("it has no ball yet")
             self._start = ball.position
         way = hypot(ball.x - self._start[0], ball.y - self._start[1]) + _LETTING_GO * ball.speed

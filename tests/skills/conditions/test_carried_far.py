@@ -54,3 +54,12 @@ def test_after_a_pause_it_counts_anew() -> None:
     alone = Alone(CarriedFar(limit=0.8))
     carry(alone, 0.0, 0.7, 30)
     assert carry(alone, 0.9, 1.5, 30, tick=120) is Status.FAILURE
+
+
+def test_a_ball_that_the_hull_pushes_along_is_carried() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    status = Status.INVALID
+    for step in range(31):
+        me = robot(-step / 30.0, 0.0)
+        status = alone.tick(frame(me, (me.x - 0.112, 0.0), time=step * PERIOD))
+    assert status is Status.SUCCESS
