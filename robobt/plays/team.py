@@ -35,6 +35,7 @@ from robobt.skills.defence.close_down import CloseDown
 from robobt.skills.defence.cover_angle import CoverAngle
 from robobt.skills.defence.mark_opponent import MarkOpponent
 from robobt.skills.defence.shot_coming import ShotComing
+from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.defence.wall import Wall
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
@@ -87,17 +88,20 @@ def field_player(
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
     shooting = Shooting(rater, min_score, shot_distance)
-    return first_of(
-        "field player",
-        when("halted", IsHalted(), Stop()),
-        take_penalty(farthest),
-        place_ball(farthest),
-        take_restart(shooting, farthest),
-        when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
-        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-        when("ball is dead", ball_dead(), KeepDistance(), off_the_ball()),
-        when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
-        off_the_ball(),
+    return StayOut(
+        "stay out",
+        first_of(
+            "field player",
+            when("halted", IsHalted(), Stop()),
+            take_penalty(farthest),
+            place_ball(farthest),
+            take_restart(shooting, farthest),
+            when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
+            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+            when("ball is dead", ball_dead(), KeepDistance(), off_the_ball()),
+            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
+            off_the_ball(),
+        ),
     )
 
 
@@ -124,16 +128,19 @@ def defender(
         farthest: largest x of the ball at which it goes for it [m].
     """
     shooting = Shooting(rater, min_score, shot_distance)
-    return first_of(
-        "defender",
-        when("halted", IsHalted(), Stop()),
-        take_penalty(farthest),
-        place_ball(farthest),
-        take_restart(shooting, farthest),
-        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-        when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
-        when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
-        Wall(place=place, size=size),
+    return StayOut(
+        "stay out",
+        first_of(
+            "defender",
+            when("halted", IsHalted(), Stop()),
+            take_penalty(farthest),
+            place_ball(farthest),
+            take_restart(shooting, farthest),
+            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+            when("ball is dead", ball_dead(), KeepDistance(), Wall(place=place, size=size)),
+            when("on the ball", IsAttacker(farthest=farthest), on_the_ball(shooting, dribble_speed)),
+            Wall(place=place, size=size),
+        ),
     )
 
 

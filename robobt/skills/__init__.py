@@ -53,6 +53,7 @@ from robobt.skills.defence.cover_near_post import CoverNearPost as CoverNearPost
 from robobt.skills.defence.mark_opponent import MarkOpponent as MarkOpponent
 from robobt.skills.defence.return_to_goal import ReturnToGoal as ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing as ShotComing
+from robobt.skills.defence.stay_out import StayOut as StayOut
 from robobt.skills.defence.wall import Wall as Wall
 from robobt.skills.go_to_pose import GoToPose as GoToPose
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition as GoToKickoffPosition
