@@ -162,7 +162,7 @@ class LeagueWorld(World):
             if not command.finite():
                 raise ValueError(f"the command for {robot} is not finite: {command}")
             limits = self._limits.get(robot, self.settings.limits)
-            clamped[robot] = clamp_command(command, limits, self.settings.kicker.max_speed)
+            clamped[robot] = clamp_command(command, limits, self.settings.kicker)
         self._commands = {robot: clamped.get(robot) or RobotCommand() for robot in self._commanded()}
         self._transmit()
         feed = self._feed

@@ -73,12 +73,13 @@ ROBOT_PARAMETERS = 7
     ROUNDING,
     CHIP_ANGLE,
     CHIP_MAX,
+    CHIP_YIELD,
     HOP_FIRST,
     HOP_OTHER,
     HOP_UP,
     BOUNCE_WALL,
-) = range(40)
-ARENA_PARAMETERS = 40
+) = range(41)
+ARENA_PARAMETERS = 41
 
 # Columns of the parameters of an arena's robots' wheels; those from LOAD_REST on are four, one a wheel.
 (
@@ -124,6 +125,7 @@ def arena_row(settings: SimSettings) -> FloatArray:
     row[RECHARGE] = kicker.recharge
     row[CHIP_ANGLE] = radians(kicker.chip_angle or 0.0)
     row[CHIP_MAX] = kicker.max_chip_speed
+    row[CHIP_YIELD] = kicker.chip_yield
     row[HOP_FIRST], row[HOP_OTHER], row[HOP_UP] = ball.first_hop, ball.other_hops, ball.rebound
     row[BOUNCE_WALL] = settings.contact.wall_restitution
     row[BALL_R] = BALL_RADIUS

@@ -9,6 +9,7 @@ from robobt.sim.columns import (
     CENTRING,
     CHIP_ANGLE,
     CHIP_MAX,
+    CHIP_YIELD,
     CORE,
     FACE,
     HALF_MOUTH,
@@ -133,6 +134,7 @@ def kick(
         most = p[CHIP_MAX]
         if p[CHIP_ANGLE] > 0.0:
             angle = p[CHIP_ANGLE]
+        speed *= p[CHIP_YIELD]
         air[RISE] = speed * sin(angle)
         speed *= cos(angle)
     c, s = cos(robot[2]), sin(robot[2])

@@ -122,4 +122,5 @@ class KickerSettings(Settings):
     chip_angle: float | None = Field(
         45.0, gt=0, lt=90, description="of every chip, from the ground [deg]; none for the one commanded"
     )
+    chip_yield: float = Field(1.0, gt=0, le=1, description="share of the commanded speed that a chip has")
     max_chip_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a chip [m/s]")

@@ -29,9 +29,8 @@ class BallSettings(Settings):
 
     A kicked ball slides with constant deceleration and picks up spin until it
     rolls, at ``switch_share`` of the speed it started with; from there it rolls
-    with a smaller constant deceleration until it rests. A chipped ball keeps a share of
-    its speed along the ground and one of its speed upwards at each touch-down, and rolls
-    once the next hop would be lower than 1 cm (the league's model chip_fixed_loss).
+    with a smaller constant deceleration until it rests. In the air it follows the
+    league's model chip_fixed_loss, until the next hop would be lower than 1 cm.
     """
 
     mass: float = Field(0.046, gt=0.001, le=1, description="mass [kg]")
@@ -42,9 +41,7 @@ class BallSettings(Settings):
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
     stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
     placed_rolls: bool = Field(True, description="whether a ball that is placed moving rolls, or slides")
-    first_hop: float = Field(
-        0.8, ge=0, le=1, description="share of the speed along the ground kept at the first touch-down"
-    )
+    first_hop: float = Field(0.8, ge=0, le=1, description="share of its speed kept at the first touch-down")
     other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
     rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
 
@@ -126,9 +123,9 @@ _GRSIM_BALL = BallSettings(
     slide_deceleration=10.3,
     switch_share=0.695,
     roll_deceleration=0.701,
-    first_hop=0.7,
-    other_hops=1.0,
-    rebound=0.5,
+    first_hop=0.594,
+    other_hops=0.92,
+    rebound=0.48,
 )
 
 _GRSIM = SimSettings(
@@ -149,7 +146,9 @@ _GRSIM = SimSettings(
         reaction=1 / 60,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
-    kicker=KickerSettings(max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, max_chip_speed=10.0),
+    kicker=KickerSettings(
+        max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+    ),
     contact=ContactSettings(
         front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
     ),
@@ -175,7 +174,7 @@ PRESETS: dict[str, SimSettings] = {
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
         kicker=KickerSettings(
-            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, max_chip_speed=20.0
+            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
         ),
         contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
     ),
@@ -203,8 +202,7 @@ PRESETS: dict[str, SimSettings] = {
             reaction=0.02,
         ),
         dribbler=DribblerSettings(kind="roller"),
-        # The chip that first touches down after 3 m.
-        kicker=KickerSettings(max_speed=6.5, max_chip_speed=5.425),
+        kicker=KickerSettings(max_chip_speed=5.425),  # which first touches down after 3 m
         contact=ContactSettings(
             front_restitution=0.2,
             hull_restitution=0.6,
@@ -237,7 +235,9 @@ PRESETS: dict[str, SimSettings] = {
         body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
         limits=_GRSIM.limits.model_copy(update={"braking": 4.6, "catch_speed": 4.0, "reaction": 0.0}),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-        kicker=KickerSettings(max_speed=7.5, damping=0.2, chip_angle=None, max_chip_speed=10.0),
+        kicker=KickerSettings(
+            max_speed=7.5, damping=0.2, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+        ),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
     ),
 }

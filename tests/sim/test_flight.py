@@ -92,7 +92,8 @@ def test_it_flies_along_a_parabola(speed: float) -> None:
 def test_it_hops_as_the_closed_form_says(name: str, speed: float) -> None:
     ball = preset(name).ball
     model = ChipModel(first_hop=ball.first_hop, other_hops=ball.other_hops, rebound=ball.rebound)
-    found, expected = touch_downs(chipper(speed, name)), model.touch_downs(speed)
+    found = touch_downs(chipper(speed, name))
+    expected = model.touch_downs(speed * preset(name).kicker.chip_yield)
     assert len(found) == len(expected)
     for (time, way), (closed_time, closed_way) in zip(found, expected, strict=True):
         # It is seen to leave within a tick of the kick.
@@ -124,10 +125,25 @@ def test_er_forces_longest_chip_lands_at_three_metres_and_loses_what_it_advertis
     assert third - second == pytest.approx(3.0 * 0.715 * 0.566**2, rel=0.05)
 
 
+# Source: touch-downs of the ball in the real grSim, kicked at 45 degrees by its packets.
+@pytest.mark.parametrize(
+    ("speed", "ways"),
+    [
+        (3.0, (0.858, 1.108)),
+        (4.0, (1.531, 1.970, 2.168)),
+        (5.0, (2.394, 3.082, 3.388)),
+        (6.0, (3.451, 4.443, 4.880)),
+    ],
+)
+def test_it_touches_down_where_grsims_does(speed: float, ways: tuple[float, ...]) -> None:
+    found = [way for _, way in touch_downs(chipper(speed, "grsim"))]
+    assert found[: len(ways)] == pytest.approx(ways, rel=0.01)
+
+
 def test_grsims_robots_chip_at_the_commanded_angle_and_others_at_their_own() -> None:
     for name, angle in (("grsim", pi / 6), ("default", CHIP_ANGLE)):
         ball = chipper(5.0, name, angle=pi / 6).truth().ball
-        assert ball.vx == pytest.approx(5.0 * cos(angle), rel=1e-6)
+        assert ball.vx == pytest.approx(5.0 * preset(name).kicker.chip_yield * cos(angle), rel=1e-6)
 
 
 def test_no_chip_is_faster_than_the_presets_cap() -> None:

@@ -9,22 +9,27 @@ from math import ceil, sqrt
 
 import numpy as np
 
+from robobt.league.wire.geometry import CAMERA_HEIGHT
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import RealismSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point, wrap_angle
-from robobt.world.state import Frame
+from robobt.world.state import BALL_RADIUS, BallState, Frame
 
 _OVERLAP = 0.2
 """How far a camera sees beyond its part of the field [m]. Source: grSim's cameras."""
 
 _MAX_CAMERAS = 16
 
+_LEAST_BELOW = 0.1
+"""A ball never counts as nearer to a camera's height than this [m]."""
+
 
 class Cameras:
     """Cameras that share a field, each over its part of a grid.
 
     There are 1 to 16 of them; ``realism`` gives their noise and gaps, its latency is the caller's business.
+    A ball in the air is seen where the ray from the camera through it meets the ground.
 
     Attributes:
         realism: as above; may be replaced.
@@ -60,12 +65,23 @@ class Cameras:
                     x, y = state.x + a * realism.robot_noise, state.y + b * realism.robot_noise
                     heading = wrap_angle(state.heading + c * realism.heading_noise)
                     frame.robots.append(RobotDetection(robot, x, y, heading))
-            if gaps[0] >= realism.missing_ball and left <= ball.x <= right and low <= ball.y <= high:
+            x, y = projected(ball, self.places[camera])
+            if gaps[0] >= realism.missing_ball and left <= x <= right and low <= y <= high:
                 a, b, _ = noise[0]
-                x, y = ball.x + a * realism.ball_noise, ball.y + b * realism.ball_noise
+                x, y = x + a * realism.ball_noise, y + b * realism.ball_noise
                 frame.balls.append(BallDetection(x, y))
             frames.append(frame)
         return frames
+
+
+def projected(ball: BallState, place: Point) -> Point:
+    """Return where a camera over ``place`` sees the ball, as if it lay on the ground [m]."""
+    if ball.z <= 0.0:
+        return ball.position
+    # As it reckons with a ball on the ground, it is that ball's centre that heights count from.
+    height = CAMERA_HEIGHT - BALL_RADIUS
+    farther = height / max(height - ball.z, _LEAST_BELOW)
+    return place[0] + (ball.x - place[0]) * farther, place[1] + (ball.y - place[1]) * farther
 
 
 def _areas(field: FieldGeometry, count: int) -> list[tuple[float, float, float, float]]:

@@ -112,7 +112,10 @@ class ClientPorts:
             if robot.team in self._status_to and self._status.get(robot) != now:
                 self._status[robot] = now
                 changed.setdefault(robot.team, Robots_Status()).robots_status.add(
-                    robot_id=robot.number, infrared=now[0], flat_kick=now[1], chip_kick=False
+                    robot_id=robot.number,
+                    infrared=now[0],
+                    flat_kick=now[1] and robot not in self._field.chipped,
+                    chip_kick=robot in self._field.chipped,
                 )
         for team, status in changed.items():
             self._ports["grsim"].answer(status.SerializeToString(), (self._status_to[team], ports[team]))

@@ -12,6 +12,7 @@ import numpy as np
 
 from robobt.league.wire.commands import BallTeleport, Teleport, clamp_command
 from robobt.sim.arenas import Arenas
+from robobt.sim.columns import ANGLE, COMMAND, KICK
 from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
@@ -33,6 +34,9 @@ _PARKED = 1.5
 _MAX_SPEED = 20.0
 """Fastest velocity that a teleport may give [m/s, rad/s]."""
 
+_MAX_HEIGHT = 3.0
+"""Greatest height that a teleport may give, below the cameras [m]."""
+
 
 class ServedField:
     """A simulated field for 16 robots a team, of which some are present.
@@ -45,6 +49,7 @@ class ServedField:
         period: between two frames [s].
         command_loss: share of the commands that get lost.
         kicked: who kicked during the last step.
+        chipped: who of them chipped.
 
     Raises:
         ValueError: the placement does not fit the field.
@@ -68,11 +73,12 @@ class ServedField:
         given = limits or {}
         self._limits = [given.get(robot, self.settings.limits) for robot in self._ids]
         self._present = np.zeros(len(self._ids), dtype=np.bool_)
-        self._commands = np.zeros((1, len(self._ids), 6))
+        self._commands = np.zeros((1, len(self._ids), COMMAND))
         self._last_command = np.full(len(self._ids), -np.inf)
         self._rng = np.random.default_rng(seed)
         self._ticks = 0
         self.kicked: list[RobotId] = []
+        self.chipped: list[RobotId] = []
         self._arenas = Arenas(field, self._limits, self.settings, self.period)
         self._start(placement)
 
@@ -91,7 +97,7 @@ class ServedField:
             return False
         if self.command_loss > 0.0 and self._rng.random() < self.command_loss:
             return True
-        command = clamp_command(command, self._limits[i], self.settings.kicker.max_speed)
+        command = clamp_command(command, self._limits[i], self.settings.kicker)
         self._commands[0, i] = (
             command.vx,
             command.vy,
@@ -99,6 +105,7 @@ class ServedField:
             command.kick_speed,
             1.0,
             bool(command.dribbler),
+            command.kick_angle,
         )
         self._last_command[i] = self.time
         return True
@@ -123,8 +130,9 @@ class ServedField:
         self._ticks += 1
         fired = self._arenas.kicked[0]
         self.kicked = [self._ids[i] for i in fired.nonzero()[0]]
+        self.chipped = [self._ids[i] for i in (fired & (self._commands[0, :, ANGLE] > 0.0)).nonzero()[0]]
         # A kick fires once; the next one takes another command.
-        self._commands[0, fired, 3] = 0.0
+        self._commands[0, fired, KICK] = 0.0
 
     def teleport(self, robot: Teleport) -> str | None:
         """Put a robot somewhere, take it off the field or bring it back; say why if it cannot be done."""
@@ -156,8 +164,8 @@ class ServedField:
         x, y, vx, vy = (before if new is None else new for new, before in zip(given, old, strict=True))
         if not self._inside(x, y) or not (isfinite(vx) and isfinite(vy)):
             return f"the ball cannot be put at ({x:g}, {y:g}), outside the walls"
-        vx, vy = min(max(vx, -_MAX_SPEED), _MAX_SPEED), min(max(vy, -_MAX_SPEED), _MAX_SPEED)
-        self._arenas.place_ball(0, x, y, vx, vy, ball.rolls)
+        vx, vy, vz = (min(max(speed, -_MAX_SPEED), _MAX_SPEED) for speed in (vx, vy, ball.vz))
+        self._arenas.place_ball(0, x, y, vx, vy, ball.rolls, min(max(ball.z, 0.0), _MAX_HEIGHT), vz)
         return None
 
     def place_ball(self, x: float, y: float) -> None:
@@ -179,7 +187,7 @@ class ServedField:
         return Frame(
             self.time,
             self.field,
-            BallState(*self._arenas.balls[0].tolist()),
+            BallState(*self._arenas.balls[0].tolist(), *self._arenas.flight[0, :2].tolist()),
             tuple(teams[Team.BLUE]),
             tuple(teams[Team.YELLOW]),
             period=self.period,

@@ -9,6 +9,7 @@ import numpy as np
 
 from robobt.league.wire.messages import Message
 from robobt.league.wire.packets import MAX_ROBOT_NUMBER
+from robobt.sim.robot_settings import KickerSettings
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import limit_norm
 from robobt.world.limits import RobotLimits
@@ -42,13 +43,18 @@ class Teleport:
 
 @dataclass(slots=True)
 class BallTeleport:
-    """Where to put the ball [m, m/s]; None keeps the present value. It slides unless it ``rolls``."""
+    """Where to put the ball [m, m/s]; None keeps the present value. It slides unless it ``rolls``.
+
+    ``z`` is its height above where it lies, ``vz`` how fast it rises.
+    """
 
     x: float | None = None
     y: float | None = None
     vx: float | None = None
     vy: float | None = None
     rolls: bool = False
+    z: float = 0.0
+    vz: float = 0.0
 
 
 @dataclass(slots=True)
@@ -69,17 +75,18 @@ class Request:
         for robot in self.teleports:
             numbers += [robot.x, robot.y, robot.heading, robot.vx, robot.vy, robot.omega]
         if self.ball is not None:
-            numbers += [self.ball.x, self.ball.y, self.ball.vx, self.ball.vy]
+            numbers += [self.ball.x, self.ball.y, self.ball.vx, self.ball.vy, self.ball.z, self.ball.vz]
         return all(number is None or isfinite(number) for number in numbers) and all(
             command.finite() for command in self.commands.values()
         )
 
 
-def clamp_command(command: RobotCommand, limits: RobotLimits, max_kick: float) -> RobotCommand:
-    """Return the command within the robot's limits and the fastest allowed kick [m/s]."""
+def clamp_command(command: RobotCommand, limits: RobotLimits, kicker: KickerSettings) -> RobotCommand:
+    """Return the command within the robot's limits and its kicker's."""
     vx, vy = limit_norm(command.vx, command.vy, limits.max_speed)
     omega = min(max(command.omega, -limits.max_turn), limits.max_turn)
-    kick = min(max(command.kick_speed, 0.0), max_kick)
+    fastest = kicker.max_chip_speed if command.kick_angle > 0.0 else kicker.max_speed
+    kick = min(max(command.kick_speed, 0.0), fastest)
     return RobotCommand(vx, vy, omega, kick, command.kick_trigger, command.dribbler, command.kick_angle)
 
 

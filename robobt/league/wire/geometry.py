@@ -23,7 +23,7 @@ _LINE_THICKNESS = 0.01
 """Width of the field's lines [m]. Source: RoboCup SSL rules."""
 
 _GOAL_HEIGHT = 0.16
-"""Height of the goals inside [m]. Source: RoboCup SSL rules."""
+"""Height of the goals [m]. Source: RoboCup SSL rules."""
 
 _SUBSTITUTION_WIDTH = 0.3
 """Strip along the walls behind the goal lines in which robots are off the field [m].
@@ -32,14 +32,11 @@ The rules have it in division A; without it the game controller counts robots th
 field for a card as long as they are seen.
 """
 
-_CAMERA_HEIGHT = 4.0
+CAMERA_HEIGHT = 4.0
 """Height of the cameras above the ground [m]. Source: grSim's."""
 
 _FOCAL_LENGTH, _IMAGE = 390.0, (780, 580)
 """Of a camera that sees a quarter of a division B field from there [pixels]."""
-
-_CHIP = (0.75, 0.95, 0.5)
-"""What a chipped ball keeps: in the plane at its first and its other hops, upwards. Source: Sumatra."""
 
 
 def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
@@ -100,7 +97,8 @@ def write_geometry(
         straight.acc_slide, straight.acc_roll = -ball.slide_deceleration, -ball.roll_deceleration
         straight.k_switch = ball.switch_share
         chip = message.models.chip_fixed_loss
-        chip.damping_xy_first_hop, chip.damping_xy_other_hops, chip.damping_z = _CHIP
+        chip.damping_xy_first_hop, chip.damping_xy_other_hops = ball.first_hop, ball.other_hops
+        chip.damping_z = ball.rebound
     return message
 
 
@@ -155,10 +153,10 @@ def _write_camera(message: SSL_GeometryData, number: int, x: float, y: float) ->
         q3=0.0,
         tx=-x * _MM,
         ty=y * _MM,
-        tz=_CAMERA_HEIGHT * _MM,
+        tz=CAMERA_HEIGHT * _MM,
         derived_camera_world_tx=x * _MM,
         derived_camera_world_ty=y * _MM,
-        derived_camera_world_tz=_CAMERA_HEIGHT * _MM,
+        derived_camera_world_tz=CAMERA_HEIGHT * _MM,
         pixel_image_width=_IMAGE[0],
         pixel_image_height=_IMAGE[1],
     )

@@ -6,7 +6,7 @@ At this edge replacements turn robots in degrees.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import degrees, radians
+from math import atan2, cos, degrees, hypot, radians, sin
 
 from robobt.league.wire.commands import (
     BallTeleport,
@@ -34,8 +34,8 @@ def write_grsim(team: Team, commands: Mapping[int, RobotCommand], time: float) -
     for number, command in commands.items():
         packet.commands.robot_commands.add(
             id=number,
-            kickspeedx=command.kick_speed,
-            kickspeedz=0.0,
+            kickspeedx=command.kick_speed * cos(command.kick_angle),
+            kickspeedz=command.kick_speed * sin(command.kick_angle),
             veltangent=command.vx,
             velnormal=command.vy,
             velangular=command.omega,
@@ -83,9 +83,11 @@ def _request(message: grSim_Packet) -> Request | None:
         if robot.wheelsspeed:
             wheels = (robot.wheel1, robot.wheel2, robot.wheel3, robot.wheel4)
             vx, vy, omega = velocity_from_wheels([speed * _WHEEL_RADIUS for speed in wheels])
-        # The ball cannot fly here: of a chip, only the speed along the ground counts.
+        kick, angle = robot.kickspeedx, 0.0
+        if robot.kickspeedz > 0.0:
+            kick, angle = hypot(kick, robot.kickspeedz), atan2(robot.kickspeedz, max(kick, 0.0))
         request.commands[RobotId(team, robot.id)] = RobotCommand(
-            vx, vy, omega, robot.kickspeedx, KickTrigger.ON_CONTACT, robot.spinner
+            vx, vy, omega, kick, KickTrigger.ON_CONTACT, robot.spinner, angle
         )
     for place in message.replacement.robots:
         number = RobotId(Team.YELLOW if place.yellowteam else Team.BLUE, place.id)

@@ -1,12 +1,12 @@
 """The simulation protocol: robot control and its feedback, teleports.
 
-At this edge a dribbler spins in turns a minute.
+At this edge a dribbler spins in turns a minute, and angles of kicks are degrees.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import cos, isfinite, radians, sin
+from math import cos, degrees, radians, sin
 
 from robobt.league.wire.commands import (
     BallTeleport,
@@ -25,6 +25,9 @@ from robobt.world.state import RobotId
 
 _DRIBBLER_RPM = 1500.0
 """Speed of a dribbler that is on [rpm]; ER-Force's roller does 150 rad/s."""
+
+_STRAIGHT_UP = 90.0
+"""Kicks leave at less than this from the ground [deg]."""
 
 _MIN_RPM = 1.0
 """A dribbler slower than this is off [rpm]."""
@@ -47,7 +50,7 @@ def write_control(commands: Mapping[int, RobotCommand]) -> bytes:
         local.forward, local.left, local.angular = command.vx, command.vy, command.omega
         if command.kick_speed > 0.0:
             robot.kick_speed = command.kick_speed
-            robot.kick_angle = 0.0
+            robot.kick_angle = degrees(command.kick_angle)
         robot.dribbler_speed = _DRIBBLER_RPM if command.dribbler else 0.0
     return bytes(packet.SerializeToString())
 
@@ -68,8 +71,8 @@ def write_teleport(robots: Iterable[Teleport], ball: BallTeleport | None) -> byt
             teleport.present = robot.present
     if ball is not None:
         put = control.teleport_ball
-        put.x, put.y, put.z = ball.x or 0.0, ball.y or 0.0, 0.0
-        put.vx, put.vy, put.vz = ball.vx or 0.0, ball.vy or 0.0, 0.0
+        put.x, put.y, put.z = ball.x or 0.0, ball.y or 0.0, ball.z
+        put.vx, put.vy, put.vz = ball.vx or 0.0, ball.vy or 0.0, ball.vz
         if ball.rolls and (ball.vx or ball.vy):
             # Only where it matters: grSim answers this field with an error.
             put.roll = True
@@ -99,8 +102,9 @@ def read_control(
             return None
         request = Request()
         for robot in message.robot_commands:
-            if robot.kick_speed > 0.0 and robot.kick_angle != 0.0:
-                request.errors.append(("NO_CHIP", "chips are not simulated; the ball is kicked flat"))
+            if robot.kick_speed > 0.0 and not 0.0 <= robot.kick_angle < _STRAIGHT_UP:
+                problem = f"no kick has an angle of {robot.kick_angle:g} degrees; it is left out"
+                request.errors.append(("KICK_ANGLE", problem))
             request.commands[RobotId(team, robot.id)] = _command(robot, headings.get(robot.id, 0.0))
         return request if request.finite() else None
 
@@ -123,10 +127,11 @@ def _command(robot: RobotCommandMessage, heading: float) -> RobotCommand:
         vx, vy, omega = velocity_from_wheels(
             [wheels.front_left, wheels.back_left, wheels.back_right, wheels.front_right]
         )
-    kick = robot.kick_speed
-    if kick > 0.0 and robot.kick_angle != 0.0:
-        kick *= cos(radians(robot.kick_angle)) if isfinite(robot.kick_angle) else 0.0
-    return RobotCommand(vx, vy, omega, kick, KickTrigger.ON_CONTACT, robot.dribbler_speed >= _MIN_RPM)
+    # NaN compares as false.
+    possible = 0.0 <= robot.kick_angle < _STRAIGHT_UP
+    kick, angle = (robot.kick_speed, radians(robot.kick_angle)) if possible else (0.0, 0.0)
+    dribbles = robot.dribbler_speed >= _MIN_RPM
+    return RobotCommand(vx, vy, omega, kick, KickTrigger.ON_CONTACT, dribbles, angle)
 
 
 def read_teleports(message: SimulatorCommand) -> Request | None:
@@ -149,5 +154,5 @@ def read_teleports(message: SimulatorCommand) -> Request | None:
     if control.HasField("teleport_ball"):
         put = control.teleport_ball
         x, y, vx, vy = (optional(put, name) for name in ("x", "y", "vx", "vy"))
-        request.ball = BallTeleport(x, y, vx, vy, put.roll)
+        request.ball = BallTeleport(x, y, vx, vy, put.roll, put.z, put.vz)
     return request if request.finite() else None

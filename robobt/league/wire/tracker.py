@@ -8,10 +8,13 @@ from robobt.league.wire.simulation import TEAMS
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
-from robobt.world.state import BallState, Frame, RobotState
+from robobt.world.state import BALL_RADIUS, BallState, Frame, RobotState
 
 _MAX_SPEED = 30.0
 """Nothing on a field is faster [m/s]."""
+
+_MAX_HEIGHT = 10.0
+"""No ball flies higher [m]."""
 
 _MAX_TURN = 300.0
 """No robot turns faster, and no sender lets headings grow larger [rad/s, rad]."""
@@ -38,7 +41,9 @@ def fill_tracked(packet: TrackerWrapperPacket, frame: Frame, number: int, time: 
     tracked.frame_number, tracked.timestamp = number % 2**32, time
     ball = frame.ball
     tracked.balls.add(
-        pos={"x": ball.x, "y": ball.y, "z": 0.0}, vel={"x": ball.vx, "y": ball.vy, "z": 0.0}, visibility=1.0
+        pos={"x": ball.x, "y": ball.y, "z": ball.z},
+        vel={"x": ball.vx, "y": ball.vy, "z": ball.vz},
+        visibility=1.0,
     )
     for team, robots in ((2, frame.own), (1, frame.opponents)):
         for robot in robots:
@@ -66,8 +71,11 @@ def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tup
         crowded = max(len(tracked.balls), len(tracked.robots)) > MAX_OBJECTS
         if not message.HasField("tracked_frame") or not abs(tracked.timestamp) <= MAX_TIME or crowded:
             return None
-        balls = [(seen.pos.x, seen.pos.y, seen.vel.x, seen.vel.y) for seen in tracked.balls]
-        ball = next((BallState(*values) for values in balls if _plausible(*values)), BallState(0.0, 0.0))
+        balls = [
+            BallState(seen.pos.x, seen.pos.y, seen.vel.x, seen.vel.y, seen.pos.z, seen.vel.z)
+            for seen in tracked.balls
+        ]
+        ball = next((ball for ball in balls if _plausible_ball(ball)), BallState(0.0, 0.0))
         teams: dict[Team, dict[int, RobotState]] = {team: {} for team in Team}
         for robot in tracked.robots:
             team, state = TEAMS.get(int(robot.robot_id.team)), _robot(robot)
@@ -92,6 +100,12 @@ def _robot(robot: TrackedRobot) -> RobotState | None:
     if not (abs(heading) <= _MAX_TURN and abs(omega) <= _MAX_TURN):
         return None
     return RobotState(number, x, y, wrap_angle(heading), vx, vy, omega)
+
+
+def _plausible_ball(ball: BallState) -> bool:
+    # NaN compares as false.
+    in_the_air = -BALL_RADIUS <= ball.z <= _MAX_HEIGHT and abs(ball.vz) <= _MAX_SPEED
+    return in_the_air and _plausible(ball.x, ball.y, ball.vx, ball.vy)
 
 
 def _plausible(x: float, y: float, vx: float, vy: float) -> bool:

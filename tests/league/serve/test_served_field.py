@@ -8,12 +8,13 @@ import pytest
 
 from robobt.league.serve.served_field import COMMAND_TIMEOUT, ServedField, line_up
 from robobt.league.wire.commands import BallTeleport, Teleport
+from robobt.league.wire.geometry import CAMERA_HEIGHT
 from robobt.sim.settings import REALISM, SimSettings
-from robobt.world.command import RobotCommand
+from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
-from robobt.world.state import RobotId
+from robobt.world.state import BALL_RADIUS, RobotId
 from tests.league.served import poses
 
 ME, HER, ABSENT = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5), RobotId(Team.BLUE, 9)
@@ -147,3 +148,24 @@ def test_the_same_orders_give_the_same_field() -> None:
 def test_a_placement_outside_the_field_is_one_plain_error() -> None:
     with pytest.raises(ValueError, match="blue 0 cannot be put at"):
         ServedField(DIVISION_B, Placement({ME: (50.0, 0.0, 0.0)}))
+
+
+def test_a_commanded_chip_flies_and_is_told_as_one(field: ServedField) -> None:
+    mouth = field.settings.body.face + BALL_RADIUS
+    for angle in (0.0, CHIP_ANGLE):
+        drive(field, 0.3)
+        field.teleport_ball(BallTeleport(poses(field)[ME][0] + mouth, 0.0, 0.0, 0.0))
+        drive(field, field.period, RobotCommand(kick_speed=4.0, kick_angle=angle))
+        assert field.kicked == [ME]
+        assert field.chipped == ([ME] if angle else [])
+        drive(field, 0.1)
+        assert (field.truth().ball.z > 0.2) is (angle > 0.0)
+        assert field.chipped == []
+
+
+def test_the_ball_can_be_put_into_the_air(field: ServedField) -> None:
+    assert field.teleport_ball(BallTeleport(1.0, 1.0, 0.0, 0.0, z=1.0, vz=2.0)) is None
+    ball = field.truth().ball
+    assert (ball.z, ball.vz) == (1.0, 2.0)
+    assert field.teleport_ball(BallTeleport(1.0, 1.0, 0.0, 0.0, z=1e9)) is None
+    assert field.truth().ball.z < CAMERA_HEIGHT

@@ -7,13 +7,16 @@ from math import hypot
 import pytest
 
 from robobt.league.wire.commands import clamp_command
-from robobt.world.command import RobotCommand
+from robobt.sim.robot_settings import KickerSettings
+from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.limits import RobotLimits
 
 
 def test_commands_are_bounded_by_robot_and_rules() -> None:
-    limits = RobotLimits(max_speed=2.0, max_turn=6.0)
-    command = clamp_command(RobotCommand(30.0, -40.0, -100.0, 99.0), limits, 6.5)
+    limits, kicker = RobotLimits(max_speed=2.0, max_turn=6.0), KickerSettings(max_chip_speed=5.0)
+    command = clamp_command(RobotCommand(30.0, -40.0, -100.0, 99.0), limits, kicker)
     assert hypot(command.vx, command.vy) == pytest.approx(2.0)
     assert command.vy / command.vx == pytest.approx(-4 / 3)
     assert (command.omega, command.kick_speed) == (-6.0, 6.5)
+    chip = clamp_command(RobotCommand(kick_speed=99.0, kick_angle=CHIP_ANGLE), limits, kicker)
+    assert (chip.kick_speed, chip.kick_angle) == (5.0, CHIP_ANGLE)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import atan2, pi
 
 import pytest
 
@@ -22,6 +22,17 @@ def test_a_grsim_command_comes_back_as_it_was() -> None:
     request = read_grsim(write_grsim(Team.YELLOW, {3: COMMAND}, 1.0), PacketCounts())
     assert request is not None
     assert request.commands == {YELLOW_3: COMMAND}
+
+
+def test_a_grsim_chip_has_a_speed_ahead_and_one_upwards() -> None:
+    chip = RobotCommand(kick_speed=5.0, kick_angle=atan2(4.0, 3.0))
+    data = write_grsim(Team.YELLOW, {3: chip}, 1.0)
+    (robot,) = grSim_Packet.FromString(data).commands.robot_commands
+    assert (robot.kickspeedx, robot.kickspeedz) == (pytest.approx(3.0), pytest.approx(4.0))
+    request = read_grsim(data, PacketCounts())
+    assert request is not None
+    read = request.commands[YELLOW_3]
+    assert (read.kick_speed, read.kick_angle) == (pytest.approx(5.0), pytest.approx(chip.kick_angle))
 
 
 def test_every_required_field_of_a_grsim_command_is_set() -> None:

@@ -11,7 +11,7 @@ from robobt.league.wire.grsim import read_grsim, write_grsim, write_grsim_replac
 from robobt.league.wire.messages import MoveGlobalVelocity, MoveWheelVelocity, RobotControl, SimulatorCommand
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.simulation import read_control, read_teleports, write_control, write_teleport
-from robobt.world.command import RobotCommand
+from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import RobotId
 
@@ -49,18 +49,29 @@ def test_equal_wheels_turn_on_the_spot() -> None:
     assert result.commands[YELLOW_3].omega == pytest.approx(10.0, rel=0.02)
 
 
-def test_a_chip_is_answered_with_an_error_and_kicked_along_the_ground() -> None:
-    packet = RobotControl()
-    packet.robot_commands.add(id=3, kick_speed=4.0, kick_angle=60.0)
+def test_a_chip_has_its_angle_in_degrees() -> None:
+    packet = RobotControl.FromString(write_control({3: RobotCommand(kick_speed=4.0, kick_angle=CHIP_ANGLE)}))
+    assert packet.robot_commands[0].kick_angle == pytest.approx(45.0)
+    assert packet.robot_commands[0].kick_speed == 4.0
     result = read_control(packet.SerializeToString(), Team.YELLOW, {}, PacketCounts())
     assert result is not None
-    assert result.commands[YELLOW_3].kick_speed == pytest.approx(2.0)
-    assert [code for code, _ in result.errors] == ["NO_CHIP"]
+    assert result.commands[YELLOW_3].kick_angle == pytest.approx(CHIP_ANGLE)
+    assert not result.errors
+
+
+@pytest.mark.parametrize("angle", [-10.0, 90.0, nan, inf])
+def test_a_kick_at_an_impossible_angle_is_left_out_and_answered_with_an_error(angle: float) -> None:
+    packet = RobotControl()
+    packet.robot_commands.add(id=3, kick_speed=4.0, kick_angle=angle)
+    result = read_control(packet.SerializeToString(), Team.YELLOW, {}, PacketCounts())
+    assert result is not None
+    assert result.commands[YELLOW_3].kick_speed == 0.0
+    assert [code for code, _ in result.errors] == ["KICK_ANGLE"]
 
 
 def test_teleports_come_back_as_they_were() -> None:
     robots = [Teleport(YELLOW_3, 1.0, -2.0, 0.5, 0.25, 0.5, -1.0, True)]
-    ball = BallTeleport(0.25, 0.5, -1.0, 2.0, rolls=True)
+    ball = BallTeleport(0.25, 0.5, -1.0, 2.0, rolls=True, z=0.5, vz=-1.5)
     message = SimulatorCommand.FromString(write_teleport(robots, ball))
     assert read_teleports(message) == Request(teleports=robots, ball=ball)
 

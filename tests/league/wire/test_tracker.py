@@ -15,7 +15,7 @@ from robobt.world.state import BallState, Frame, RobotState
 FRAME = Frame(
     12.5,
     DIVISION_B,
-    BallState(0.5, -0.25, 2.0, -1.0),
+    BallState(0.5, -0.25, 2.0, -1.0, 0.75, -1.5),
     (RobotState(1, -1.0, 0.5, 1.5, 0.25, -0.5, 3.0), RobotState(4, -2.0, 0.0)),
     (RobotState(0, 1.0, 0.5, -1.5),),
 )
@@ -48,6 +48,16 @@ def test_robots_that_cannot_be_are_left_out() -> None:
     found = read_tracked(message.SerializeToString(), DIVISION_B, PacketCounts())
     assert found is not None
     assert found[1].own == found[1].opponents == ()
+
+
+@pytest.mark.parametrize(("z", "vz"), [(nan, 0.0), (11.0, 0.0), (-0.1, 0.0), (0.5, 1e9), (0.5, nan)])
+def test_a_ball_where_none_can_fly_is_left_out(z: float, vz: float) -> None:
+    message = TrackerWrapperPacket.FromString(packet())
+    message.tracked_frame.balls[0].pos.z = z
+    message.tracked_frame.balls[0].vel.z = vz
+    found = read_tracked(message.SerializeToString(), DIVISION_B, PacketCounts())
+    assert found is not None
+    assert found[1].ball == BallState(0.0, 0.0)
 
 
 @pytest.mark.parametrize("data", [b"", b"\xff", TrackerWrapperPacket(uuid="only").SerializeToString()])
