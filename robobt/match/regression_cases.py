@@ -265,6 +265,7 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
     sent = commands.get(robot, RobotCommand())
     command = {
         **{name: float(getattr(sent, name)) for name in ("vx", "vy", "omega", "kick_speed")},
+        **({"kick_angle": float(sent.kick_angle)} if sent.kick_angle else {}),
         "kick_trigger": sent.kick_trigger.value,
         "dribbler": bool(sent.dribbler),
     }

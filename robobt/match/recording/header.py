@@ -19,7 +19,7 @@ from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
 FORMAT = "robobt-recording"
-VERSION = 3
+VERSION = 4
 
 
 class RecordingError(RobobtError, ValueError):

@@ -16,19 +16,19 @@ from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
 
-BALL = 4
-"""Numbers of the ball: x, y, vx, vy."""
+BALL = 6
+"""Numbers of the ball: x, y, vx, vy, z, vz."""
 
 POSE = 7
 """Numbers of a robot: x, y, heading, vx, vy, omega, whether the ball lies in its mouth."""
 
-COMMAND = 5
-"""Numbers of a command: vx, vy, omega, kick speed, flags."""
+COMMAND = 6
+"""Numbers of a command: vx, vy, omega, kick speed, kick angle, flags."""
 
 # Powers of two, for the bits of a number that are zero cost no space in the file.
-_BALL_STEPS = (2**-16, 2**-16, 2**-10, 2**-10)
+_BALL_STEPS = (2**-16, 2**-16, 2**-10, 2**-10, 2**-16, 2**-10)
 _POSE_STEPS = (2**-16, 2**-16, 2**-14, 2**-13, 2**-13, 2**-10, 1.0)
-_COMMAND_STEPS = (2**-10, 2**-10, 2**-10, 2**-10, 1.0)
+_COMMAND_STEPS = (2**-10, 2**-10, 2**-10, 2**-10, 2**-14, 1.0)
 _FARTHEST = 1e4
 
 _NO_COMMAND = RobotCommand()
@@ -63,11 +63,12 @@ class TickNumbers:
                 each = [commands.get(robot, _NO_COMMAND) for robot in usual]
             for it in each:
                 at_once, commanded = it.kick_trigger is now, it is not _NO_COMMAND
-                numbers += (it.vx, it.vy, it.omega, it.kick_speed, it.dribbler, at_once, commanded)
+                numbers += (it.vx, it.vy, it.omega, it.kick_speed, it.kick_angle)
+                numbers += (it.dribbler, at_once, commanded)
         # Several times as fast as numpy makes an array of a list.
-        packed = np.frombuffer(pack(f"={len(numbers)}d", *numbers)).reshape(len(sent), len(usual), 7)
+        packed = np.frombuffer(pack(f"={len(numbers)}d", *numbers)).reshape(len(sent), len(usual), 8)
         cells = packed[:, [usual.index(robot) for robot in self._slots]]
-        dribbling, at_once, commanded = [cells[:, :, i] != 0.0 for i in (4, 5, 6)]
+        dribbling, at_once, commanded = [cells[:, :, i] != 0.0 for i in (5, 6, 7)]
         kicking = cells[:, :, 3] != 0.0
         table = cells[:, :, :COMMAND].copy()
         table[:, :, -1] = (
@@ -89,7 +90,13 @@ class TickNumbers:
             for i, tick in enumerate(ticks):
                 self._fill(table, [tick], packed[i : i + 1])
             return
-        columns, taken = [*range(BALL)], [*range(1, 5)]
+        # A ball on the ground has no height in it.
+        flying = packed.shape[1] - 7 > 8 * robots
+        columns, taken = [*range(BALL if flying else 4)], [*range(1, 5)]
+        if flying:
+            taken += packed.shape[1] - 2, packed.shape[1] - 1
+        else:
+            table[ticks, 4:BALL] = 0.0
         for i, place in enumerate(places):
             robot = RobotId(Team.BLUE if i < own else Team.YELLOW, int(packed[0, place]))
             if robot in self._slots:

@@ -29,7 +29,7 @@ class Poses:
     """Ball and robots at every tick, in world coordinates (blue defends -x).
 
     Attributes:
-        ball: (T, 4) x, y [m], vx, vy [m/s]; NaN where it was not known.
+        ball: (T, 6) x, y [m], vx, vy [m/s], z [m], vz [m/s]; NaN where it was not known.
         robots: (T, K, 6) x, y [m], heading [rad], vx, vy [m/s], omega [rad/s]; NaN off the field.
         contact: (T, K) whether the ball lay in the robot's mouth.
     """
@@ -53,8 +53,8 @@ class Recording:
         truth: what really was.
         observed: what the trees were shown, None where that was the truth at every tick.
         flags: (T, K) :class:`RobotFlag`.
-        commands: (T, K, 4) vx, vy [m/s], omega [rad/s], kick speed [m/s], in the robot's own
-            frame; 0 where it was sent none.
+        commands: (T, K, 5) vx, vy [m/s], omega [rad/s], kick speed [m/s], kick angle [rad], in the
+            robot's own frame; 0 where it was sent none.
         letters: for each robot one letter a node whenever its tree changed: S, F, R of a node that
             was ticked, s, f, r where it kept the status of an earlier tick, - without.
         feedback: for each robot the new feedback of nodes, by their place.
@@ -110,8 +110,8 @@ class Recording:
         if RobotFlag.COMMANDED not in flags:
             return None
         trigger = KickTrigger.NOW if RobotFlag.KICK_NOW in flags else KickTrigger.ON_CONTACT
-        vx, vy, omega, kick = self.commands[tick, slot].tolist()
-        return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags)
+        vx, vy, omega, kick, angle = self.commands[tick, slot].tolist()
+        return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags, angle)
 
     def letters_at(self, robot: RobotId, tick: int) -> str:
         """Return one letter a node of the robot's tree, as in :attr:`letters`."""

@@ -74,9 +74,9 @@ def page_data(recording: Recording) -> dict[str, object]:
 
     All places are in world coordinates; times a robot's ``view``, 1 or -1, they are in that of its own
     team, in which its outputs are. Arrays are little-endian and in base64: ``times`` float32 [s];
-    ``ball`` int16 x, y [mm], speed [mm/s]; a robot's ``rows`` int16 x, y [mm], heading [mrad], speed
-    [mm/s]; -32768 off
-    the field. Changes are flat lists whose frame numbers count from the change before.
+    ``ball`` int16 x, y [mm], speed [mm/s], height [mm]; a robot's ``rows`` int16 x, y [mm], heading
+    [mrad], speed [mm/s]; -32768 off the field. Changes are flat lists whose frame numbers count from the
+    change before.
     """
     header = recording.header
     stride = max(1, -(-len(recording) // MOST_FRAMES))
@@ -111,7 +111,7 @@ def page_data(recording: Recording) -> dict[str, object]:
             }
         )
     ball = recording.truth.ball[::stride]
-    ball_rows = np.column_stack((ball[:, 0], ball[:, 1], np.hypot(ball[:, 2], ball[:, 3])))
+    ball_rows = np.column_stack((ball[:, 0], ball[:, 1], np.hypot(ball[:, 2], ball[:, 3]), ball[:, 4]))
     return {
         "scenario": header.scenario,
         "trial": header.trial,

@@ -3,9 +3,9 @@
 | column | holds |
 | --- | --- |
 | ``time`` | [s] |
-| ``truth`` | ball x, y, vx, vy; each robot's x, y, heading, vx, vy, omega, ball contact |
+| ``truth`` | ball x, y, vx, vy, z, vz; each robot's x, y, heading, vx, vy, omega, ball contact |
 | ``observed`` | the same as the trees were shown it, null where that is the truth |
-| ``commands`` | each robot's vx, vy, omega, kick speed, :class:`RobotFlag` |
+| ``commands`` | each robot's vx, vy, omega, kick speed, kick angle, :class:`RobotFlag` |
 | ``changes`` | what else changed: :class:`TickChanges` as JSON, null for nothing |
 
 Numbers are in SI units and world coordinates; NaN stands for what is not known. The header
@@ -27,6 +27,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue, StringConstraints,
 from robobt import __version__
 from robobt.match.recording.header import FORMAT, VERSION, Event, RecordingError, RecordingHeader
 from robobt.match.recording.numbers import BALL, COMMAND, POSE
+from robobt.match.recording.version_3 import BALL_3, COMMAND_3, from_version_3
 from robobt.world.game import GameState
 from robobt.world.state import RobotId
 
@@ -42,6 +43,7 @@ _SMALL, _RATIO = 24 * 2**20, 10
 _FOREIGN = "is not a robobt recording"
 
 _STREAM, _END = b"\xff\xff\xff\xff", b"\xff\xff\xff\xff\x00\x00\x00\x00"
+_READ = ("3", str(VERSION))
 _OLD = (b"\x1f\x8b", b'{"format":"robobt-recording"')
 """How recordings of versions 1 and 2 begin, packed by gzip or plain."""
 
@@ -70,12 +72,13 @@ class TickChanges(BaseModel):
     outcome: dict[str, JsonValue] | None = Field(None, description="how the match ended, at its last tick")
 
 
-def _schema_of(header: RecordingHeader) -> pa.Schema:
-    """Return the schema of a recording with this header."""
-    poses = pa.list_(pa.float32(), BALL + POSE * len(header.robots))
-    commands = pa.list_(pa.float32(), COMMAND * len(header.robots))
+def _schema_of(header: RecordingHeader, version: str = str(VERSION)) -> pa.Schema:
+    """Return the schema of a recording with this header, by default as it is written today."""
+    ball, command = (BALL_3, COMMAND_3) if version == "3" else (BALL, COMMAND)
+    poses = pa.list_(pa.float32(), ball + POSE * len(header.robots))
+    commands = pa.list_(pa.float32(), command * len(header.robots))
     types = (pa.float64(), poses, poses, commands, pa.string())
-    metadata = {_FORMAT: FORMAT, _VERSION: str(VERSION), _HEADER: header.model_dump_json()}
+    metadata = {_FORMAT: FORMAT, _VERSION: version, _HEADER: header.model_dump_json()}
     return pa.schema(list(zip(COLUMNS, types, strict=True)), metadata=metadata)
 
 
@@ -129,16 +132,19 @@ def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.R
     if metadata.get(_FORMAT) != FORMAT.encode():
         raise RecordingError(path, _FOREIGN)
     version = metadata.get(_VERSION, b"").decode("utf-8", "replace")
-    if version != str(VERSION):
-        problem = f"{version!r} cannot be read by robobt {__version__}, which reads {VERSION}"
+    if version not in _READ:
+        problem = f"{version!r} cannot be read by robobt {__version__}, which reads {' and '.join(_READ)}"
         raise RecordingError(path, problem, field="version")
     try:
         header = RecordingHeader.model_validate_json(metadata.get(_HEADER, b""))
     except ValidationError as error:
         raise invalid(path, error) from None
-    if not schema.equals(_schema_of(header)):
+    if not schema.equals(_schema_of(header, version)):
         raise RecordingError(path, "its columns are not those of its header's robots")
-    return header, _batches(source, schema, path, data.endswith(_END))
+    batches = _batches(source, schema, path, data.endswith(_END))
+    if version == "3":
+        batches = (from_version_3(batch, len(header.robots), _schema_of(header)) for batch in batches)
+    return header, batches
 
 
 def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool) -> Iterator[pa.RecordBatch]:

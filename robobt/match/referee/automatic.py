@@ -31,7 +31,7 @@ class AutomaticReferee:
     """Watches a match; the same frames and states give the same events.
 
     It cannot know whether a robot has tipped over or lost parts, nor whether it holds the ball on purpose,
-    and no ball flies over the boundary yet.
+    and no world shows a ball that has left over the walls.
 
     Args:
         field: the field, which tells the division.

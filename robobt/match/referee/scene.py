@@ -89,6 +89,7 @@ class Scene:
             return False
         if phase in _STOPPED and self.phase not in _STOPPED:
             self.stopped = frame.time
+        self.touches.forget_heights()
         self.phase, self.since = phase, frame.time
         if phase is Phase.PENALTY:
             self.penalty = game.restart_team

@@ -16,6 +16,7 @@ class Touches:
         last: who touched it last, as the world reports it, or else by the contact seen.
         where: where the ball was when it was last touched [m].
         times: when each team touched it last [s].
+        highest: how high the ball has been since each team touched it last, in this phase of the game [m].
         carrier: who keeps the ball at its hull, None when nobody does.
         carry_start: where the carrier got it [m].
         carried: how far the carrier has taken it from there, as the crow flies [m].
@@ -26,6 +27,7 @@ class Touches:
         self.last: RobotId | None = None
         self.where: Point = (0.0, 0.0)
         self.times: dict[Team, float] = {}
+        self.highest: dict[Team, float] = dict.fromkeys(Team, 0.0)
         self.carrier: RobotId | None = None
         self.carried = 0.0
         self.carry_start: Point = (0.0, 0.0)
@@ -53,10 +55,18 @@ class Touches:
         if toucher is not None:
             if toucher != self.last:
                 self.times[toucher.team] = frame.time
+                self.highest[toucher.team] = 0.0
             self.last = toucher
         for one in touching:
             self.times[one.team] = frame.time
+            self.highest[one.team] = 0.0
+        if ball.z > 0.0:
+            self.highest = {team: max(height, ball.z) for team, height in self.highest.items()}
         self._follow_carrier(ball, carrier)
+
+    def forget_heights(self) -> None:
+        """Count from here how high the ball gets: another phase of the game begins."""
+        self.highest = dict.fromkeys(Team, 0.0)
 
     def carry_anew(self, place: Point) -> None:
         """Count the carrier's way from here [m]."""

@@ -28,11 +28,13 @@ from robobt.match.recording import (
     load_recording,
     reader,
 )
+from robobt.match.recording.replay_html import replay_html
 from robobt.match.recording.stream import new_stream
 from robobt.match.scenario.scenario import load_scenario, scenario_from
 from robobt.skills.store import Store
 from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
+from robobt.world.command import CHIP_ANGLE
 from robobt.worlds import sim_world
 from tests.conftest import StartPython
 from tests.match.recording.made_recording import (
@@ -331,7 +333,7 @@ def test_a_file_cut_anywhere_loads_up_to_its_last_whole_batch(path: Path, tmp_pa
         (b"just words", "is not a robobt recording"),
         (stream({}), "is not a robobt recording"),
         (stream({"format": "robobt-recording", "version": "7"}), "version: '7' cannot be read by"),
-        (stream({"format": "robobt-recording", "version": "3"}), "header: Invalid JSON"),
+        (stream({"format": "robobt-recording", "version": "4"}), "header: Invalid JSON"),
         (stream({"format": "robobt-recording", "version": "3", "header": "{}"}), "period: Field required"),
         (stream({"format": "robobt-recording"})[:40], "is cut off inside its header"),
         (b'{"format":"robobt-recording","version":2}\n', "is a recording in an older format"),
@@ -346,11 +348,47 @@ def test_a_foreign_file_is_refused_in_one_clear_line(path: Path, content: bytes,
     assert "\n" not in str(caught.value)
 
 
-def test_columns_that_do_not_fit_the_header_are_refused(path: Path) -> None:
-    metadata = {"format": "robobt-recording", "version": "3", "header": header().model_dump_json()}
+@pytest.mark.parametrize("version", ["3", "4"])
+def test_columns_that_do_not_fit_the_header_are_refused(path: Path, version: str) -> None:
+    metadata = {"format": "robobt-recording", "version": version, "header": header().model_dump_json()}
     path.write_bytes(stream(metadata))
     with pytest.raises(RecordingError, match="its columns are not those of its header's robots"):
         load_recording(path)
+
+
+def test_a_recording_of_version_3_is_read_with_its_ball_on_the_ground(path: Path) -> None:
+    old = load_recording(Path(__file__).parent / "version_3.robobt.arrows")
+    record(path, ticks=30)
+    new = load_recording(path)
+    assert len(old) == 30
+    for tick in range(30):
+        assert old.frame(tick) == new.frame(tick)
+        for robot in (BLUE_1, BLUE_4, YELLOW_0):
+            assert old.command(robot, tick) == new.command(robot, tick)
+            assert old.letters_at(robot, tick) == new.letters_at(robot, tick)
+    assert old.outcome == new.outcome
+    assert "replay" in replay_html(old)
+
+
+def test_a_ball_in_the_air_and_a_chip_come_back_to_the_rounding(path: Path) -> None:
+    # Some balls fly and some do not, seen by one team and shown to the other.
+    frames = [
+        replace(frame(tick), ball=BallState(1.0, 0.5, 2.0, 0.0, 0.3 * tick, 1.0 - tick)) for tick in range(3)
+    ]
+    frames[1] = replace(frame(1), ball=BallState(1.0, 0.5))
+    chip = RobotCommand(kick_speed=5.0, kick_angle=CHIP_ANGLE)
+    with Recorder(path, header()) as recorder:
+        for each in frames:
+            recorder.tick(each, {BLUE_4: chip}, observed=replace(each, ball=BallState(0.0, 0.0, z=0.25)))
+        recorder.close({})
+    recording = load_recording(path)
+    for tick, each in enumerate(frames):
+        told = recording.frame(tick).ball
+        assert (told.z, told.vz) == pytest.approx((each.ball.z, each.ball.vz), abs=1e-3)
+        assert recording.observation(tick).ball.z == 0.25
+        command = recording.command(BLUE_4, tick)
+        assert command is not None
+        assert command.kick_angle == pytest.approx(CHIP_ANGLE, abs=1e-4)
 
 
 def test_a_file_that_is_not_there_is_a_recording_error(tmp_path: Path) -> None:
@@ -384,9 +422,9 @@ GAME = {"command": 1, "stage": 13, "blue_score": 0, "yellow_score": 0, "restart"
         ("time", 0.0, "time", "must be finite and not less than the time before"),
         ("time", 1e12, "time", "must be finite and not less than the time before"),
         ("truth", None, None, "lacks numbers"),
-        ("observed", [0.0] * 25, None, "lacks numbers"),
-        ("commands", [0.0] * 14 + [77.0], "commands", "holds flags that are none"),
-        ("commands", [0.0] * 14 + [nan], "commands", "holds flags that are none"),
+        ("observed", [0.0] * 27, None, "lacks numbers"),
+        ("commands", [0.0] * 17 + [77.0], "commands", "holds flags that are none"),
+        ("commands", [0.0] * 17 + [nan], "commands", "holds flags that are none"),
     ],
 )
 def test_spoiled_numbers_are_named_with_tick_and_column(

@@ -74,9 +74,10 @@ def test_the_page_holds_the_positions_to_the_millimetre(recording: Recording) ->
     data = json.loads(parse(replay_html(recording)).data)
     assert data["frames"] == 120
     np.testing.assert_allclose(numbers(data["times"], "<f4", 1)[:, 0], recording.times, atol=1e-6)
-    ball = numbers(data["ball"], "<i2", 3) / 1000
+    ball = numbers(data["ball"], "<i2", 4) / 1000
     np.testing.assert_allclose(ball[:, :2], recording.truth.ball[:, :2], atol=5.1e-4)
     np.testing.assert_allclose(ball[:, 2], np.hypot(0.74, 0.012), atol=1e-3)
+    np.testing.assert_allclose(ball[:, 3], recording.truth.ball[:, 4], atol=5.1e-4)
     for slot, robot in enumerate(data["robots"]):
         rows = numbers(robot["rows"], "<i2", 4) / 1000
         np.testing.assert_allclose(rows[:, :3], recording.truth.robots[:, slot, :3], atol=5.1e-4)

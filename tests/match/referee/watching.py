@@ -50,9 +50,11 @@ class Watching:
         self.touched = RobotId(by or self.us, number)
         return self
 
-    def roll(self, x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> Watching:
-        """The ball is at (x, y) in the next frame."""
-        self.ball = BallState(x, y, vx, vy)
+    def roll(
+        self, x: float, y: float, vx: float = 0.0, vy: float = 0.0, z: float = 0.0, vz: float = 0.0
+    ) -> Watching:
+        """The ball is at (x, y), and so high, in the next frame."""
+        self.ball = BallState(x, y, vx, vy, z, vz)
         return self.tick()
 
     def now(self, game: GameState) -> Watching:

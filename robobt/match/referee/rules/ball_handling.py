@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import sqrt
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Rule, event
@@ -44,7 +45,7 @@ class Dribbling(Rule):
 
 
 class BallSpeed(Rule):
-    """No robot kicks the ball faster than ``most`` [m/s], a restart's kick among them."""
+    """No robot kicks the ball faster than ``most`` in space [m/s], a restart's kick among them."""
 
     phases = frozenset({Phase.KICK, Phase.PLAY, Phase.PENALTY})
 
@@ -56,12 +57,13 @@ class BallSpeed(Rule):
         """Report a kick once."""
         ball, last = scene.frame.ball, scene.touches.last
         was_fast = self._fast
-        self._fast = ball.vx * ball.vx + ball.vy * ball.vy > self._most * self._most
+        square = ball.vx * ball.vx + ball.vy * ball.vy + ball.vz * ball.vz
+        self._fast = square > self._most * self._most
         if was_fast or not self._fast or last is None:
             return ()
-        speed = ball.speed
+        speed, chipped = sqrt(square), ball.z > 0.0
         return (
-            event(scene, EventKind.BOT_KICKED_BALL_TOO_FAST, last, initial_ball_speed=speed, chipped=False),
+            event(scene, EventKind.BOT_KICKED_BALL_TOO_FAST, last, initial_ball_speed=speed, chipped=chipped),
         )
 
 

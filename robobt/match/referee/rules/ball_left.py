@@ -16,7 +16,7 @@ _FROM_CENTRE = 0.2
 
 
 class BallLeft(Rule):
-    """Fully over a line between the posts is a possible goal, elsewhere the ball is out.
+    """Fully over a line between the posts, below the bar, is a possible goal, elsewhere the ball is out.
 
     Out is out in a penalty kick, too: it has failed, whoever touched the ball last.
 
@@ -77,8 +77,8 @@ class BallLeft(Rule):
             kicking_team=None if last is None else last.team,
             kicking_bot=None if last is None else last.number,
             kick_location=touches.where,
-            # The ball does not fly yet in any world.
-            max_ball_height=0.0,
+            # In a penalty kick it may have been as high as it likes.
+            max_ball_height=None if scene.phase is Phase.PENALTY else touches.highest[team],
             num_robots_by_team=len(scene.team(team)),
             last_touch_by_team=touches.times.get(team),
         )

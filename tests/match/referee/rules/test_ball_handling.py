@@ -57,6 +57,13 @@ def test_a_kick_is_too_fast_above_the_limit(us: Team, speed: float, too_fast: bo
         assert game.last.details["initial_ball_speed"] == pytest.approx(speed)
 
 
+@pytest.mark.parametrize(("speed", "too_fast"), [(6.505, False), (6.515, True)])
+def test_a_chip_is_as_fast_as_the_ball_is_in_space(us: Team, speed: float, too_fast: bool) -> None:
+    game = Watching(us).touch(1).roll(0.0, 0.0).roll(0.1, 0.0, 0.6 * speed, 0.0, 0.1, 0.8 * speed)
+    assert game.kinds == [EventKind.BOT_KICKED_BALL_TOO_FAST] * too_fast
+    assert all(event.details["chipped"] for event in game.events)
+
+
 def test_the_kick_of_a_restart_counts_once(us: Team) -> None:
     game = Watching(us).kick_of(us).touch(1).roll(0.1, 0.0, 6.7).in_play().wait(0.1)
     assert game.kinds == [EventKind.BOT_KICKED_BALL_TOO_FAST]

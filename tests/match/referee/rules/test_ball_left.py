@@ -6,7 +6,8 @@ import pytest
 
 from robobt.match.referee.events import EventKind
 from robobt.world import BALL_RADIUS, DIVISION_A, DIVISION_B, FieldGeometry, Team
-from tests.match.referee.watching import Watching
+from robobt.world.game import Restart
+from tests.match.referee.watching import STOP, Watching
 
 GOAL_LINE, TOUCH_LINE = DIVISION_B.half_length, DIVISION_B.half_width
 
@@ -34,6 +35,34 @@ def test_a_ball_a_millimetre_short_of_that_is_in(us: Team) -> None:
 def test_a_ball_at_the_post_is_in_the_goal_on_its_inner_side(us: Team, y: float, goal: bool) -> None:
     game = Watching(us).touch(1).roll(GOAL_LINE - 0.05, y).roll(GOAL_LINE + 0.04, y)
     assert game.kinds == [EventKind.POSSIBLE_GOAL if goal else EventKind.BALL_LEFT_FIELD_GOAL_LINE]
+
+
+@pytest.mark.parametrize(("z", "goal"), [(0.11, True), (0.12, False), (1.0, False)])
+def test_a_ball_above_the_bar_leaves_over_the_goal_line(us: Team, z: float, goal: bool) -> None:
+    game = Watching(us).touch(1).roll(GOAL_LINE - 0.05, 0.0, z=z).roll(GOAL_LINE + 0.05, 0.0, z=z)
+    assert game.kinds == [EventKind.POSSIBLE_GOAL if goal else EventKind.BALL_LEFT_FIELD_GOAL_LINE]
+
+
+def test_a_goal_tells_how_high_the_ball_was_since_the_scorers_touched_it(us: Team) -> None:
+    game = Watching(us).touch(2).roll(0.0, 0.0, z=0.9).touch(1).roll(1.0, 0.0)
+    game.roll(2.0, 0.0, z=0.6).touch(4, us.other).roll(4.0, 0.0, z=0.02)
+    game.roll(GOAL_LINE + 0.05, 0.0)
+    assert game.last.details["max_ball_height"] == 0.6
+
+
+def test_a_height_before_the_ball_was_put_down_does_not_count(us: Team) -> None:
+    game = Watching(us).touch(1).roll(0.0, 0.0, z=0.9).now(STOP).roll(0.0, 0.0)
+    assert (
+        game.kick_of(us).in_play().roll(4.0, 0.0).roll(GOAL_LINE + 0.05, 0.0).last.details["max_ball_height"]
+        == 0.0
+    )
+
+
+def test_a_penalty_kick_may_be_chipped(us: Team) -> None:
+    game = Watching(us).kick_of(us, Restart.PENALTY).touch(1).roll(3.0, 0.0, z=0.9).roll(4.4, 0.0)
+    game.roll(GOAL_LINE + 0.05, 0.0)
+    assert game.last.kind is EventKind.POSSIBLE_GOAL
+    assert game.last.details["max_ball_height"] is None
 
 
 def test_an_own_goal_is_the_other_teams(us: Team) -> None:
