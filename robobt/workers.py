@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Generic, TypeVar
 
+from robobt.config.errors import RobobtError
 from robobt.config.telling import tell_warnings
 from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 
@@ -57,7 +58,9 @@ class Work(Generic[TaskT, ReportT, ResultT]):
         except (self.error, *self.passed):
             raise
         except Exception as error:
-            raise self.error(f"{self.noun} {task}: {type(error).__name__}: {error}") from error
+            # robobt's own errors are written for users; any other may be a bug.
+            said = str(error) if isinstance(error, RobobtError) else f"{type(error).__name__}: {error}"
+            raise self.error(f"{self.noun} {task}: {said}") from error
 
 
 def run_tasks(

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from robobt.config.errors import RobobtError
 from robobt.workers import Work, run_tasks
 
 pytestmark = pytest.mark.integration
@@ -44,6 +45,14 @@ def test_every_task_gives_one_result_and_its_reports(workers: int):
 def test_a_task_that_raises_is_named(workers: int):
     with pytest.raises(SquareError, match=r"^square of -1: ValueError: negative"):
         list(run_tasks(SQUARES, [-1, -1], workers))
+
+
+def test_an_error_of_robobt_says_what_is_wrong_without_its_class():
+    def refuse(_: int, __: Callable[[str], None]) -> int:
+        raise RobobtError("there is no such file")
+
+    with pytest.raises(SquareError, match=r"^square of 1: there is no such file$"):
+        list(run_tasks(Work(refuse, "square of", SquareError), [1], 1))
 
 
 @pytest.mark.parametrize("workers", [1, 2])
