@@ -17,6 +17,9 @@ MAX_MESSAGE = 1 << 20
 
 _CHUNK = 65536
 
+_PATIENCE = 10.0
+"""The other side has stopped reading when it takes nothing for so long [s]."""
+
 
 class StreamError(RobobtError, OSError):
     """The other side closed the connection or sends what is no stream of messages."""
@@ -52,11 +55,13 @@ class MessageStream:
         """Send one message.
 
         Raises:
-            StreamError: the connection is closed.
+            StreamError: the connection is closed, or the other side does not read.
         """
-        self._socket.settimeout(None)
+        self._socket.settimeout(_PATIENCE)
         try:
             self._socket.sendall(encode_varint(len(message)) + message)
+        except TimeoutError as error:
+            raise StreamError(f"{self._peer} has read nothing for {_PATIENCE:g} s") from error
         except OSError as error:
             raise StreamError(f"{self._peer} closed the connection") from error
 
