@@ -13,6 +13,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
@@ -36,9 +37,11 @@ _TRIES = 5
 _GUARD = """
 exec 3<&0
 "$@" 3<&- & child=$!
-{ read -r _ <&3; kill -KILL 0; } & wait "$child"
+{ read -r _ <&3 || rm -rf -- "$0"; kill -KILL 0; } & wait "$child"
 """
 """A shell that ends with the program, and ends it when its own input ends, however this process does.
+
+Without a word from this process, which then was killed, it also removes the program's folder, ``$0``.
 
 It leads a group of processes, all of which it kills: a program may be a script that started another, stand
 still or mind no other signal.
@@ -141,7 +144,7 @@ class GameControllerProcess:
         others = ("address", "autorefAddress", "teamAddress", "remoteControlAddress")
         flags = [text for flag in others for text in (f"-{flag}", f"{LOOPBACK}:0")]
         command = [
-            *("/bin/sh", "-c", _GUARD, "sh", str(program)),
+            *("/bin/sh", "-c", _GUARD, self._folder.name, str(program)),
             *("-backendOnly", "-timeAcquisitionMode", "ci", "-ciAddress", f"{LOOPBACK}:{port}", *flags),
         ]
         with self._log.open("wb") as log:
@@ -167,7 +170,9 @@ class GameControllerProcess:
     def _stop(self) -> None:
         process, self._process = self._process, None
         if process is not None and process.stdin is not None:
-            process.stdin.close()
+            with suppress(BrokenPipeError):
+                process.stdin.write(b"\n")
+                process.stdin.close()
             process.wait()
 
     def _end(self) -> None:

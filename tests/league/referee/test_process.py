@@ -125,18 +125,24 @@ def test_it_ends_at_once_even_if_it_minds_no_signal_and_has_started_others(
 
 @pytest.mark.integration
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_it_ends_however_the_match_does(
-    program: Path, number: signal.Signals, start_python: Callable[..., Any]
+def test_it_ends_however_the_match_does_and_leaves_no_folder(
+    program: Path,
+    number: signal.Signals,
+    start_python: Callable[..., Any],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
     code = (
         "import sys, time; from pathlib import Path\n"
         "from robobt.league.referee.process import GameControllerProcess\n"
-        f"GameControllerProcess(Path({str(program)!r}), {GAME!r})\n"
+        f"kept = GameControllerProcess(Path({str(program)!r}), {GAME!r})\n"
         "print('started', flush=True); time.sleep(60)"
     )
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
     process = start_python("-c", code)
     assert process.stdout.readline() == "started\n"
     assert running("fake_controller")
     process.send_signal(number)
     process.wait(10.0)
     assert gone("fake_controller")
+    assert not list(tmp_path.glob("robobt-gc-*"))
