@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from math import hypot
 
+from robobt.match.referee.positions import penalty_problems
+from robobt.match.referee.restarts import penalty
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import distance
@@ -35,11 +37,15 @@ def ball_problems(field: FieldGeometry, frame: Frame, game: GameState) -> list[s
 
 
 def waits_for(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
-    """Return what keeps a STOP or the preparation of a kick-off from going on, in words.
+    """Return what keeps a STOP or the preparation of a kick-off or penalty kick from going on, in words.
 
     The frame is a true one, seen from blue's side.
     """
-    robots = without_absent(frame, game).robots()
+    frame = without_absent(frame, game)
+    robots = frame.robots()
+    kicking = game.restart_team
+    if game.restart is Restart.PENALTY and kicking is not None and game.command is not RefereeCommand.STOP:
+        return list(penalty_problems(frame, field, game, penalty(field, kicking).spot, kicking))
     if game.restart is Restart.KICKOFF and game.command is not RefereeCommand.STOP:
         return [
             f"{robot} is not in its own half"

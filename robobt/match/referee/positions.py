@@ -5,6 +5,7 @@ Source: the league's game controller, ``engine/process_continue*.go``.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import hypot
 
 from robobt.match.referee.restarts import Resumption
@@ -12,7 +13,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import STOP_DISTANCE, area_distance, own_side
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId
 
 _SPOT_TOLERANCE = 0.05
 """A ball further from its spot than this is put down anew by hand [m]."""
@@ -92,21 +93,28 @@ def ready(frame: Frame, field: FieldGeometry, game: GameState, restart: Resumpti
             for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents))
             for robot in robots
         )
-    return _penalty_ready(frame, field, game, restart.spot, restart.team)
+    return not any(penalty_problems(frame, field, game, restart.spot, restart.team))
 
 
-def _penalty_ready(frame: Frame, field: FieldGeometry, game: GameState, mark: Point, kicking: Team) -> bool:
+def penalty_problems(
+    frame: Frame, field: FieldGeometry, game: GameState, mark: Point, kicking: Team
+) -> Iterator[str]:
+    """Say what keeps ``kicking`` from taking a penalty kick from ``mark``; nothing where all is ready."""
     if distance(frame.ball.position, mark) > _PENALTY_MARK:
-        return False
-    keeper, kept, kickers = game.status(kicking.other).keeper, False, 0
-    forward = -own_side(kicking)
-    for team, robots in ((Team.BLUE, frame.own), (Team.YELLOW, frame.opponents)):
-        for robot in robots:
-            if team is not kicking and robot.id == keeper:
-                on_line = abs(robot.x - forward * field.half_length) <= ROBOT_RADIUS
-                kept = on_line and abs(robot.y) <= field.goal_width / 2
-            elif forward * (frame.ball.x - robot.x) < _PENALTY_GAP:
-                if team is not kicking:
-                    return False
-                kickers += 1
-    return kept and kickers <= 1
+        yield f"the ball is {distance(frame.ball.position, mark):.2f} m from the mark"
+    defending, forward = kicking.other, -own_side(kicking)
+    number, near = game.status(defending).keeper, []
+    keeper = None if number is None else RobotId(defending, number)
+    if keeper is None or keeper not in frame.robots():
+        yield f"{defending.value} has no goalkeeper" + ("" if number is None else f", its number is {number}")
+    for robot, state in frame.robots().items():
+        if robot == keeper:
+            on_line = abs(state.x - forward * field.half_length) <= ROBOT_RADIUS
+            if not on_line or abs(state.y) > field.goal_width / 2:
+                yield f"{robot} is not on its goal line"
+        elif forward * (frame.ball.x - state.x) < _PENALTY_GAP:
+            near.append(robot)
+    kickers = [robot for robot in near if robot.team is kicking]
+    # One of them is the kicker.
+    for robot in [robot for robot in near if robot.team is defending] + kickers[1:]:
+        yield f"{robot} is not {_PENALTY_GAP:g} m behind the ball"

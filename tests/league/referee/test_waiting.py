@@ -69,6 +69,48 @@ def test_before_a_kick_off_the_kicker_too_is_in_its_own_half() -> None:
     assert waits(game, PLACED, (-0.1, 0.0), (0.1, 0.0)) == []
 
 
+PREPARE_PENALTY = replace(
+    STOP,
+    command=RefereeCommand.PREPARE_PENALTY_BLUE,
+    restart=Restart.PENALTY,
+    placement=(-1.5, 0.0),
+    upcoming=RefereeCommand.NORMAL_START,
+    yellow=TeamStatus(keeper=4),
+)
+MARK = BallState(-1.5, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("ball", "keeper", "reasons"),
+    [
+        (MARK, (4.45, 0.1), []),
+        (BallState(-1.3, 0.0), (4.45, 0.0), ["the ball is 0.20 m from the mark"]),
+        (MARK, (4.3, 0.0), ["yellow 4 is not on its goal line"]),
+        (MARK, (4.5, 0.6), ["yellow 4 is not on its goal line"]),
+    ],
+)
+def test_before_a_penalty_kick_the_goalkeeper_is_on_its_line(
+    ball: BallState, keeper: tuple[float, float], reasons: list[str]
+) -> None:
+    assert waits(PREPARE_PENALTY, ball, (-1.8, 0.0), keeper) == reasons
+
+
+def test_before_a_penalty_kick_all_but_one_kicker_are_behind_the_ball() -> None:
+    own = RobotState(3, -1.8, 0.0), RobotState(5, -2.4, 1.0)
+    their = RobotState(4, 4.45, 0.0), RobotState(2, -2.45, -1.0)
+    frame = Frame(0.0, DIVISION_B, MARK, own, their)
+    assert waits_for(DIVISION_B, frame, PREPARE_PENALTY) == [
+        "yellow 2 is not 1 m behind the ball",
+        "blue 5 is not 1 m behind the ball",
+    ]
+
+
+def test_a_goalkeeper_that_is_not_there_is_waited_for() -> None:
+    game = replace(PREPARE_PENALTY, yellow=TeamStatus(keeper=9))
+    said = waits(game, MARK, (-1.8, 0.0), (-2.6, 0.0))
+    assert said == ["yellow has no goalkeeper, its number is 9"]
+
+
 def test_a_stop_that_does_not_end_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
     people = People(DIVISION_B, RefereeSettings())
     robots = (RobotState(3, -3.0, 0.0),), (RobotState(4, 1.0, 1.3),)
