@@ -124,8 +124,28 @@ class Scenario(Part):
         spot = None if self.referee is None else self.referee.opening_spot
         if isinstance(spot, tuple):
             check_inside(spot, self.field, "referee.opening_spot")
+        if self.referee is not None:
+            self._check_endless(self.referee)
         self._check_starts()
         return self
+
+    def _check_endless(self, referee: RefereeSettings) -> None:
+        """Refuse what a referee would wait for without end."""
+        robots = {robot for robot, _ in self.robots}
+        for team in Team:
+            there = sum(robot.team is team for robot in robots)
+            if referee.max_robots is not None and there > referee.max_robots:
+                problem = f"is {referee.max_robots}, but {team.value} has {there} robots"
+                raise FieldError("referee.max_robots", problem)
+        kicking = {"penalty": [referee.opening_team], "shoot_out": list(Team)}.get(referee.opening, [])
+        keepers = self.goalkeepers()
+        for team in Team if referee.shoot_out else [team.other for team in kicking]:
+            if RobotId(team, keepers.get(team, referee.keeper(team).number)) not in robots:
+                raise FieldError(
+                    "referee.shoot_out" if referee.shoot_out else "referee.opening",
+                    f"waits for {team.value}'s goalkeeper, which is not there; give one of its robots "
+                    "'goalkeeper: true'",
+                )
 
     def _check_starts(self) -> None:
         check_starts(self.field, self._starts, self.ball)

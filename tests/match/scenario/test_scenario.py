@@ -190,6 +190,16 @@ class TestFields:
                 "referee.opening_spot.0: input should be a valid number",
             ),
             ({"referee": {"kick_timeout": -1}}, "referee.kick_timeout: input should be greater"),
+            (
+                {"robots": {"blue": [robot(), robot(1)]}, "referee": {"max_robots": 1}},
+                "referee.max_robots: is 1, but blue has 2 robots",
+            ),
+            ({"referee": {"opening": "penalty"}}, "referee.opening: waits for yellow's goalkeeper, which is"),
+            (
+                {"referee": {"opening": "shoot_out"}, "robots": {"yellow": [robot()]}},
+                "referee.opening: waits for blue's goalkeeper, which is not there; give one",
+            ),
+            ({"referee": {"shoot_out": True}}, "referee.shoot_out: waits for yellow's goalkeeper"),
             ({"seed": -1}, "seed: input should be greater"),
             ({"seed": 2**60}, "seed: input should be less"),
         ],
