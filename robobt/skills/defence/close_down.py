@@ -30,7 +30,7 @@ class CloseDown(DrivingSkill):
         gap: least distance from the ball to the robot's centre [m].
     """
 
-    stand_out: float = 2.2
+    stand_out: float = 2.0
     gap: float = 0.5
 
     def on_running(self) -> Status:
