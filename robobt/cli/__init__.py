@@ -72,6 +72,7 @@ _GROUPS = {
             "shots": "bench.shots:bench_shots",
             "train": "bench.train:bench_train",
             "filter": "bench.league:bench_filter",
+            "chips": "bench.chips:bench_chips",
             "clock": "bench.league:bench_clock",
             "league": "bench.league:bench_league",
         },

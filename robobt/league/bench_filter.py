@@ -83,6 +83,7 @@ class _Watcher:
         self._world = world
         self._cameras = Cameras(world.field, seen.realism, cameras, rng)
         self._filter = VisionFilter(world.field, seen)
+        self._filter.cameras.update(self._cameras.calibrated)
         self._realism = seen.realism
         self._waiting: deque[tuple[float, list[CameraFrame], Frame]] = deque()
         self._ball_from = 0.0

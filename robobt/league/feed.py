@@ -12,6 +12,7 @@ from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.known_field import KnownField
 from robobt.league.wire.gamecontroller import RefereeFollower
+from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
@@ -21,7 +22,7 @@ from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
-from robobt.world.state import Frame, RobotId
+from robobt.world.state import BallState, Frame, RobotId
 
 ALL_CAMERAS = 0.002
 """How long a frame waits for those of the other cameras [s]."""
@@ -179,6 +180,9 @@ class Feed:
                 continue
             if seen.field is not None:
                 self._see(seen.field)
+            for number, place in seen.cameras.items():
+                turned = self.sign()
+                self.filter.cameras[number] = CameraPlace(turned * place.x, turned * place.y, place.z)
             if seen.frame is not None:
                 self.add(seen.frame, arrived)
         if self.referee is not None:
@@ -259,7 +263,12 @@ def _size(field: FieldGeometry, name: str) -> float:
 
 def _turned(frame: CameraFrame) -> CameraFrame:
     """Return a frame in coordinates turned by 180 degrees."""
-    balls = [BallDetection(-ball.x, -ball.y, ball.confidence) for ball in frame.balls]
+    balls = []
+    for ball in frame.balls:
+        known = ball.tracked
+        if known is not None:
+            known = BallState(-known.x, -known.y, -known.vx, -known.vy, known.z, known.vz)
+        balls.append(BallDetection(-ball.x, -ball.y, ball.confidence, known))
     robots = []
     for robot in frame.robots:
         heading = None if robot.heading is None else wrap_angle(robot.heading + pi)
@@ -272,5 +281,5 @@ def _detections(frame: Frame) -> CameraFrame:
     robots = [
         RobotDetection(robot, state.x, state.y, state.heading) for robot, state in frame.robots().items()
     ]
-    balls = [BallDetection(frame.ball.x, frame.ball.y)]
+    balls = [BallDetection(frame.ball.x, frame.ball.y, tracked=frame.ball)]
     return CameraFrame(0, 0, frame.time, frame.time, balls, robots)

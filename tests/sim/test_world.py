@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from robobt.sim import REALISM, SimWorld, preset
+from robobt.sim.settings import RealismSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, Placement, RobotCommand, RobotId, Team, World
-from tests.sim.rig import IT, ME, one_robot
+from robobt.world.command import CHIP_ANGLE
+from tests.sim.rig import IT, ME, holding, one_robot
 
 
 def pair(realism: str = "none", period: float = 1 / 60) -> SimWorld:
@@ -195,3 +197,15 @@ def test_a_wrong_placement_is_refused_by_name(placement: Placement, words: str) 
 def test_a_command_that_is_not_finite_is_refused_by_name() -> None:
     with pytest.raises(ValueError, match="the command for blue 0 is not finite"):
         pair().act({ME: RobotCommand(vx=float("nan"))})
+
+
+def test_a_balls_height_is_seen_late_as_all_else() -> None:
+    settings = preset("default", realism=RealismSettings(vision_delay=0.05))
+    world = holding(settings, period=0.01)
+    world.act({ME: RobotCommand(kick_speed=4.0, kick_angle=CHIP_ANGLE)})
+    heights = []
+    for _ in range(20):
+        heights.append((world.truth().ball.z, world.observe().ball.z))
+        world.act({})
+    assert [seen for _, seen in heights[6:]] == pytest.approx([real for real, _ in heights[1:-5]])
+    assert heights[-1][1] > 0.2

@@ -8,12 +8,12 @@ import pytest
 
 from robobt.sim import SimWorld, preset
 from robobt.sim.settings import RealismSettings
-from robobt.world.command import RobotCommand
+from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.prediction import PredictedWorld
 from robobt.world.protocol import Placement
-from robobt.world.state import Frame, RobotId
+from robobt.world.state import BALL_RADIUS, Frame, RobotId
 
 BLUE, YELLOW = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 3)
 PERIOD = 0.03
@@ -115,3 +115,18 @@ def test_a_reset_forgets_what_was_sent() -> None:
     drive(made, 5, RobotCommand(3.0))
     made.reset(Placement({BLUE: (0.0, 0.0, 0.0), YELLOW: (1.0, 1.0, 0.0)}, (2.0, 2.0, 0.0, 0.0)), 1)
     assert off(made.observe(), made.truth()) == 0.0
+
+
+def test_a_ball_in_the_air_is_shown_as_high_as_it_is() -> None:
+    # It goes on from where it was seen at the end of a tick: what is late by whole ticks is exact.
+    made = world(vision_delay=PERIOD)
+    gap = preset("rsim").body.face + BALL_RADIUS
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (4.0, 1.0, -2.0)}, (gap - 1.0, 0.0, 0.0, 0.0)), 1)
+    made.observe()
+    made.act({BLUE: RobotCommand(kick_speed=5.0, kick_angle=CHIP_ANGLE)})
+    for _ in range(12):
+        made.act({})
+        shown, real = made.observe().ball, made.truth().ball
+        assert (shown.z, shown.vz) == pytest.approx((real.z, real.vz), abs=1e-6)
+        assert shown.x == pytest.approx(real.x, abs=1e-6)
+    assert real.z > 0.4

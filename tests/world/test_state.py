@@ -36,7 +36,7 @@ def test_mirroring_twice_gives_the_frame_back(
     frame = Frame(
         1.5,
         DIVISION_B,
-        BallState(x, y, vx, vy),
+        BallState(x, y, vx, vy, 0.3, -1.5),
         (RobotState(1, x, y, heading, vx, vy, 2.0, True),),
         (RobotState(0, y, x, 0.3),),
         last_touch=RobotId(Team.BLUE, 1),
@@ -113,3 +113,15 @@ def test_a_command_knows_whether_it_is_finite() -> None:
     assert RobotCommand(1, 2, 3, 4).finite()
     assert not RobotCommand(vy=float("inf")).finite()
     assert not RobotCommand(kick_speed=float("nan")).finite()
+    assert not RobotCommand(kick_angle=float("nan")).finite()
+
+
+def test_a_frame_is_packed_with_the_balls_height_only_where_it_flies() -> None:
+    ground, air = (Frame(0.0, DIVISION_B, BallState(1.0, 2.0, z=z)).packed() for z in (0.0, 0.5))
+    assert (len(ground), len(air)) == (8 * 7, 8 * 9)
+    assert air.startswith(ground)
+
+
+def test_a_mirrored_ball_is_as_high() -> None:
+    ball = Frame(0.0, DIVISION_B, BallState(1.0, 2.0, 3.0, 4.0, 0.5, -0.5)).mirrored().ball
+    assert (ball.x, ball.vx, ball.z, ball.vz) == (-1.0, -3.0, 0.5, -0.5)

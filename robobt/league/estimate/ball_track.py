@@ -17,7 +17,8 @@ from robobt.sim.settings import BallSettings
 class BallMotion:
     """A ball's state in field coordinates.
 
-    ``rolls_at`` is the speed at which sliding turns into rolling; below it, the ball rolls [m, m/s].
+    ``rolls_at`` is the speed at which sliding turns into rolling; below it, the ball rolls. ``z`` is the
+    height above where it lies, ``vz`` its rate [m, m/s].
     """
 
     x: float
@@ -25,6 +26,8 @@ class BallMotion:
     vx: float = 0.0
     vy: float = 0.0
     rolls_at: float = 0.0
+    z: float = 0.0
+    vz: float = 0.0
 
 
 _NOISE = 0.05

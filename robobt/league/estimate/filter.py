@@ -7,20 +7,22 @@ captures.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import hypot, inf
+from math import inf
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
+from robobt.league.estimate.flight import FlightWatch
 from robobt.league.estimate.kicks import Kick, KickWatch
+from robobt.league.estimate.outliers import Outliers
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
 from robobt.league.estimate.robot_track import RobotMotion, RobotTrack, SentCommands, predict_robot
+from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BallState, Frame, RobotId, RobotState
+from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT, BallState, Frame, RobotId, RobotState
 
 _MIN_ROBOT_NOISE, _MIN_BALL_NOISE, _MIN_HEADING_NOISE = 0.0013, 0.0014, 0.01
 """Noise that is always assumed [m, m, rad]. Source: ER-Force's Realistic."""
@@ -53,16 +55,6 @@ _GAP = 0.5
 """Capture times further ahead need confirmation by more frames [s]."""
 
 
-@dataclass(slots=True)
-class _Outlier:
-    """A detection far from every prediction, and how often it was repeated."""
-
-    x: float
-    y: float
-    time: float
-    count: int = 1
-
-
 class VisionFilter:
     """Merges the cameras' detections and predicts from them.
 
@@ -70,6 +62,7 @@ class VisionFilter:
     ``limits`` those of individual robots, where they differ.
 
     Attributes:
+        cameras: where those are, by number; chips are seen by these only.
         captured: capture time of the newest frame, None before the first [s].
         restarts: how often the source was restarted.
         possession: who has the ball.
@@ -90,6 +83,7 @@ class VisionFilter:
         self._ball_noise = max(realism.ball_noise, _MIN_BALL_NOISE)
         self._heading_noise = max(realism.heading_noise, _MIN_HEADING_NOISE)
         self.restarts = 0
+        self.cameras: dict[int, CameraPlace] = {}
         self._odd_time: tuple[float, int] | None = None
         self._ball_seen = 0.0
         self._ball_camera: int | None = None
@@ -101,10 +95,11 @@ class VisionFilter:
         self.possession = Possession(self.settings.body)
         self.kicks: list[Kick] = []
         self._kick_watch = KickWatch(self.settings.body.face)
+        self._flights = FlightWatch(self.settings.ball, self._ball_noise, self.cameras)
         self._cameras: dict[int, float] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
-        self._outliers: dict[RobotId | None, _Outlier] = {}
+        self._outliers = Outliers(_CONFIRMATIONS, _ROBOT_TIMEOUT)
         self._sent: dict[RobotId, SentCommands] = {}
 
     def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
@@ -122,7 +117,8 @@ class VisionFilter:
             self._ball = BallTrack(x, y, self.captured, self.settings.ball, self._ball_noise)
             self._ball_seen = self.captured
             self.possession.hold = None
-            self._outliers.pop(None, None)
+            self._flights.clear()
+            self._outliers.forget(None)
 
     def add(self, frame: CameraFrame) -> bool:
         """Use a camera's frame; return False for a duplicate, a late frame or an unconfirmed time."""
@@ -170,7 +166,8 @@ class VisionFilter:
         ball = self._ball_at(time, motions)
         teams: dict[Team, list[RobotState]] = {team: [] for team in Team}
         for robot, m in motions.items():
-            contact = self._ball is not None and self.possession.has_ball(robot, m, ball)
+            low = self._ball is not None and ball.z < RECEIVED_HEIGHT
+            contact = low and self.possession.has_ball(robot, m, ball)
             limits = self._robots[robot].limits
             teams[robot.team].append(
                 RobotState(robot.number, m.x, m.y, m.heading, m.vx, m.vy, m.omega, contact, limits)
@@ -178,7 +175,7 @@ class VisionFilter:
         return Frame(
             time,
             self.field,
-            BallState(ball.x, ball.y, ball.vx, ball.vy),
+            BallState(ball.x, ball.y, ball.vx, ball.vy, ball.z, ball.vz),
             tuple(teams[Team.BLUE]),
             tuple(teams[Team.YELLOW]),
             last_touch=self.possession.last_touch,
@@ -196,7 +193,7 @@ class VisionFilter:
         track = self._robots.get(robot)
         if track is None:
             best = max(detections, key=lambda detection: detection.confidence)
-            if best.heading is not None and self._confirmed(robot, best.x, best.y, time, _ROBOT_GATE):
+            if best.heading is not None and self._outliers.confirm(robot, best.x, best.y, time, _ROBOT_GATE):
                 limits = self._limits.get(robot, self.settings.limits)
                 noise = self._robot_noise, self._heading_noise
                 self._robots[robot] = RobotTrack(best.x, best.y, best.heading, time, limits, *noise)
@@ -213,15 +210,15 @@ class VisionFilter:
         gate = _ROBOT_GATE + track.limits.max_speed * max(0.0, lag)
         if track.deviation(x, y) <= gate:
             track.correct(x, y, near.heading)
-            self._outliers.pop(robot, None)
-        elif near.heading is not None and self._confirmed(robot, x, y, time, gate):
+            self._outliers.forget(robot)
+        elif near.heading is not None and self._outliers.confirm(robot, x, y, time, gate):
             track.restart(x, y, near.heading, time)
 
     def _add_balls(self, balls: list[BallDetection], time: float, camera: int) -> None:
         track = self._ball
         if track is None:
             best = max(balls, key=lambda ball: ball.confidence)
-            if self._confirmed(None, best.x, best.y, time, _BALL_GATE):
+            if self._outliers.confirm(None, best.x, best.y, time, _BALL_GATE):
                 self._ball = BallTrack(best.x, best.y, time, self.settings.ball, self._ball_noise)
                 self._ball_seen = time
             return
@@ -239,29 +236,44 @@ class VisionFilter:
         if track.deviation(nearest.x, nearest.y) <= gate:
             # The offset between two cameras must not be taken for a kick.
             track.correct(nearest.x, nearest.y, kickable and camera == self._ball_camera)
-            self._outliers.pop(None, None)
-        elif self._confirmed(None, nearest.x, nearest.y, time, gate):
+            self._outliers.forget(None)
+        elif self._outliers.confirm(None, nearest.x, nearest.y, time, gate):
             track.restart(nearest.x, nearest.y, time)
         else:
             return
         self._ball_seen, self._ball_camera = max(time, self._ball_seen), camera
-        self.possession.update(track.motion, motions)
-        kick = self._kick_watch.update(time, nearest.x, nearest.y, motions, self._sent)
+        self._look_up(track, nearest, time, camera, motions)
+
+    def _look_up(
+        self,
+        track: BallTrack,
+        seen: BallDetection,
+        time: float,
+        camera: int,
+        motions: Mapping[RobotId, RobotMotion],
+    ) -> None:
+        """Find out whether the ball that was seen is kicked, flies, or is somebody's."""
+        flights = self._flights
+        kick = self._kick_watch.update(time, seen.x, seen.y, motions, self._sent)
+        above = flights.at(time)
+        if above is not None and above.z > ROBOT_HEIGHT:
+            # Nobody kicks it: it is seen to pass them.
+            kick = None
         if kick is not None:
             self.kicks.append(kick)
-
-    def _confirmed(self, robot: RobotId | None, x: float, y: float, time: float, gate: float) -> bool:
-        """Return whether an outlier of a robot, or of the ball (None), was repeated often enough."""
-        known = self._outliers.get(robot)
-        if known is None or time - known.time > _ROBOT_TIMEOUT or hypot(x - known.x, y - known.y) > gate:
-            self._outliers[robot] = _Outlier(x, y, time)
-            return False
-        known.x, known.y, known.time = x, y, time
-        known.count += 1
-        if known.count < _CONFIRMATIONS:
-            return False
-        del self._outliers[robot]
-        return True
+        if seen.tracked is None:
+            near = near_robot(track.motion, motions)
+            flights.update(time, camera, seen.x, seen.y, kick, near)
+        else:
+            ball = seen.tracked
+            flights.known(time, BallMotion(ball.x, ball.y, ball.vx, ball.vy, 0.0, ball.z, ball.vz))
+        if flights.landed is not None:
+            track.carry(flights.landed, time)
+            flights.landed = None
+        if flights.hop is None:
+            self.possession.update(track.motion, motions)
+        else:
+            self.possession.hold = None
 
     def _robot_at(self, robot: RobotId, time: float) -> RobotMotion:
         track = self._robots[robot]
@@ -271,6 +283,9 @@ class VisionFilter:
         track, hold = self._ball, self.possession.hold
         if track is None:
             return BallMotion(0.0, 0.0)
+        flying = self._flights.at(time)
+        if flying is not None:
+            return flying
         if hold is not None and hold.robot in motions:
             return hold.ball(motions[hold.robot])
         if time <= track.time:

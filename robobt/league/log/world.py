@@ -120,6 +120,8 @@ class LogWorld(World):
             seen = read_vision(record.data, self.counts)
             if seen is not None and seen.field is not None:
                 self.field = self._filter.field = seen.field
+            if seen is not None:
+                self._filter.cameras.update(seen.cameras)
             if seen is not None and seen.frame is not None:
                 self._filter.add(seen.frame)
         elif record.kind == LogKind.REFEREE:

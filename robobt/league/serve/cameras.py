@@ -9,7 +9,7 @@ from math import ceil, sqrt
 
 import numpy as np
 
-from robobt.league.wire.geometry import CAMERA_HEIGHT
+from robobt.league.wire.geometry import CAMERA_HEIGHT, CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import RealismSettings
 from robobt.world.field import FieldGeometry
@@ -49,6 +49,11 @@ class Cameras:
             for left, right, low, high in self._areas
         ]
         self._number = 0
+
+    @property
+    def calibrated(self) -> dict[int, CameraPlace]:
+        """Where they are, by number, as their calibration tells."""
+        return {i: CameraPlace(x, y, CAMERA_HEIGHT) for i, (x, y) in enumerate(self.places)}
 
     def capture(self, truth: Frame, captured: float, sent: float) -> list[CameraFrame]:
         """Return one frame of each camera, with these timestamps of capture and sending [s]."""

@@ -7,11 +7,17 @@ has the lines, arcs and models that grSim sends, and the sizes that it leaves ou
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import nan, pi
+from typing import NamedTuple
 
 from pydantic import ValidationError
 
-from robobt.league.wire.messages import SSL_GeometryData, SSL_GeometryFieldSize
+from robobt.league.wire.messages import (
+    SSL_GeometryCameraCalibration,
+    SSL_GeometryData,
+    SSL_GeometryFieldSize,
+)
+from robobt.league.wire.packets import on_field
 from robobt.sim.settings import BallSettings
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.geometry import Point
@@ -35,8 +41,60 @@ field for a card as long as they are seen.
 CAMERA_HEIGHT = 4.0
 """Height of the cameras above the ground [m]. Source: grSim's."""
 
+_CEILING = (1.0, 50.0)
+"""Least and greatest height at which a camera can be [m]."""
+
 _FOCAL_LENGTH, _IMAGE = 390.0, (780, 580)
 """Of a camera that sees a quarter of a division B field from there [pixels]."""
+
+
+class CameraPlace(NamedTuple):
+    """Where a camera is; z counts from the ground [m]."""
+
+    x: float
+    y: float
+    z: float
+
+
+def read_cameras(message: SSL_GeometryData) -> dict[int, CameraPlace]:
+    """Return where the cameras of a geometry packet are, by number, but for those that can be nowhere."""
+    found = {}
+    for camera in message.calib:
+        if camera.HasField("derived_camera_world_tz"):
+            place = (
+                camera.derived_camera_world_tx,
+                camera.derived_camera_world_ty,
+                camera.derived_camera_world_tz,
+            )
+        else:
+            place = _origin(camera)
+        x, y, z = (value / _MM for value in place)
+        # NaN compares as false.
+        if on_field(x, y) and _CEILING[0] <= z <= _CEILING[1]:
+            found[camera.camera_id] = CameraPlace(x, y, z)
+    return found
+
+
+def _origin(camera: SSL_GeometryCameraCalibration) -> tuple[float, float, float]:
+    """Return where a camera is from how it turns (x, y, z, w) and shifts the field's coordinates [mm]."""
+    x, y, z, w = camera.q0, camera.q1, camera.q2, camera.q3
+    square = x * x + y * y + z * z + w * w
+    if not square > 0.0:
+        return (nan, nan, nan)
+    # The shift turned back: t + 2 w (t x q) + 2 (t x q) x q, of a quaternion that need not be of length 1.
+    t = camera.tx, camera.ty, camera.tz
+    q = x, y, z
+    once = _cross(t, q)
+    twice = _cross(once, q)
+    back = [a + 2.0 * (w * b + c) / square for a, b, c in zip(t, once, twice, strict=True)]
+    return (-back[0], -back[1], -back[2])
+
+
+_Vector = tuple[float, float, float]
+
+
+def _cross(a: _Vector, b: _Vector) -> _Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:

@@ -5,16 +5,17 @@ Source of the fields: ssl-vision's detection messages (millimetres there).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import dataclasses
+from dataclasses import dataclass
 from math import isfinite, pi
 
-from robobt.league.wire.geometry import read_field
+from robobt.league.wire.geometry import CameraPlace, read_cameras, read_field
 from robobt.league.wire.messages import SSL_DetectionFrame, SSL_GeometryData, SSL_WrapperPacket
 from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
-from robobt.world.state import RobotId
+from robobt.world.state import BallState, RobotId
 
 _MM = 1000.0
 
@@ -32,11 +33,12 @@ _PATTERN_HEIGHT = 0.15
 
 @dataclass(slots=True)
 class BallDetection:
-    """A detected ball [m]."""
+    """A detected ball [m]; ``tracked`` is its whole state where that is known, as from a tracked frame."""
 
     x: float
     y: float
     confidence: float = 1.0
+    tracked: BallState | None = None
 
 
 @dataclass(slots=True)
@@ -61,16 +63,17 @@ class CameraFrame:
     number: int
     captured: float
     sent: float
-    balls: list[BallDetection] = field(default_factory=list)
-    robots: list[RobotDetection] = field(default_factory=list)
+    balls: list[BallDetection] = dataclasses.field(default_factory=list)
+    robots: list[RobotDetection] = dataclasses.field(default_factory=list)
 
 
 @dataclass(slots=True)
 class VisionPacket:
-    """The contents of a vision packet; either part may be missing."""
+    """The contents of a vision packet; each part may be missing."""
 
     frame: CameraFrame | None
     field: FieldGeometry | None
+    cameras: dict[int, CameraPlace] = dataclasses.field(default_factory=dict)
 
 
 def read_vision(data: bytes, counts: PacketCounts) -> VisionPacket | None:
@@ -80,8 +83,11 @@ def read_vision(data: bytes, counts: PacketCounts) -> VisionPacket | None:
 
 def _read_packet(message: SSL_WrapperPacket) -> VisionPacket | None:
     frame = _read_frame(message.detection) if message.HasField("detection") else None
-    geometry = read_field(message.geometry.field) if message.HasField("geometry") else None
-    return None if frame is None and geometry is None else VisionPacket(frame, geometry)
+    if not message.HasField("geometry"):
+        return None if frame is None else VisionPacket(frame, None)
+    seen = read_field(message.geometry.field)
+    cameras = read_cameras(message.geometry)
+    return None if frame is None and seen is None else VisionPacket(frame, seen, cameras)
 
 
 def _read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:

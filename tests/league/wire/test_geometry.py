@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, nan, pi
 
 import numpy as np
 import pytest
 
-from robobt.league.wire.geometry import read_field, write_geometry
+from robobt.league.wire.geometry import CAMERA_HEIGHT, read_cameras, read_field, write_geometry
 from robobt.league.wire.messages import SSL_GeometryCameraCalibration, SSL_GeometryFieldSize
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import read_vision, write_vision
@@ -130,3 +130,30 @@ def test_every_camera_sees_what_is_below_it_in_the_middle_of_its_picture() -> No
         assert seen_at(camera, *told) == pytest.approx(middle)
         # A metre farther along x, to the right in the picture.
         assert seen_at(camera, told[0] + 1000, told[1])[0] > middle[0]
+
+
+@pytest.mark.parametrize("derived", [True, False])
+def test_cameras_hang_where_their_calibration_has_them(derived: bool) -> None:
+    message = write_geometry(DIVISION_B, [(2.25, 1.5), (-2.25, -1.5)])
+    for camera in message.calib:
+        if not derived:
+            for name in ("tx", "ty", "tz"):
+                camera.ClearField(f"derived_camera_world_{name}")
+    found = read_cameras(message)
+    assert found[0] == pytest.approx((2.25, 1.5, CAMERA_HEIGHT))
+    assert found[1] == pytest.approx((-2.25, -1.5, CAMERA_HEIGHT))
+
+
+@pytest.mark.parametrize("value", [nan, inf, 1e9, -4000.0, 0.0])
+def test_a_camera_where_none_can_hang_is_left_out(value: float) -> None:
+    message = write_geometry(DIVISION_B, [(0.0, 0.0)])
+    message.calib[0].derived_camera_world_tz = value
+    assert read_cameras(message) == {}
+
+
+def test_a_calibration_without_a_direction_is_left_out() -> None:
+    message = write_geometry(DIVISION_B, [(0.0, 0.0)])
+    camera = message.calib[0]
+    camera.ClearField("derived_camera_world_tz")
+    camera.q0 = camera.q1 = camera.q2 = camera.q3 = 0.0
+    assert read_cameras(message) == {}

@@ -1,0 +1,69 @@
+"""How well a flat kick explains where the ball was seen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robobt.sim.settings import BallSettings
+from robobt.world.geometry import FloatArray
+
+_ROUNDS = 4
+"""Improvements of the speed, each by the slope of the misfit."""
+
+
+def flat_misfit(times: FloatArray, places: FloatArray, ball: BallSettings) -> float:
+    """Return the least squared distance of detections from any flat kick [m^2].
+
+    That is a straight line on which the ball slides, then rolls as the settings say, or has one
+    deceleration, whatever the carpet's.
+
+    Args:
+        times: (n,) of the detections, from the last one before the kick on [s].
+        places: (n, 2) of the detections [m].
+        ball: how it is expected to slide and roll.
+    """
+    middle = places.mean(axis=0)
+    _, _, axes = np.linalg.svd(places - middle)
+    along, aside = (places - middle) @ axes[0], (places - middle) @ axes[1]
+    if along[-1] < along[0]:
+        along = -along
+    t = times - times[0]
+    off = min(_braking(along, t, ball), _sliding(along, t, float(times[0]), ball))
+    return float(aside @ aside) + off
+
+
+def _braking(along: FloatArray, t: FloatArray, ball: BallSettings) -> float:
+    """Return the squared misfit of a ball with one deceleration, at most that of sliding."""
+    rows = np.column_stack((np.ones_like(t), t, -0.5 * t * t))
+    found = np.linalg.lstsq(rows, along, rcond=None)[0]
+    brake = min(max(float(found[2]), 0.0), ball.slide_deceleration)
+    if brake != found[2]:
+        along = along - brake * rows[:, 2]
+        rows = rows[:, :2]
+        found = np.linalg.lstsq(rows, along, rcond=None)[0]
+    off = rows @ found - along
+    return float(off @ off)
+
+
+def _sliding(along: FloatArray, t: FloatArray, gap: float, ball: BallSettings) -> float:
+    """Return that of a ball that was kicked within ``gap`` before the first detection [s]."""
+
+    def off(speed: float) -> FloatArray:
+        rolls = ball.switch_share * (speed + 0.5 * gap * ball.slide_deceleration)
+        sliding = np.minimum(t, max(speed - rolls, 0.0) / ball.slide_deceleration)
+        at_end = speed - ball.slide_deceleration * sliding
+        rolling = np.minimum(t - sliding, at_end / ball.roll_deceleration)
+        slid, rolled = (
+            (speed + at_end) / 2 * sliding,
+            (at_end - 0.5 * ball.roll_deceleration * rolling) * rolling,
+        )
+        apart: FloatArray = slid + rolled - along
+        return apart - float(apart.mean())
+
+    speed = max(float((along[-1] - along[0]) / (t[-1] - t[0])), 0.1)
+    for _ in range(_ROUNDS):
+        now = off(speed)
+        slope = (off(speed + 1e-3) - now) / 1e-3
+        speed = max(speed - float(slope @ now) / max(float(slope @ slope), 1e-12), 0.1)
+    now = off(speed)
+    return float(now @ now)

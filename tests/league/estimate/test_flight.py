@@ -1,0 +1,96 @@
+"""Chips are recognised by where cameras see them, followed over their hops, and flat kicks are none."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+import pytest
+
+from robobt.league.bench_chips import bench_chips
+from robobt.league.estimate.filter import VisionFilter
+from robobt.league.serve.cameras import Cameras
+from robobt.league.wire.vision import BallDetection, CameraFrame
+from robobt.sim import SimWorld, preset, settings_from
+from robobt.sim.settings import REALISM
+from robobt.world.command import CHIP_ANGLE, RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.game import Team
+from robobt.world.protocol import Placement
+from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, BallState, Frame, RobotId
+
+ME, IT = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 0)
+PERIOD = 1 / 60
+FACE = preset("default").body.face + BALL_RADIUS + 0.0003
+
+
+def watched(
+    speed: float, angle: float, known: bool = True, away: float = 1.25
+) -> list[tuple[BallState, Frame]]:
+    """A kick from (-1, 0.5) along x, past a robot: what really was and what the filter had."""
+    settings = preset("default")
+    world = SimWorld(DIVISION_B, {ME: None, IT: None}, settings, PERIOD)
+    world.reset(Placement({ME: (-1.0, 0.5, 0.0), IT: (away - 1.0, 0.5, 3.0)}, (FACE - 1.0, 0.5, 0.0, 0.0)), 0)
+    eyes = Cameras(DIVISION_B, REALISM["realistic"], 4, np.random.default_rng(0))
+    watch = VisionFilter(DIVISION_B, settings)
+    if known:
+        watch.cameras.update(eyes.calibrated)
+    seen = []
+    for tick in range(150):
+        truth = world.truth()
+        for frame in eyes.capture(truth, truth.time, truth.time):
+            watch.add(frame)
+        seen.append((truth.ball, watch.frame_at(truth.time)))
+        world.act({ME: RobotCommand(kick_speed=speed, kick_angle=angle)} if tick == 20 else {})
+    return seen
+
+
+def test_a_chip_is_seen_in_the_air_hops_and_rolls_on() -> None:
+    seen = watched(4.0, CHIP_ANGLE)
+    # Once it is known, from 0.25 s on, it is where it really is.
+    known = [(real, frame.ball) for real, frame in seen[36:]]
+    assert max(ball.z for _, ball in known) == pytest.approx(max(real.z for real, _ in known), abs=0.05)
+    for real, ball in known:
+        assert hypot(ball.x - real.x, ball.y - real.y) < 0.15
+        assert ball.z == pytest.approx(real.z, abs=0.1)
+    assert known[-1][1].z == 0.0
+    assert known[-1][1].vx == pytest.approx(known[-1][0].vx, abs=0.1)
+
+
+def test_a_robot_under_a_chip_does_not_touch_it() -> None:
+    seen = watched(4.0, CHIP_ANGLE)
+    over = [frame for real, frame in seen if real.z > ROBOT_HEIGHT and abs(real.x - 0.25) < 0.09]
+    assert over
+    assert not any(frame.opponents[0].ball_contact for frame in over)
+    assert seen[-1][1].last_touch == ME
+
+
+def test_a_flat_kick_stays_on_the_ground() -> None:
+    assert all(frame.ball.z == 0.0 for _, frame in watched(4.0, 0.0, away=-1.0))
+    # Nor does it fly when it hits a robot.
+    assert all(frame.ball.z == 0.0 for _, frame in watched(4.0, 0.0))
+
+
+def test_without_the_cameras_places_nothing_flies() -> None:
+    assert all(frame.ball.z == 0.0 for _, frame in watched(4.0, CHIP_ANGLE, known=False))
+
+
+def test_a_tracker_s_ball_is_as_high_as_it_says() -> None:
+    watch = VisionFilter(DIVISION_B)
+    for tick in range(6):
+        ball = BallState(0.1 * tick, 0.0, 6.0, 0.0, 0.5, 1.0)
+        frame = CameraFrame(0, tick, tick * PERIOD, tick * PERIOD)
+        frame.balls.append(BallDetection(ball.x, ball.y, tracked=ball))
+        watch.add(frame)
+    shown = watch.frame_at(5 * PERIOD).ball
+    assert (shown.z, shown.vz) == (0.5, 1.0)
+    assert watch.frame_at(5 * PERIOD + 0.1).ball.z == pytest.approx(0.5 + 0.1 - 9.81 * 0.005)
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize("name", ["default", "grsim"])
+def test_most_chips_are_known_and_land_where_they_are_said_to(name: str) -> None:
+    figures = bench_chips(settings_from({"preset": name, "realism": "realistic"}), 30, 30, seed=5, cameras=4)
+    assert figures["recognised"] >= 0.85 * figures["chips"]
+    assert figures["landing_error"]["0.5"]["p90"] < 0.2
+    assert figures["taken_for_chips"] == 0
