@@ -217,9 +217,11 @@ class Arenas:
                 0 for a flat one. Must be finite.
         """
         oldest = self._pipeline.pop(0)
-        given = commands.shape[-1]
-        oldest[..., :given] = commands
-        oldest[..., given:] = 0.0
+        if commands.shape[-1] == COMMAND:
+            np.copyto(oldest, commands)
+        else:
+            oldest[..., :-1] = commands
+            oldest[..., -1] = 0.0
         self._pipeline.append(oldest)
         buffer = self._buffer
         control_tick(

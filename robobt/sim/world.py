@@ -107,8 +107,9 @@ class SimWorld(World):
 
     def truth(self) -> Frame:
         """Return the simulated state itself."""
-        ball = self._arenas.balls[0].tolist() + self._arenas.flight[0, :2].tolist()
-        return self._frame(self._arenas.robots[0].tolist(), ball)
+        arenas = self._arenas
+        z, vz, _ = arenas.flight[0].tolist()
+        return self._frame(arenas.robots[0].tolist(), [*arenas.balls[0].tolist(), z, vz])
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands and simulate one control period.
