@@ -29,7 +29,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.rules import without_absent
 from robobt.world.state import Frame
 
-_DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.4
+_DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.8
 """Time from one look of the controller at the match to the next [s].
 
 While it has something to decide, while play is stopped, while the ball is in play. Reports are told at once.
