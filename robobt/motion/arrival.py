@@ -1,0 +1,158 @@
+"""When a robot can be somewhere: time-optimal motion in closed form, compiled.
+
+Each of two axes, along the way and across it, accelerates and brakes at its limits; the limits
+are shared out so that both are done at the same time.
+
+Source of the idea: Purwin and D'Andrea, "Trajectory generation and control for four wheeled
+omnidirectional vehicles" (2006), as the league's teams use it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import cos, hypot, pi, sin, sqrt
+
+import numpy as np
+
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotState
+
+X, Y, VX, VY, TOP, ACCELERATION, BRAKING = range(7)
+"""Columns of :func:`movers`."""
+
+STEP = 0.1
+"""From one place where a ball may be met to the next [s]."""
+
+_HALVINGS = 7
+_DRIFT = 0.15
+"""Sideways speed that does not count [m/s]."""
+_BODY = ROBOT_RADIUS + BALL_RADIUS
+_HORIZON = 4.0
+_SLIDE = DEFAULT_BALL.slide_deceleration
+_ROLL = DEFAULT_BALL.roll_deceleration
+
+
+def movers(robots: Iterable[RobotState]) -> FloatArray:
+    """Return place, velocity and limits of every robot, (n, 7), for the functions of this module."""
+    rows = [
+        (r.x, r.y, r.vx, r.vy, r.limits.max_speed, r.limits.acceleration, r.limits.braking) for r in robots
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+
+@compiled
+def axis_time(gap: float, speed: float, top: float, acceleration: float, braking: float) -> float:
+    """Compute the least time to cover ``gap`` [m] along a line and to stop there, from ``speed`` [s].
+
+    A negative gap or speed is one the other way.
+    """
+    if gap < 0.0:
+        gap, speed = -gap, -speed
+    time = 0.0
+    if speed < 0.0:
+        time = -speed / braking
+        gap += 0.5 * speed * speed / braking
+        speed = 0.0
+    stopping = 0.5 * speed * speed / braking
+    if stopping > gap:
+        time += speed / braking
+        gap, speed = stopping - gap, 0.0
+    if speed > top:
+        # It slows down to the top speed first.
+        slowed = 0.5 * (speed * speed - top * top) / braking
+        time += (speed - top) / braking
+        gap, speed = max(0.0, gap - slowed), top
+    peak = sqrt((gap + 0.5 * speed * speed / acceleration) / (0.5 / acceleration + 0.5 / braking))
+    if peak <= top:
+        return time + (peak - speed) / acceleration + peak / braking
+    used = 0.5 * (top * top - speed * speed) / acceleration + 0.5 * top * top / braking
+    return time + (top - speed) / acceleration + top / braking + (gap - used) / top
+
+
+@compiled
+def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
+    """Compute when a robot, a row of :func:`movers`, can stand within ``slack`` [m] of (x, y) [s]."""
+    dx, dy = x - robot[0], y - robot[1]
+    gap = hypot(dx, dy)
+    top, acceleration, braking = robot[4], robot[5], robot[6]
+    if gap <= slack:
+        return 0.0
+    ux, uy = dx / gap, dy / gap
+    along = ux * robot[2] + uy * robot[3]
+    across = abs(ux * robot[3] - uy * robot[2])
+    gap -= slack
+    if across < _DRIFT:
+        return axis_time(gap, along, top, acceleration, braking)
+    low, high = 0.0, 0.5 * pi
+    time = 0.0
+    for _ in range(_HALVINGS):
+        share = 0.5 * (low + high)
+        c, s = cos(share), sin(share)
+        ahead = axis_time(gap, along, top * c, acceleration * c, braking * c)
+        aside = axis_time(0.0, across, top * s, acceleration * s, braking * s)
+        time = max(ahead, aside)
+        if ahead > aside:
+            high = share
+        else:
+            low = share
+    return time
+
+
+@compiled
+def way_in(time: float, speed: float, rolling: float) -> float:
+    """Return how far a ball goes within ``time`` that rolls from the speed ``rolling`` on [m]."""
+    way = 0.0
+    if rolling < speed:
+        sliding = min(time, (speed - rolling) / _SLIDE)
+        way = (speed - 0.5 * _SLIDE * sliding) * sliding
+        speed -= _SLIDE * sliding
+        time -= sliding
+    rolled = min(time, speed / _ROLL)
+    return way + (speed - 0.5 * _ROLL * rolled) * rolled
+
+
+@compiled
+def meetings(
+    robots: FloatArray, ball: FloatArray, rolling: float, half_length: float, half_width: float
+) -> FloatArray:
+    """Find where and when every robot can meet the ball first: (n, 3), the time [s] and the place [m].
+
+    A robot meets a rolling ball where it can stand in its way no later than the ball comes; where it
+    never can, where the ball comes to rest or leaves the field.
+
+    Args:
+        robots: as of :func:`movers`.
+        ball: its x, y, vx, vy.
+        rolling: the speed from which on it rolls [m/s].
+        half_length: half the field's length [m].
+        half_width: half its width [m].
+    """
+    n = len(robots)
+    out = np.empty((n, 3))
+    speed = hypot(ball[2], ball[3])
+    ux, uy = 0.0, 0.0
+    if speed > 0.0:
+        ux, uy = ball[2] / speed, ball[3] / speed
+    for i in range(n):
+        time, before, slack, x, y = 0.0, 0.0, 0.0, ball[0], ball[1]
+        while True:
+            way = way_in(time, speed, rolling)
+            x, y = ball[0] + way * ux, ball[1] + way * uy
+            late = arrival_time(robots[i], x, y, _BODY) - time
+            gone = abs(x) > half_length or abs(y) > half_width
+            still = way_in(time + STEP, speed, rolling) - way < 0.02
+            if late <= 0.0:
+                if time > 0.0 and before > 0.0:
+                    slack = STEP * late / (before - late)
+                break
+            if gone or still or time >= _HORIZON:
+                time += late
+                break
+            before = late
+            time += STEP
+        out[i, 0] = time + slack
+        out[i, 1] = x
+        out[i, 2] = y
+    return out
