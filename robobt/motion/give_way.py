@@ -21,7 +21,7 @@ _LOOK = 1.5
 """Opponents with a wider gap are left out [m]."""
 
 
-def give_way(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
+def give_way(frame: Frame, me: RobotState, order: RobotCommand, *, mates: bool = False) -> RobotCommand:
     """Return the command, slowed down towards every opponent that it would run into.
 
     Of two robots that drive at each other each lets the other be the faster one: neither drives on
@@ -30,7 +30,7 @@ def give_way(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
     c, s = cos(me.heading), sin(me.heading)
     vx, vy = c * order.vx - s * order.vy, s * order.vx + c * order.vy
     changed = False
-    for other in frame.opponents:
+    for other in frame.others(me.id) if mates else frame.opponents:
         dx, dy = other.x - me.x, other.y - me.y
         centres = hypot(dx, dy)
         gap = max(0.0, centres - 2.0 * ROBOT_RADIUS)

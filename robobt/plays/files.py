@@ -11,6 +11,7 @@ from robobt.skills.aim.raters import RATERS, ShotRater
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.restarts.referee_switch import RefereeSwitch
 from robobt.skills.store import Store
+from robobt.skills.tactics.task_switch import TaskSwitch
 from robobt.tree import Behaviour
 from robobt.tree.interop import (
     FILE_ENDINGS,
@@ -22,7 +23,7 @@ from robobt.tree.interop import (
     write_yaml,
 )
 
-VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch, StayOut), {ShotRater: RATERS}, Store)
+VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch, StayOut, TaskSwitch), {ShotRater: RATERS}, Store)
 """What the files of plays may name."""
 
 

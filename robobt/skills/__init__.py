@@ -23,6 +23,7 @@ from robobt.skills.ball.intercept import Intercept as Intercept
 from robobt.skills.ball.kick_to_target import KickToTarget as KickToTarget
 from robobt.skills.ball.learned_skill import LearnedSkill as LearnedSkill
 from robobt.skills.ball.pick_up_ball import PickUpBall as PickUpBall
+from robobt.skills.ball.settle_ball import SettleBall as SettleBall
 from robobt.skills.ball.shoot import Shoot as Shoot
 from robobt.skills.base import SKILLS as SKILLS
 from robobt.skills.base import Skill as Skill
@@ -67,6 +68,10 @@ from robobt.skills.store import Pass as Pass
 from robobt.skills.store import Shot as Shot
 from robobt.skills.store import Store as Store
 from robobt.skills.store import TeamStore as TeamStore
+from robobt.skills.tactics.choose_kick import ChooseKick as ChooseKick
+from robobt.skills.tactics.receive_pass import ReceivePass as ReceivePass
+from robobt.skills.tactics.take_place import TakePlace as TakePlace
+from robobt.skills.tactics.task_switch import TaskSwitch as TaskSwitch
 from robobt.skills.team.best_field_position import BestFieldPosition as BestFieldPosition
 from robobt.skills.team.is_attacker import IsAttacker as IsAttacker
 from robobt.skills.team.mate_aims_at_me import MateAimsAtMe as MateAimsAtMe

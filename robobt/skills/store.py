@@ -4,49 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from robobt.skills.aims import GoalLine as GoalLine
+from robobt.skills.aims import Pass as Pass
+from robobt.skills.aims import Shot as Shot
+from robobt.skills.plan import Plan
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point
 from robobt.world.state import Frame, RobotState
-
-
-@dataclass(slots=True, frozen=True)
-class Shot:
-    """A rated shot: what every shot rater returns.
-
-    Attributes:
-        target: point to aim at, on the opponent's goal line [m].
-        tolerance: half angle around it that still counts as this shot [rad].
-        score: 0 (hopeless) to 1 (as good as in).
-    """
-
-    target: Point
-    tolerance: float
-    score: float
-
-
-@dataclass(slots=True, frozen=True)
-class GoalLine:
-    """The opponent's goal line as a shot rater judges it, small enough to be recorded at every tick.
-
-    Attributes:
-        reach: the outermost points lie this far to either side of the goal's middle, the others
-            evenly between them [m].
-        chances: of every point from right (y < 0) to left the chance of a goal in percent, a
-            byte each, in base64.
-    """
-
-    reach: float
-    chances: str
-
-
-@dataclass(slots=True, frozen=True)
-class Pass:
-    """A chosen pass: the receiver's number, its target [m], ball speed [m/s], score 0 to 1."""
-
-    receiver: int
-    target: Point
-    speed: float
-    score: float
 
 
 @dataclass(slots=True)
@@ -65,6 +29,7 @@ class TeamStore:
         kicker: who took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
         agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
+        plan: what the robots of the play set ``team`` have agreed on.
     """
 
     passer: int | None = None
@@ -78,6 +43,7 @@ class TeamStore:
     kicker: int | None = None
     restart_pending: bool = False
     agreed_on: Frame | None = None
+    plan: Plan = field(default_factory=Plan)
 
 
 @dataclass(slots=True)

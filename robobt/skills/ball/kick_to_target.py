@@ -47,6 +47,8 @@ _CREEP = 0.5
 _TURN_DISTANCE = 1.2
 _FACING = radians(10.0)
 """How far off a robot may look that is still on its way behind the ball."""
+_AHEAD = radians(75.0)
+"""How far off the heading a ball may lie that is taken at once."""
 _REACHABLE = 0.03
 _LEFT_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
@@ -90,6 +92,8 @@ class KickToTarget(DrivingSkill):
             the distance needs.
         tolerance: angle by which the kick may be off [rad]; None is half the
             shot's own tolerance, 1.5 degrees for a pass.
+        pass_tolerance: the same for passes alone [rad]; None is as ``tolerance`` says.
+        take: take a ball that lies close before the robot at once, where it would else go round it.
         max_turn: turning rate with the ball [rad/s].
         limits: how to drive without the ball; None for the robot's own, or
             RoboBulls' in that style.
@@ -109,6 +113,8 @@ class KickToTarget(DrivingSkill):
     style: Literal["default", "robobulls"] = "default"
     kick_speed: float | None = None
     tolerance: float | None = None
+    pass_tolerance: float | None = None
+    take: bool = False
     max_turn: float = 4.0
     goalkeeper: bool = False
     chip: bool = False
@@ -173,6 +179,8 @@ class KickToTarget(DrivingSkill):
             least, most = _SHOT_TOLERANCE
             return self._with(shot.target, min(most, max(least, 0.5 * shot.tolerance)), SHOT_SPEED, None)
         if pass_ is not None:
+            if self.pass_tolerance is not None:
+                return _Order(pass_.target, self.pass_tolerance, pass_.speed, pass_)
             return self._with(pass_.target, _PASS_TOLERANCE, pass_.speed, pass_)
         return None
 
@@ -207,7 +215,8 @@ class KickToTarget(DrivingSkill):
         allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
         at_wall = distance(allowed, behind) > _REACHABLE
         in_line = aside < _ROUND * back and (not near or aside < _IN_MOUTH)
-        if not in_line and (has_ball(me, ball) or (at_wall and near)):
+        close = self.take and near and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _AHEAD
+        if not in_line and (has_ball(me, ball) or (at_wall and near) or close):
             # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
             self.store.command = grab(me, ball, _CREEP, frame.period)
             return
@@ -239,7 +248,7 @@ class KickToTarget(DrivingSkill):
 
     def _kick_if_aimed(self, order: _Order, gap: float) -> bool:
         me, ball = self.me, self.ball
-        if gap > _NEAR:
+        if gap > _NEAR or (order.pass_ is not None and order.pass_.wait > 0.0):
             return False
         sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
         leaving = me.heading + atan2(sideways, order.along)

@@ -44,7 +44,7 @@ def attacker(frame: Frame, team: TeamStore) -> int | None:
     """Return the number of the robot that goes for the ball; None when nobody may."""
     if team.agreed_on is not frame:
         team.agreed_on = frame
-        _follow_restart(frame, team)
+        follow_restart(frame, team)
         team.attacker = _choose_attacker(frame, team)
         team.marks = _choose_marks(frame, team) if team.markers else {}
     return team.attacker
@@ -59,7 +59,7 @@ def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
     return next((robot for robot in frame.opponents if robot.id == opponent), None)
 
 
-def _follow_restart(frame: Frame, team: TeamStore) -> None:
+def follow_restart(frame: Frame, team: TeamStore) -> None:
     """Remember who took the own restart until somebody else has touched the ball."""
     game = frame.game
     if game.penalty is not None:

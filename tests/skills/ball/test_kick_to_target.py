@@ -250,3 +250,31 @@ def test_what_cannot_be_chipped_is_refused() -> None:
         KickToTarget(style="robobulls", chip=True)
     with pytest.raises(ValueError, match="touch_downs"):
         KickToTarget(chip=True, touch_downs=0)
+
+
+def test_a_pass_is_not_kicked_before_its_receiver_is_in_time() -> None:
+    me = robot(contact=True)
+    for wait, kicks in ((0.0, True), (0.4, False)):
+        alone = Alone(KickToTarget())
+        alone.store.pass_ = Pass(2, (3.0, 0.0), 4.0, 1.0, wait)
+        alone.tick(frame(me, held(me)))
+        assert (alone.command.kick_speed > 0.0) is kicks
+
+
+def test_a_pass_may_have_a_tolerance_of_its_own() -> None:
+    me = robot(heading=radians(3.0), contact=True)
+    for tolerance, kicks in ((None, False), (radians(4.0), True)):
+        alone = Alone(KickToTarget(pass_tolerance=tolerance))
+        alone.store.pass_ = pass_to(2, 3.0, 0.0)
+        alone.tick(frame(me, held(me)))
+        assert (alone.command.kick_speed > 0.0) is kicks
+
+
+def test_a_ball_close_before_it_is_taken_rather_than_gone_round() -> None:
+    # The target lies behind the robot, the ball right before its mouth.
+    view = frame(robot(), (0.2, 0.02))
+    for take, drives_on in ((True, True), (False, False)):
+        alone = Alone(KickToTarget(target=(-3.0, 0.0), take=take))
+        alone.tick(view)
+        straight_on = alone.command.vx > 0.3 and abs(alone.command.vy) < 0.1
+        assert straight_on is drives_on

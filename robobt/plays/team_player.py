@@ -1,0 +1,113 @@
+"""A field player of a team that shares out its tasks: attack, passes, support, marking and the wall."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from robobt.plays.base import PLAYS, first_of, when
+from robobt.plays.penalty_kick import penalty_kick
+from robobt.skills.aim.aim_upfield import AimUpfield
+from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
+from robobt.skills.aim.shot_is_open import ShotIsOpen
+from robobt.skills.ball.dribble_to import DribbleTo
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.pick_up_ball import PickUpBall
+from robobt.skills.ball.settle_ball import SettleBall
+from robobt.skills.conditions.carried_far import CarriedFar
+from robobt.skills.conditions.has_ball import HasBall
+from robobt.skills.conditions.may_touch_ball import MayTouchBall
+from robobt.skills.conditions.under_pressure import UnderPressure
+from robobt.skills.defence.stay_out import StayOut
+from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
+from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
+from robobt.skills.restarts.keep_distance import KeepDistance
+from robobt.skills.restarts.place_ball import PlaceBall
+from robobt.skills.restarts.prepare_restart import PrepareRestart
+from robobt.skills.stop import Stop
+from robobt.skills.tactics.choose_kick import ChooseKick
+from robobt.skills.tactics.receive_pass import ReceivePass
+from robobt.skills.tactics.take_place import TakePlace
+from robobt.skills.tactics.task_switch import TaskSwitch
+from robobt.skills.team.best_field_position import BestFieldPosition
+from robobt.tree import Behaviour, Inverter, Sequence
+
+PASS_TOLERANCE = 0.06
+"""Angle by which a pass may be off [rad]."""
+
+
+@PLAYS.register("team_player")
+def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: float = 1.5) -> Behaviour:
+    """Do what the referee wants, else the task that the team agreed on.
+
+    Any number of robots may play it, each the same; the goalkeeper plays ``keeper``. Who attacks,
+    receives, covers the goal, marks or supports is agreed on anew every frame
+    (:mod:`robobt.skills.tactics.agree`).
+
+    Args:
+        shoot_at: chance of a goal for which a shot is taken at once, 0 to 1.
+        pass_at: worth for which a pass is played at once, 0 to 1.
+        patience: time in which what is demanded of both falls to its floor [s].
+    """
+
+    def choose() -> ChooseKick:
+        return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience)
+
+    player = TaskSwitch(
+        "team player",
+        {
+            "halt": Stop(),
+            "take_penalty": first_of(
+                "our penalty",
+                when("wait", Inverter("not yet", MayTouchBall()), PrepareRestart()),
+                penalty_kick(),
+            ),
+            "penalty": GoToPenaltyPosition(),
+            "place_ball": PlaceBall(),
+            "take_restart": take_restart(shoot_at, pass_at),
+            "kickoff": GoToKickoffPosition(),
+            "dead_ball": when("ball is dead", KeepDistance(), TakePlace()),
+            "attack": attack(choose),
+        },
+        otherwise=TakePlace(),
+    )
+    return StayOut("no ball in the areas", player)
+
+
+def attack(choose: Callable[[], ChooseKick]) -> Behaviour:
+    """Get the ball, and shoot, pass or carry it."""
+    return first_of(
+        "attack",
+        when("let go", CarriedFar(limit=0.9), Stop()),
+        ReceivePass(),
+        SettleBall(),
+        when("kick", choose(), kick()),
+        when("pressed", HasBall(), UnderPressure(), AimUpfield(), KickToTarget(kick_speed=3.0)),
+        when(
+            "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
+        ),
+        when("carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6)),
+        when("get the ball", GoToBall(), PickUpBall()),
+    )
+
+
+def kick() -> KickToTarget:
+    """Kick as the team does: quickly, rather than to the last degree."""
+    return KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)
+
+
+def take_restart(shoot_at: float, pass_at: float) -> Behaviour:
+    """Take an own restart."""
+
+    def choose() -> ChooseKick:
+        return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=2.5, floor=0.04, restart=True)
+
+    return first_of(
+        "restart",
+        Sequence(
+            "take it",
+            memory=True,
+            children=[MayTouchBall(), choose(), KickToTarget(pass_tolerance=PASS_TOLERANCE)],
+        ),
+        when("get ready", first_of("where to", choose(), AimUpfield()), PrepareRestart()),
+    )

@@ -1,0 +1,73 @@
+"""What a team has agreed on in one frame: who does what, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from robobt.motion.ball_watch import BallWatch
+from robobt.skills.aims import Pass
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import Frame
+
+
+class Task(StrEnum):
+    """What a field player does."""
+
+    ATTACK = "attack"
+    """Goes for the ball, or has it."""
+    RECEIVE = "receive"
+    """Is to get the pass that the attacker is about to play."""
+    WALL = "wall"
+    """Covers the goal before the own defence area."""
+    MARK = "mark"
+    """Keeps an opponent from getting a pass."""
+    SUPPORT = "support"
+    """Waits where a pass can reach it and is worth something."""
+
+
+@dataclass(slots=True)
+class Plan:
+    """The agreement of one team; made anew every frame out of the last one.
+
+    Attributes:
+        frame: the frame it was made for.
+        players: numbers of the field players that take part.
+        tasks: of every player.
+        places: where each of them is to stand that has no other aim [m].
+        marks: which opponent each marker marks.
+        next_pass: the pass that the attacker is about to play, None without one.
+        next_pass_time: when it was chosen last [s].
+        own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
+        own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`.
+        attacker_since: since when the attacker is the one it is [s].
+        ours: whether the ball counts as the own team's.
+        ours_since: since when [s].
+        ahead: whether the ball counts as in the opponents' half.
+        support: the places chosen for supporters last, the best first [m].
+        support_time: when they were chosen [s].
+        watch: tells whether the ball slides or rolls.
+        rolling: the speed from which on it rolls [m/s].
+    """
+
+    frame: Frame | None = None
+    players: set[int] = field(default_factory=set)
+    tasks: dict[int, Task] = field(default_factory=dict)
+    places: dict[int, Point] = field(default_factory=dict)
+    marks: dict[int, int] = field(default_factory=dict)
+    next_pass: Pass | None = None
+    next_pass_time: float = -1.0
+    own_times: dict[int, float] = field(default_factory=dict)
+    their_times: dict[int, float] = field(default_factory=dict)
+    own_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
+    their_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
+    attacker_since: float = -10.0
+    ours: bool = False
+    ours_since: float = 0.0
+    ahead: bool = False
+    support: list[Point] = field(default_factory=list)
+    support_time: float = -1.0
+    watch: BallWatch = field(default_factory=BallWatch)
+    rolling: float = 0.0

@@ -1,0 +1,1 @@
+"""What the play set ``team`` agrees on: tasks, places, passes and marks."""

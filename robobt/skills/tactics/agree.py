@@ -1,0 +1,201 @@
+"""Agree on who does what, once a frame.
+
+Whoever asks first does it for all. Every choice reads the last one, so that a robot keeps what it
+does until something else is clearly better.
+"""
+
+from __future__ import annotations
+
+from math import hypot, inf
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from robobt.motion.arrival import arrival_time, meetings, movers
+from robobt.skills.plan import Plan, Task
+from robobt.skills.store import TeamStore
+from robobt.skills.tactics.defence import mark_places, wall_places
+from robobt.skills.tactics.support import support_places
+from robobt.skills.team.teamwork import follow_restart
+from robobt.world.game import Restart
+from robobt.world.geometry import Point
+from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
+from robobt.world.state import Frame, RobotState
+
+SWITCH_GAIN = 0.3
+"""Another robot goes for the ball when it can have it so much sooner [s]."""
+
+FRESH_FOR, FRESH_GAIN = 0.6, 0.7
+"""For so long after it has begun the gain has to be larger [s, s]."""
+
+HELD = 0.3
+"""How much sooner a robot counts that has the ball [s]."""
+
+MEANT = 0.4
+"""How much sooner a robot counts that a pass is meant for [s]."""
+
+KEEP_GAIN = 0.8
+"""How much sooner a robot counts at the place of the task that it has [s]."""
+
+OURS_AFTER = 0.5
+"""For how long the ball has to look like the other team's before it counts as theirs, or as ours [s]."""
+
+AHEAD_FROM = 0.6
+"""The ball has to be so far beyond the half-way line to count as in the other half [m]."""
+
+_PASS_LASTS = 3.0
+_INTENT_LASTS = 0.5
+_REACH = 0.06
+_OWN_REACH = 0.12
+_BEHIND_BALL = 0.3
+
+
+def agree(frame: Frame, team: TeamStore) -> Plan:
+    """Bring the team's plan up to this frame, and return it."""
+    plan = team.plan
+    if plan.frame is frame:
+        return plan
+    plan.frame = frame
+    follow_restart(frame, team)
+    players = [robot for robot in frame.own if robot.id in plan.players]
+    _look(frame, plan)
+    _judge_possession(frame, team, plan)
+    before = team.attacker
+    team.attacker = _attacker(frame, team, plan, players)
+    team.agreed_on = frame
+    if team.attacker != before:
+        plan.attacker_since = frame.time
+    if team.attacker != before or frame.time - plan.next_pass_time > _INTENT_LASTS:
+        plan.next_pass = None
+    _share_out(frame, team, plan, players)
+    return plan
+
+
+def pass_under_way(frame: Frame, team: TeamStore) -> bool:
+    """Return whether an own pass still rolls towards its receiver."""
+    if team.receiver is None or not 0.0 <= frame.time - team.pass_time <= _PASS_LASTS:
+        return False
+    if frame.time - team.pass_time < 0.2:
+        return True
+    return frame.ball.speed > 0.4 and owner(frame) is None
+
+
+def _look(frame: Frame, plan: Plan) -> None:
+    ball, field = frame.ball, frame.field
+    plan.rolling = plan.watch.rolling_speed(frame)
+    plan.own_movers, plan.their_movers = movers(frame.own), movers(frame.opponents)
+    state = np.array((ball.x, ball.y, ball.vx, ball.vy))
+    size = (field.half_length, field.half_width)
+    ours = meetings(plan.own_movers, state, plan.rolling, *size)[:, 0].tolist()
+    theirs = meetings(plan.their_movers, state, plan.rolling, *size)[:, 0].tolist()
+    plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
+    plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, theirs, strict=True)}
+
+
+def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
+    holder = owner(frame)
+    if holder is not None:
+        ours = holder.team is frame.team
+    elif pass_under_way(frame, team):
+        ours = True
+    else:
+        own = min((plan.own_times[n] for n in plan.players if n in plan.own_times), default=inf)
+        ours = own < min(plan.their_times.values(), default=inf) + (0.1 if plan.ours else -0.1)
+    if not frame.game.in_play and frame.game.next_team is not None:
+        ours = frame.game.next_team is frame.team
+    if frame.game.restart is not None:
+        ours = frame.game.restart_team is frame.team
+    if ours == plan.ours:
+        plan.ours_since = frame.time
+    elif frame.time - plan.ours_since >= OURS_AFTER:
+        plan.ours, plan.ours_since = ours, frame.time
+
+
+def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> int | None:
+    ball, game, field = frame.ball, frame.game, frame.field
+    if game.penalty is frame.team and game.may_touch and team.attacker is not None:
+        return team.attacker
+    placing = game.restart is Restart.BALL_PLACEMENT
+    if not placing and (
+        in_own_defense_area(field, ball.x, ball.y, _OWN_REACH)
+        or in_their_defense_area(field, ball.x, ball.y, _REACH)
+    ):
+        return None
+    spot = game.placement if not game.in_play and game.placement is not None and not placing else None
+    meant = team.receiver if pass_under_way(frame, team) else None
+    best, least, present = None, inf, inf
+    for robot in players:
+        if robot.id == team.kicker:
+            continue
+        if spot is not None:
+            time = hypot(robot.x - spot[0], robot.y - spot[1]) / 2.0
+        else:
+            time = plan.own_times[robot.id]
+            if has_ball(robot, ball):
+                time = -HELD
+            elif ball.speed < 0.5:
+                time += min(_BEHIND_BALL, max(0.0, robot.x - ball.x))
+            if robot.id == meant:
+                time -= MEANT
+        if robot.id == team.attacker:
+            present = time
+        if time < least:
+            best, least = robot.id, time
+    gain = SWITCH_GAIN if frame.time - plan.attacker_since > FRESH_FOR else FRESH_GAIN
+    return team.attacker if present < least + gain else best
+
+
+def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:
+    """Give everybody but the attacker a task and a place."""
+    if abs(frame.ball.x) > AHEAD_FROM:
+        plan.ahead = frame.ball.x > 0.0
+    tasks: dict[int, Task] = {}
+    if team.attacker is not None:
+        tasks[team.attacker] = Task.ATTACK
+    intended = plan.next_pass
+    if intended is not None and intended.receiver != team.attacker:
+        tasks[intended.receiver] = Task.RECEIVE
+        plan.places[intended.receiver] = intended.target
+    free = [robot for robot in players if robot.id not in tasks]
+    jobs: list[tuple[Task, Point, int | None]] = []
+    if free:
+        walls = wall_size(plan, len(players), len(free))
+        jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls))]
+        left = len(free) - len(jobs)
+        if left and not plan.ours:
+            marks = mark_places(frame, left - 1 if plan.ahead else left)
+            jobs += [(Task.MARK, place, number) for number, place in marks]
+            left = len(free) - len(jobs)
+        if left:
+            jobs += [(Task.SUPPORT, place, None) for place in support_places(frame, team, plan, left)]
+    old_marks, old_tasks = plan.marks, plan.tasks
+    plan.marks = {}
+    if jobs and free:
+        cost = np.empty((len(free), len(jobs)))
+        rows = movers(free)
+        for i, robot in enumerate(free):
+            for j, (task, place, what) in enumerate(jobs):
+                time = arrival_time(rows[i], place[0], place[1], 0.0)
+                if old_tasks.get(robot.id) is task and (
+                    task is not Task.MARK or old_marks.get(robot.id) == what
+                ):
+                    time -= KEEP_GAIN
+                # Crossing over is worse than two short ways: the longest counts most.
+                cost[i, j] = time + 0.15 * time * time
+        rows_taken, jobs_taken = linear_sum_assignment(cost)
+        for row, column in zip(rows_taken.tolist(), jobs_taken.tolist(), strict=True):
+            task, place, what = jobs[column]
+            number = free[row].id
+            tasks[number] = task
+            plan.places[number] = place
+            if task is Task.MARK and what is not None:
+                plan.marks[number] = what
+    plan.tasks = tasks
+
+
+def wall_size(plan: Plan, players: int, free: int) -> int:
+    """Return how many robots cover the goal, of so many players of which so many are free."""
+    most = 1 if players <= 2 else 2 if players <= 6 else 3
+    if plan.ours and plan.ahead:
+        most -= 1
+    return max(0, min(most, free))

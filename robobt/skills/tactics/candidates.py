@@ -1,0 +1,169 @@
+"""The passes that a robot can play, rated."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import cos, hypot, pi, sin
+
+import numpy as np
+
+from robobt.motion.arrival import arrival_time
+from robobt.skills.store import Pass, TeamStore
+from robobt.skills.tactics.chances import WIDEST, point_worth, redirect_angle
+from robobt.skills.tactics.lanes import RECEIVE_SPEED, arrive_chance, flight_time, kick_speed
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+from robobt.world.state import Frame, RobotState
+
+SHORTEST = 1.4
+"""Of a pass [m]."""
+
+LONGEST_WAIT = 1.2
+"""For a receiver that is not there yet [s]."""
+
+REDIRECT_SPEED = 3.2
+"""Of a ball that is to be sent on with one touch, as it arrives [m/s]."""
+
+SHORTEST_REDIRECT = 1.8
+"""Of a pass that is to be sent on with one touch [m]."""
+
+TURNS = 0.2
+"""What a receiver needs to turn to where it sends the ball on [s]."""
+
+_RINGS = ((0.0, 1), (0.35, 6), (0.8, 8))
+_TURN_RATE = 4.0
+
+
+def passes(
+    frame: Frame,
+    team: TeamStore,
+    me: RobotState,
+    last: Pass | None,
+    keep: float,
+    *,
+    least: float = 0.15,
+    most: int = 8,
+) -> list[Pass]:
+    """Return the best passes from where the ball lies, at most ``most``, the best first.
+
+    To every team-mate there are points about it that it can reach before the ball. A pass scores the
+    chance to arrive, which is at least ``least``, times what the ball is worth there; ``last`` counts
+    ``keep`` times.
+    """
+    plan, ball, field = team.plan, frame.ball, frame.field
+    own, opponents = plan.own_movers, plan.their_movers
+    keeper = frame.game.status(frame.team).keeper
+    rows = [
+        (index, mate)
+        for index, mate in enumerate(frame.own)
+        if mate.id != me.id and mate.id != keeper and mate.id in plan.players
+    ]
+    points, owners = [], []
+    offsets = _offsets()
+    for index, mate in rows:
+        bx, by = mate.x + 0.25 * mate.vx, mate.y + 0.25 * mate.vy
+        for dx, dy in offsets:
+            points.append((bx + dx, by + dy))
+            owners.append(index)
+        place = plan.places.get(mate.id)
+        if place is not None and hypot(place[0] - mate.x, place[1] - mate.y) < 2.0:
+            points.append(place)
+            owners.append(index)
+        if last is not None and last.receiver == mate.id:
+            points.append(last.target)
+            owners.append(index)
+    if not points:
+        return []
+    rated = _rate(
+        np.array(points),
+        np.array(owners),
+        ball.x,
+        ball.y,
+        me.heading,
+        own,
+        opponents,
+        np.array(
+            (
+                field.half_length,
+                field.half_width,
+                field.goal_width / 2.0,
+                field.defense_depth,
+                field.defense_width / 2.0,
+                least,
+            )
+        ),
+    )
+    found = []
+    for (score, speed, wait), index, point in zip(rated.tolist(), owners, points, strict=True):
+        if score <= 0.0:
+            continue
+        number = frame.own[index].id
+        if last is not None and last.receiver == number:
+            near = hypot(point[0] - last.target[0], point[1] - last.target[1]) < 0.3
+            score *= keep if near else 0.5 * (1.0 + keep)
+        found.append(Pass(number, point, speed, score, wait))
+    found.sort(key=lambda one: -one.score)
+    return found[:most]
+
+
+@lru_cache(maxsize=1)
+def _offsets() -> list[tuple[float, float]]:
+    return [
+        (radius * cos(2.0 * pi * k / count), radius * sin(2.0 * pi * k / count))
+        for radius, count in _RINGS
+        for k in range(count)
+    ]
+
+
+@compiled
+def _rate(
+    points: FloatArray,
+    owners: FloatArray,
+    ox: float,
+    oy: float,
+    heading: float,
+    own: FloatArray,
+    opponents: FloatArray,
+    size: FloatArray,
+) -> FloatArray:
+    """Rate passes to points (G, 2) of the robots ``owners``: (G, 3), score, kick speed [m/s] and wait [s]."""
+    out = np.zeros((len(points), 3))
+    half_length, half_width, half_goal, depth, half_area = size[0], size[1], size[2], size[3], size[4]
+    for g in range(len(points)):
+        x, y = points[g, 0], points[g, 1]
+        if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
+            continue
+        if abs(x) > half_length - depth - 0.15 and abs(y) < half_area + 0.15:
+            continue
+        length = hypot(x - ox, y - oy)
+        if length < SHORTEST:
+            continue
+        i = owners[g]
+        turn = np.arctan2(y - oy, x - ox) - heading
+        turn = abs((turn + pi) % (2.0 * pi) - pi)
+        delay = 0.1 + turn / _TURN_RATE
+        there = arrival_time(own[i], x, y, 0.1)
+        for arrival in (min(RECEIVE_SPEED, 0.8 + 0.4 * length), REDIRECT_SPEED):
+            ready = there
+            if arrival == REDIRECT_SPEED:
+                if length < SHORTEST_REDIRECT or redirect_angle(ox, oy, x, y, half_length) > WIDEST:
+                    continue
+                ready += TURNS
+            speed = kick_speed(length, arrival)
+            flight = flight_time(length, speed)
+            wait = delay
+            if wait + flight < ready:
+                # The ball waits for the robot.
+                wait = ready - flight
+                if wait > LONGEST_WAIT:
+                    continue
+            chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i)
+            if chance < size[5]:
+                continue
+            worth = point_worth(ox, oy, x, y, wait + flight, opponents, half_length, half_goal)
+            score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
+            if score > out[g, 0]:
+                out[g, 0] = score
+                out[g, 1] = speed
+                out[g, 2] = max(0.0, ready - flight)
+    return out

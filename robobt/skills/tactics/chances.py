@@ -1,0 +1,207 @@
+"""The chance that a shot scores and what the ball is worth somewhere, for many points at once, compiled.
+
+Shots compare where the ball is when with what opponents can reach by then, as the league's teams do.
+The scales were chosen by hand in this simulator; they are no calibrated probabilities.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, pi, sin
+
+import numpy as np
+
+from robobt.skills.tactics.lanes import RECEIVE_SPEED, arrive_chance, flight_time, kick_speed, sigmoid
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+SHOT_SPEED = 6.3
+"""Of a shot [m/s]."""
+
+WIDEST = 1.15
+"""Largest angle between where a ball comes from and where it is kicked at once [rad]."""
+
+_BODY = ROBOT_RADIUS + BALL_RADIUS
+_REACTION = 0.15
+"""Before an opponent moves to a ball that it sees kicked [s]."""
+
+_AIMS = 13
+_INSET = 0.05
+_SPREAD = 0.045
+"""Standard deviation of what decides whether a robot stops a shot [m]."""
+
+_NEAR_GOAL = 2.2
+"""Opponents nearer to their goal's middle keep between it and the ball [m]."""
+
+_KEEPS = 0.75
+"""An opponent nearer to its goal's middle than this keeps it [m]."""
+
+_SEES = 0.12
+"""How long before the kick a goalkeeper begins to move to where a robot aims [s]."""
+
+
+@compiled
+def shot_chance(
+    x: float,
+    y: float,
+    delay: float,
+    opponents: FloatArray,
+    goal_x: float,
+    half_goal: float,
+    best: FloatArray,
+) -> float:
+    """Return the chance that a shot from (x, y) scores that is kicked ``delay`` from now [s].
+
+    Until then opponents near their goal move to between its middle and the ball; from the kick on
+    everybody reaches out for it. ``best`` takes the y on the goal line of the best aim and the
+    half angle that is as good [m, rad].
+    """
+    n = len(opponents)
+    gx, gy = goal_x - x, -y
+    to_goal = hypot(gx, gy)
+    best[0], best[1] = 0.0, 0.0
+    if gx <= 0.05:
+        return 0.0
+    where = np.empty((n, 2))
+    for j in range(n):
+        px, py = opponents[j, 0], opponents[j, 1]
+        if delay > 0.0 and hypot(goal_x - px, py) < _NEAR_GOAL:
+            # Across to the line from the ball to the goal's middle, each on its side of it.
+            across = ((px - x) * gy - (py - y) * gx) / to_goal
+            free = max(0.0, delay - _REACTION)
+            reach = min(0.5 * opponents[j, 5] * 0.7 * free * free, opponents[j, 4] * free)
+            keep = 0.0 if abs(px - goal_x) < 0.7 else 0.1
+            step = min(reach, max(0.0, abs(across) - keep))
+            if across < 0.0:
+                step = -step
+            px -= step * gy / to_goal
+            py += step * gx / to_goal
+        where[j, 0], where[j, 1] = px, py
+    chances = np.empty(_AIMS)
+    top = 0.0
+    for a in range(_AIMS):
+        aim = (half_goal - _INSET) * (2.0 * a / (_AIMS - 1) - 1.0)
+        dx, dy = goal_x - x, aim - y
+        length = hypot(dx, dy)
+        ux, uy = dx / length, dy / length
+        least = (half_goal - abs(aim)) * dx / length
+        for j in range(n):
+            along = (where[j, 0] - x) * ux + (where[j, 1] - y) * uy
+            if along < -_BODY or along > length + _BODY:
+                continue
+            time = min(max(along, 0.0), length) / SHOT_SPEED
+            # It goes on as it moves now, less sure the later.
+            goes = min(time, 0.3) if delay < 0.15 else 0.0
+            px, py = where[j, 0] + goes * opponents[j, 2], where[j, 1] + goes * opponents[j, 3]
+            aside = abs((px - x) * uy - (py - y) * ux)
+            # Goalkeepers see a robot aim.
+            sees = _SEES if hypot(goal_x - px, py) < _KEEPS else 0.0
+            free = max(0.0, time - 0.1 + sees)
+            gap = aside - _BODY - 0.5 * opponents[j, 5] * free * free
+            if gap < least:
+                least = gap
+                if least < -0.3:
+                    break
+        chances[a] = sigmoid((least - 0.01) / (0.5 * _SPREAD))
+        top = max(top, chances[a])
+    low, high = 0, 0
+    longest = 0
+    for a in range(_AIMS):
+        if chances[a] >= 0.85 * top:
+            end = a
+            while end + 1 < _AIMS and chances[end + 1] >= 0.85 * top:
+                end += 1
+            if end - a + 1 > longest:
+                longest, low, high = end - a + 1, a, end
+    at_y = (half_goal - _INSET) * ((low + high) / (_AIMS - 1) - 1.0)
+    wide = (half_goal - _INSET) * 2.0 * (high - low + 1) / (_AIMS - 1)
+    best[0] = at_y
+    best[1] = 0.5 * wide * gx / (to_goal * to_goal)
+    # The kick's own error grows with the way.
+    return top * min(1.0, 1.6 / max(0.5, 0.4 * to_goal + 0.4))
+
+
+@compiled
+def redirect_angle(ox: float, oy: float, x: float, y: float, goal_x: float) -> float:
+    """Return the angle at (x, y) between where a ball from (ox, oy) comes from and the goal [rad]."""
+    turn = atan2(oy - y, ox - x) - atan2(-y, goal_x - x)
+    while turn > pi:
+        turn -= 2.0 * pi
+    while turn < -pi:
+        turn += 2.0 * pi
+    return abs(turn)
+
+
+@compiled
+def aim_of(heading_x: float, heading_y: float, incoming_x: float, incoming_y: float, kick: float) -> float:
+    """Return the heading [rad] from which a ball kicked at once leaves along (heading_x, heading_y).
+
+    A kick sends the ball along the heading and leaves its sideways speed as it was: the one that
+    comes in with (incoming_x, incoming_y) [m/s] is aimed that much to the other side.
+    """
+    wanted = atan2(heading_y, heading_x)
+    heading = wanted
+    for _ in range(20):
+        sideways = cos(heading) * incoming_y - sin(heading) * incoming_x
+        heading = wanted - atan2(sideways, kick)
+    return heading
+
+
+@compiled
+def point_worth(
+    ox: float,
+    oy: float,
+    x: float,
+    y: float,
+    delay: float,
+    opponents: FloatArray,
+    goal_x: float,
+    half_goal: float,
+) -> float:
+    """Return what the ball is worth at (x, y) when it gets there ``delay`` from now out of (ox, oy).
+
+    As a chance of a goal: by a shot at once or after a turn, or by what comes later, the more the
+    nearer to the goal and the freer of opponents it is.
+    """
+    best = np.empty(2)
+    to_goal = hypot(goal_x - x, y)
+    angle = redirect_angle(ox, oy, x, y, goal_x)
+    turn = 0.0 if angle <= WIDEST else 0.25 + 0.15 * angle
+    shot = 0.0
+    if to_goal < 5.5:
+        shot = shot_chance(x, y, delay + turn, opponents, goal_x, half_goal, best)
+        if angle > WIDEST:
+            shot *= 0.7
+    nearest = 10.0
+    for j in range(len(opponents)):
+        nearest = min(nearest, hypot(opponents[j, 0] - x, opponents[j, 1] - y))
+    free = min(1.0, nearest / 1.2)
+    later = free * (0.04 + 0.10 * max(0.0, 1.0 - to_goal / (2.0 * goal_x)))
+    return shot + (1.0 - shot) * later
+
+
+@compiled
+def rate_points(
+    points: FloatArray,
+    ox: float,
+    oy: float,
+    delay: float,
+    opponents: FloatArray,
+    goal_x: float,
+    half_goal: float,
+) -> FloatArray:
+    """Rate passes from (ox, oy) to every point: (G, 3), chance to arrive, worth there, flight time [s].
+
+    ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m].
+    """
+    out = np.empty((len(points), 3))
+    nobody = np.empty((0, 7))
+    for g in range(len(points)):
+        x, y = points[g, 0], points[g, 1]
+        length = hypot(x - ox, y - oy)
+        speed = kick_speed(length, RECEIVE_SPEED)
+        time = flight_time(length, speed)
+        out[g, 0] = arrive_chance(ox, oy, x, y, speed, delay, opponents, nobody, -1)
+        out[g, 1] = point_worth(ox, oy, x, y, delay + time, opponents, goal_x, half_goal)
+        out[g, 2] = time
+    return out

@@ -1,0 +1,152 @@
+"""Decide what to do with the ball: shoot, pass, or neither yet."""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from math import hypot
+
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.base import Skill, skill
+from robobt.skills.rate_limit import RateLimit
+from robobt.skills.store import Pass, Shot
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.candidates import passes
+from robobt.skills.tactics.chances import point_worth
+from robobt.tree import Status
+from robobt.world.rules import has_ball
+
+
+@skill
+class ChooseKick(Skill):
+    """Write the best shot to ``shot`` or the best pass to ``pass_``, and nothing to the other.
+
+    Both are worth the chance of a goal that follows from them. What is demanded falls while the
+    robot has the ball, and an opponent close by ends the waiting. FAILURE while nothing is good enough.
+
+    Args:
+        shoot_at: chance of a goal for which a shot is taken at once, 0 to 1.
+        pass_at: worth for which a pass is played at once, 0 to 1.
+        patience: time in which both fall to their floor [s].
+        floor: share of both that remains.
+        keep: factor on what was chosen last.
+        every: from one look to the next [s].
+        max_distance: no shots from farther than this from the goal [m].
+        model: predictor of a shot's scene: a shipped model or a file.
+        restart: whether the ball lies for an own restart: the time counts from when it may be taken.
+    """
+
+    reads = ("team",)
+    writes = ("team", "shot", "pass_")
+
+    shoot_at: float = 0.55
+    pass_at: float = 0.35
+    patience: float = 1.2
+    floor: float = 0.1
+    keep: float = 1.6
+    every: float = 0.05
+    restart: bool = False
+    max_distance: float = 5.0
+    model: str = "shot_expected_strong"
+    _since: float = field(default=-1.0, init=False)
+    _seen: float = field(default=-10.0, init=False)
+    _had: float = field(default=-10.0, init=False)
+    _shot: Shot | None = field(default=None, init=False)
+    _pass: Pass | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._look = RateLimit(self.every)
+        self._rater = ExpectedGoal(model=self.model, threshold=0.6)
+
+    def on_running(self) -> Status:
+        """Weigh shots and passes."""
+        store, frame, me, ball = self.store, self.frame, self.me, self.ball
+        plan = agree(frame, store.team)
+        has = has_ball(me, ball)
+        if has:
+            self._had = frame.time
+        kept = frame.time - self._had < _KEPT and hypot(ball.x - me.x, ball.y - me.y) < _NEAR
+        if not self.restart and not kept:
+            mine = plan.own_times.get(me.id, 0.0)
+            if ball.speed > _RESTS or mine + _FREE > min(plan.their_times.values(), default=10.0):
+                return self.fail("it does not have the ball")
+        if frame.time - self._seen > _PAUSE:
+            self._shot = self._pass = None
+            self._since = frame.time
+        if self.restart and not frame.game.may_touch:
+            self._since = frame.time
+        self._seen = frame.time
+        if self._look.due(frame.time):
+            self._choose(has)
+        store.shot, store.pass_ = self._shot, self._pass
+        plan.next_pass = self._pass
+        if self._pass is not None:
+            plan.next_pass_time = frame.time
+            if self.restart and self._pass.wait > 0.0:
+                # Who waits at a restart must not touch the ball yet.
+                return self.fail(f"{self._pass.receiver} is not there yet")
+            return self.succeed(f"pass to {self._pass.receiver}, {self._pass.score:.2f}")
+        if self._shot is not None:
+            return self.succeed(f"shot, {self._shot.score:.2f}")
+        return self.fail("nothing good enough")
+
+    def _choose(self, has: bool) -> None:
+        frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
+        old_pass = self._pass
+        self._shot = self._pass = None
+        share = max(self.floor, 1.0 - (frame.time - self._since) / self.patience)
+        pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < _PRESSED for r in frame.opponents)
+        if pressed:
+            share = min(share, 2.0 * self.floor)
+        shot = self._best_shot()
+        field, there = frame.field, team.plan.their_movers
+        goal = (field.half_length, 0.5 * field.goal_width)
+        hold = point_worth(ball.x - 1.0, ball.y, ball.x, ball.y, _HOLDS, there, *goal)
+        enough = min(self.pass_at * share, _BETTER * hold)
+        late = self.restart and frame.time - self._since > self.patience + _LATE
+        candidates = passes(frame, team, me, old_pass, self.keep, least=0.0 if late else 0.15)
+        best = candidates[0] if candidates else None
+        shot_score = 0.0 if shot is None else shot.score
+        pass_score = 0.0 if best is None else best.score
+        if shot_score >= max(self.shoot_at * share, 0.9 * pass_score):
+            self._shot = shot
+        elif best is not None and (pass_score >= enough or late):
+            # Never later than the receiver, unless somebody is about to take the ball away.
+            self._pass = best if best.wait > _IN_TIME and not pressed else replace(best, wait=0.0)
+        elif shot_score >= self.shoot_at * share:
+            self._shot = shot
+
+    def _best_shot(self) -> Shot | None:
+        frame, me, ball, field = self.frame, self.me, self.ball, self.frame.field
+        if hypot(field.half_length - ball.x, ball.y) > self.max_distance:
+            return None
+        shots = self._rater.rate_all(frame, ball.position, me)
+        return shots[0] if shots else None
+
+
+_PAUSE = 0.3
+"""After so long without it, it begins anew [s]."""
+
+_KEPT, _NEAR = 0.25, 0.25
+"""It still has a ball that has left its mouth for no longer [s] and is no farther away than this [m]."""
+
+_RESTS = 0.3
+"""A slower ball may be kicked with a run-up [m/s]."""
+
+_FREE = 0.8
+"""How much later opponents have to be at a ball that it kicks with a run-up [s]."""
+
+_PRESSED = 0.35
+"""An opponent nearer to the ball than this is about to take it [m]."""
+
+_HOLDS = 0.5
+"""What the ball is worth where it is, is what it will be so much later [s]."""
+
+_BETTER = 1.15
+"""How many times that a pass has to be worth to be played at once."""
+
+_IN_TIME = 0.1
+"""A receiver that is so much too late meets the ball a little farther on [s]."""
+
+_LATE = 1.0
+"""So long after its patience is at an end it takes a restart with what there is [s]."""

@@ -1,0 +1,62 @@
+"""Where defenders stand: the wall before the own area, and markers."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from robobt.skills.defence.wall import DefenseEdge
+from robobt.world.geometry import Point
+from robobt.world.rules import owner
+from robobt.world.state import ROBOT_RADIUS, Frame, RobotId, RobotState
+
+MARK_GAP = 0.3
+"""From the marked opponent's centre to the marker's [m]."""
+
+MARK_FROM = 0.8
+"""Opponents are marked up to this x [m]."""
+
+_AREA_GAP = 0.03
+_MATE_GAP = 0.02
+_LEAD = 0.15
+"""The wall looks so far ahead of a rolling ball [s]."""
+
+
+def wall_places(frame: Frame, size: int) -> list[Point]:
+    """Return where a wall of ``size`` robots stands, from left to right as they look out."""
+    if size <= 0:
+        return []
+    ball = frame.ball
+    edge = DefenseEdge(frame.field, ROBOT_RADIUS + _AREA_GAP)
+    width = 2.0 * ROBOT_RADIUS + _MATE_GAP
+    spread = 0.5 * (size - 1) * width
+    middle = edge.towards((ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy))
+    middle = min(edge.length - spread, max(spread, middle))
+    return [edge.point(middle + (place - 0.5 * (size - 1)) * width) for place in range(size)]
+
+
+def threats(frame: Frame) -> list[RobotState]:
+    """Return the opponents without the ball that could score soon, the most dangerous first."""
+    goal_x, goal_y = frame.field.our_goal
+    holder = owner(frame)
+    others = [
+        robot
+        for robot in frame.opponents
+        if robot.x < MARK_FROM
+        and (holder is None or holder != RobotId(frame.team.other, robot.id))
+        and hypot(robot.x - frame.ball.x, robot.y - frame.ball.y) > 0.5
+    ]
+    return sorted(others, key=lambda robot: hypot(robot.x - goal_x, robot.y - goal_y))
+
+
+def mark_places(frame: Frame, most: int) -> list[tuple[int, Point]]:
+    """Return up to ``most`` opponents to mark and where to stand for it: towards ball and own goal."""
+    ball, (goal_x, goal_y) = frame.ball, frame.field.our_goal
+    places = []
+    for robot in threats(frame)[: max(0, most)]:
+        bx, by = ball.x - robot.x, ball.y - robot.y
+        gx, gy = goal_x - robot.x, goal_y - robot.y
+        to_ball, to_goal = hypot(bx, by), hypot(gx, gy)
+        ux, uy = bx / to_ball + 0.7 * gx / to_goal, by / to_ball + 0.7 * gy / to_goal
+        size = max(hypot(ux, uy), 1e-6)
+        places.append((robot.id, (robot.x + MARK_GAP * ux / size, robot.y + MARK_GAP * uy / size)))
+    return places

@@ -1,0 +1,135 @@
+"""The chance that a pass arrives, from when the ball is where and who can be there by then, compiled."""
+
+from __future__ import annotations
+
+from math import exp, hypot, sqrt
+
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+PASS_SPEEDS = (2.0, 5.8)
+"""Slowest and fastest kick of a pass [m/s]."""
+
+RECEIVE_SPEED = 2.2
+"""Of the ball at the receiver [m/s]."""
+
+_BODY = ROBOT_RADIUS + BALL_RADIUS
+_REACTION = 0.15
+"""Before an opponent moves to a ball that it sees kicked [s]."""
+
+_MARGIN = 0.12
+"""Head start of the ball over an opponent that gives a chance of 0.73 [s]."""
+
+_SAMPLES = 8
+_SLIDE = DEFAULT_BALL.slide_deceleration
+_ROLL = DEFAULT_BALL.roll_deceleration
+_SHARE = DEFAULT_BALL.switch_share
+
+
+@compiled
+def kick_speed(length: float, arrival: float) -> float:
+    """Return the kick speed with which a ball has the speed ``arrival`` after ``length`` [m/s, m]."""
+    sliding = sqrt(arrival * arrival + 2.0 * _SLIDE * length)
+    if _SHARE * sliding > arrival:
+        rolled = length + arrival * arrival / (2.0 * _ROLL)
+        shares = (1.0 - _SHARE * _SHARE) / (2.0 * _SLIDE) + _SHARE * _SHARE / (2.0 * _ROLL)
+        sliding = sqrt(rolled / shares)
+    return min(PASS_SPEEDS[1], max(PASS_SPEEDS[0], sliding))
+
+
+@compiled
+def flight_time(length: float, speed: float) -> float:
+    """Return when a ball kicked at ``speed`` has gone ``length`` [s]; 10 where it rests before."""
+    rolling = _SHARE * speed
+    slid = (speed * speed - rolling * rolling) / (2.0 * _SLIDE)
+    if length <= slid:
+        return (speed - sqrt(speed * speed - 2.0 * _SLIDE * length)) / _SLIDE
+    left = rolling * rolling - 2.0 * _ROLL * (length - slid)
+    if left < 0.0:
+        return 10.0
+    return (speed - rolling) / _SLIDE + (rolling - sqrt(left)) / _ROLL
+
+
+@compiled
+def time_to_pass(robot: FloatArray, x: float, y: float) -> float:
+    """Return when a robot, a row of movers, can touch a ball at (x, y), passing at any speed [s]."""
+    px = robot[0] + _REACTION * robot[2]
+    py = robot[1] + _REACTION * robot[3]
+    dx, dy = x - px, y - py
+    gap = hypot(dx, dy)
+    if gap <= _BODY:
+        return 0.0
+    towards = (dx * robot[2] + dy * robot[3]) / gap
+    gap -= _BODY
+    acceleration = robot[5]
+    needed = (sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
+    return float(max(needed, gap / robot[4]) + _REACTION)
+
+
+@compiled
+def lane_margin(
+    ox: float, oy: float, x: float, y: float, speed: float, delay: float, robots: FloatArray
+) -> float:
+    """Return the least head start of a ball over every robot on its way from (ox, oy) to (x, y) [s].
+
+    ``delay`` is the time until the kick [s], in which the robots may move as well.
+    """
+    dx, dy = x - ox, y - oy
+    length = hypot(dx, dy)
+    least = 10.0
+    for k in range(1, _SAMPLES + 1):
+        share = k / _SAMPLES
+        when = delay + flight_time(share * length, speed)
+        px, py = ox + share * dx, oy + share * dy
+        for j in range(len(robots)):
+            margin = time_to_pass(robots[j], px, py) - when
+            if margin < least:
+                least = margin
+    # Between the points nothing may stand in the lane either.
+    for j in range(len(robots)):
+        along = ((robots[j, 0] - ox) * dx + (robots[j, 1] - oy) * dy) / max(length, 1e-6)
+        if 0.0 < along < length:
+            aside = abs((robots[j, 0] - ox) * dy - (robots[j, 1] - oy) * dx) / max(length, 1e-6)
+            if aside < _BODY + 0.03:
+                least = min(least, -0.3)
+    return least
+
+
+@compiled
+def sigmoid(x: float) -> float:
+    """Return the logistic function."""
+    if x < -30.0:
+        return 0.0
+    return 1.0 / (1.0 + exp(-x))
+
+
+@compiled
+def arrive_chance(
+    ox: float,
+    oy: float,
+    x: float,
+    y: float,
+    speed: float,
+    delay: float,
+    opponents: FloatArray,
+    mates: FloatArray,
+    skip: int,
+) -> float:
+    """Return the chance that a pass kicked at ``speed`` after ``delay`` gets from (ox, oy) to (x, y).
+
+    Of ``mates``, which block by standing in the lane, the row ``skip`` is the receiver's.
+    """
+    chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents) / _MARGIN)
+    dx, dy = x - ox, y - oy
+    length = max(hypot(dx, dy), 1e-6)
+    for i in range(len(mates)):
+        if i == skip:
+            continue
+        along = ((mates[i, 0] - ox) * dx + (mates[i, 1] - oy) * dy) / length
+        if _BODY < along < length:
+            aside = abs((mates[i, 0] - ox) * dy - (mates[i, 1] - oy) * dx) / length
+            if aside < _BODY + 0.02:
+                chance *= 0.1
+    return chance

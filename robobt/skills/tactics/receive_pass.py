@@ -1,0 +1,182 @@
+"""Meet a rolling ball: send it on at the goal with one touch where that pays, else take it."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from math import cos, hypot, sin, sqrt
+
+import numpy as np
+
+from robobt.motion.arrival import arrival_time, movers
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.catch import catch
+from robobt.motion.path_planner import travel
+from robobt.skills.ball.intercept import earliest_meeting, meet
+from robobt.skills.base import Skill, skill
+from robobt.skills.store import Shot
+from robobt.skills.tactics.agree import agree, pass_under_way
+from robobt.skills.tactics.chances import aim_of, redirect_angle, shot_chance
+from robobt.tree import Status
+from robobt.world.command import KickTrigger
+from robobt.world.geometry import Point, wrap_angle
+from robobt.world.rules import has_ball, in_own_defense_area
+
+_MOUTH = 0.0965
+"""From the robot's centre to that of a ball before its front [m]."""
+
+_FASTEST = 6.45
+"""Of a ball that leaves, sideways speed included [m/s]."""
+
+_ARMED = 0.7
+"""The kicker waits for a ball nearer than this [m]."""
+
+_CATCH = 0.25
+"""A receiver nearer to the ball's line than this is on it [m]."""
+
+_BOUNCE = 0.05
+"""For so long after it was armed a ball that bounced off is kicked still [s]."""
+
+_FAST = 1.2
+"""A slower ball is not sent on with one touch [m/s]."""
+
+_SOON = 1.5
+"""A ball that takes longer is not yet one to send on with one touch [s]."""
+
+_AREA = 0.3
+"""Nobody gives way to the ball this near to the own defence area [m]."""
+
+_ASTRAY = 0.6
+"""A pass that misses its target by more is met where it comes [m]."""
+
+_PASS_TIME = 3.0
+
+_ON_LINE = 0.5
+"""A receiver nearer to the ball's line than this stays where it is along it [m]."""
+
+
+@skill
+class ReceivePass(Skill):
+    """Meet a rolling ball.
+
+    Where the ball's line allows a shot at the goal with one touch that is good enough, the robot
+    stands so that the ball meets its mouth and goes there; else it faces the ball and takes it.
+    FAILURE while the ball does not roll or the robot has it.
+
+    Args:
+        slowest: ball that still rolls [m/s].
+        widest: largest angle between where the ball comes from and the goal [rad].
+        redirect_at: least chance of a goal of a shot with one touch, 0 to 1.
+    """
+
+    reads = ("team",)
+    writes = ("team", "shot")
+
+    slowest: float = 0.5
+    widest: float = 1.15
+    redirect_at: float = 0.15
+    _redirecting: bool = field(default=False, init=False)
+    _armed: float = field(default=0.0, init=False)
+    _armed_at: float = field(default=-1.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._best = np.zeros(2)
+
+    def on_start(self) -> None:
+        """Begin without a decision."""
+        self._redirecting = False
+        self._armed = 0.0
+
+    def on_running(self) -> Status:
+        """Drive one tick."""
+        frame, me, ball, store = self.frame, self.me, self.ball, self.store
+        speed = ball.speed
+        if speed < self.slowest and not has_ball(me, ball):
+            return self.fail("the ball does not roll")
+        if self._armed > 0.0 and 0.0 < frame.time - self._armed_at < _BOUNCE and has_ball(me, ball):
+            # It has bounced off before the kicker saw it: kick it now.
+            store.command.kick_speed = self._armed
+            store.command.kick_trigger = KickTrigger.ON_CONTACT
+            return self.run("sending it on")
+        if has_ball(me, ball):
+            return self.fail("it has the ball")
+        plan = agree(frame, store.team)
+        rolling = plan.rolling
+        limits = self.drive_limits
+        ux, uy = ball.vx / speed, ball.vy / speed
+        dx, dy = me.x - ball.x, me.y - ball.y
+        ahead = dx * ux + dy * uy
+        aside = abs(dx * uy - dy * ux)
+        if ahead < -0.05:
+            return self.fail("the ball has passed")
+        (x, y), _ = earliest_meeting(frame, me, limits, rolling)
+        planned = self._planned(ux, uy, speed, rolling)
+        if planned is not None:
+            x, y = planned
+        elif aside < _ON_LINE and ahead > 0.1:
+            # On the line already: here, unless an opponent would be there before.
+            place = max(ahead - _MOUTH, 0.0)
+            time = DEFAULT_BALL.time_for(place, speed, rolling)
+            first = min(plan.their_times.values(), default=10.0)
+            if time < first - 0.1:
+                x, y = ball.x + place * ux, ball.y + place * uy
+        way = hypot(x - ball.x, y - ball.y)
+        time = min(3.0, DEFAULT_BALL.time_for(way, speed, rolling))
+        heading = self._redirect(x, y, time, speed, ux, uy)
+        if heading is None:
+            if ahead > _MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
+                store.command = catch(me, ball, limits, frame.period)
+            else:
+                store.command = meet(frame, me, limits, rolling)
+            return self.run("taking the ball")
+        place_at = (x - _MOUTH * cos(heading), y - _MOUTH * sin(heading))
+        order = travel(frame, me, place_at, heading, limits)
+        gap = hypot(dx, dy)
+        if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
+            v = max(0.0, speed - 0.3 * min(time, 0.3))
+            sideways = (cos(me.heading) * uy - sin(me.heading) * ux) * v
+            order.kick_speed = min(6.3, sqrt(max(1.0, _FASTEST * _FASTEST - sideways * sideways)))
+            order.kick_trigger = KickTrigger.ON_CONTACT
+            self._armed, self._armed_at = order.kick_speed, frame.time
+        store.command = order
+        return self.run("sending it on")
+
+    def _planned(self, ux: float, uy: float, speed: float, rolling: float) -> Point | None:
+        """Return where on the ball's line a pass to this robot was to be received, if that is in time."""
+        frame, team, ball = self.frame, self.store.team, self.ball
+        target = team.pass_target
+        if team.receiver != self.me.id or target is None or not pass_under_way(frame, team):
+            return None
+        way = (target[0] - ball.x) * ux + (target[1] - ball.y) * uy
+        if way < 0.15:
+            return None
+        x, y = ball.x + way * ux, ball.y + way * uy
+        time = DEFAULT_BALL.time_for(way, speed, rolling)
+        if hypot(x - target[0], y - target[1]) > _ASTRAY or time > _PASS_TIME:
+            return None
+        row = movers((self.me,))[0]
+        return (x, y) if arrival_time(row, x, y, 0.15) <= time + 0.1 else None
+
+    def _redirect(self, x: float, y: float, time: float, speed: float, ux: float, uy: float) -> float | None:
+        """Return the heading from which the ball goes at the goal with one touch; None where it is taken."""
+        store, frame = self.store, self.frame
+        plan = store.team.plan
+        field = frame.field
+        there = plan.their_movers
+        angle = redirect_angle(x - ux, y - uy, x, y, field.half_length)
+        first = min(plan.their_times.values(), default=10.0)
+        if speed < _FAST or time > _SOON or first < time:
+            self._redirecting = False
+            return None
+        if angle > self.widest + (0.1 if self._redirecting else 0.0):
+            self._redirecting = False
+            return None
+        chance = shot_chance(x, y, time, there, field.half_length, 0.5 * field.goal_width, self._best)
+        if chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
+            self._redirecting = False
+            return None
+        self._redirecting = True
+        target: Point = (field.half_length, float(self._best[0]))
+        store.shot = Shot(target, max(0.01, float(self._best[1])), chance)
+        v = max(0.3, speed - 0.5 * time)
+        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v, 6.2)

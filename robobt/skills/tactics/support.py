@@ -1,0 +1,96 @@
+"""Where supporters wait: where a pass arrives and is worth most, apart from each other."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from robobt.skills.plan import Plan
+from robobt.skills.store import TeamStore
+from robobt.skills.tactics.chances import rate_points
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
+from robobt.world.state import Frame
+
+EVERY = 0.25
+"""From one look to the next [s]."""
+
+APART = 1.6
+"""Supporters keep so far from each other and from the ball [m]."""
+
+STAY = 1.25
+"""How much better another place has to be than the one before."""
+
+_ROLLS = 1.0
+"""A pass under way is faster [m/s]."""
+
+_SPACING = 0.5
+_EDGE = 0.3
+
+
+def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> list[Point]:
+    """Return ``count`` places for supporters, the best first."""
+    if len(plan.support) >= count and 0.0 <= frame.time - plan.support_time < EVERY:
+        return plan.support[:count]
+    plan.support_time = frame.time
+    grid = support_grid(frame.field)
+    old = list(plan.support)
+    points = np.concatenate([grid, np.array(old).reshape(-1, 2)])
+    origin = _origin(frame, team)
+    field = frame.field
+    rated = rate_points(
+        points, origin[0], origin[1], 0.4, plan.their_movers, field.half_length, field.goal_width / 2.0
+    )
+    value = rated[:, 0] * rated[:, 1]
+    # Where no pass gets to now it may in a moment.
+    value += 0.15 * rated[:, 1]
+    value[len(grid) :] *= STAY
+    gap = np.hypot(points[:, 0] - origin[0], points[:, 1] - origin[1])
+    value *= np.clip(gap / APART, 0.0, 1.0) ** 2 * np.clip(1.0 - (gap - 4.0) / 5.0, 0.3, 1.0)
+    intended = plan.next_pass
+    taken: list[Point] = [] if intended is None else [intended.target]
+    for place in taken:
+        _spread(value, points, place)
+    chosen: list[Point] = []
+    for _ in range(count):
+        best = int(value.argmax())
+        place = (float(points[best, 0]), float(points[best, 1]))
+        chosen.append(place)
+        _spread(value, points, place)
+    plan.support = chosen
+    return chosen
+
+
+def _spread(value: FloatArray, points: FloatArray, place: Point) -> None:
+    gap = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1])
+    value *= np.clip(gap / APART, 0.0, 1.0) ** 2
+
+
+def _origin(frame: Frame, team: TeamStore) -> Point:
+    """Return where the next pass will come from: the target of the one under way, else the ball."""
+    target = team.pass_target
+    if target is not None and team.attacker == team.receiver and frame.ball.speed > _ROLLS:
+        return target
+    if not frame.game.in_play and frame.game.placement is not None:
+        return frame.game.placement
+    return frame.ball.position
+
+
+@lru_cache(maxsize=8)
+def support_grid(field: FieldGeometry) -> FloatArray:
+    """Return the points that a supporter may stand at, (G, 2) [m]."""
+    rows = int((field.half_length - _EDGE) / _SPACING)
+    columns = int((field.half_width - _EDGE) / _SPACING)
+    points = [
+        (x * _SPACING, y * _SPACING)
+        for x in range(-rows // 2, rows + 1)
+        for y in range(-columns, columns + 1)
+    ]
+    kept = [
+        point
+        for point in points
+        if not in_their_defense_area(field, *point, 0.25) and not in_own_defense_area(field, *point, 0.4)
+    ]
+    return np.array(kept)

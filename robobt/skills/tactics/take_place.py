@@ -1,0 +1,26 @@
+"""Drive to the place that the team's plan gives this robot."""
+
+from __future__ import annotations
+
+from robobt.motion.give_way import give_way
+from robobt.skills.base import Skill, skill
+from robobt.skills.tactics.agree import agree
+from robobt.tree import Status
+
+
+@skill
+class TakePlace(Skill):
+    """Drive to the place in the team's plan, facing the ball. FAILURE without one; never ends by itself."""
+
+    reads = ("team",)
+    writes = ("team",)
+
+    def on_running(self) -> Status:
+        """Drive to the place for one tick."""
+        frame = self.frame
+        place = agree(frame, self.store.team).places.get(self.me.id)
+        if place is None:
+            return self.fail("no place")
+        self.drive_to(place, frame.ball.position, avoid_ball=True, thereabouts=True)
+        self.store.command = give_way(frame, self.me, self.store.command, mates=True)
+        return self.run(f"to ({place[0]:.1f}, {place[1]:.1f})")

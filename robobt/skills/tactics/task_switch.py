@@ -1,0 +1,90 @@
+"""Composite: one child for each part that a robot of the team can have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from math import inf
+
+from robobt.skills.plan import Task
+from robobt.skills.store import Store
+from robobt.skills.tactics.agree import agree
+from robobt.tree import Behaviour
+from robobt.tree.leaf import Bound
+from robobt.tree.nodes import Switch
+from robobt.world.game import Restart
+
+
+class Part(StrEnum):
+    """What a field player has to do by the rules, or else by its team's plan."""
+
+    HALT = "halt"
+    """Stand still."""
+    TAKE_PENALTY = "take_penalty"
+    """Take the own penalty kick."""
+    PENALTY = "penalty"
+    """Stay behind while somebody else takes a penalty kick."""
+    PLACE_BALL = "place_ball"
+    """Bring the ball to the referee's spot."""
+    TAKE_RESTART = "take_restart"
+    """Take the own kick-off or free kick, and prepare for it."""
+    KICKOFF = "kickoff"
+    """Line up for a kick-off that another robot takes."""
+    DEAD_BALL = "dead_ball"
+    """Keep the distance, in any other pause."""
+    ATTACK = "attack"
+    RECEIVE = "receive"
+    WALL = "wall"
+    MARK = "mark"
+    SUPPORT = "support"
+
+
+class TaskSwitch(Switch, Bound[Store]):
+    """Ticks the child for this robot's present :class:`Part`, and only that one.
+
+    What the referee wants comes first; in play it is the task that the team agreed on. The robot takes
+    part in the agreement from its first tick on.
+
+    Args:
+        cases: a child for each part by its name; one child may serve several parts.
+        otherwise: the child for every other part.
+
+    Raises:
+        ValueError: a case does not name a part; the message lists those there are.
+    """
+
+    def __init__(
+        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
+    ) -> None:
+        for case in cases:
+            if case not in _NAMES:
+                raise ValueError(f"{case!r} is no part; there are {', '.join(_NAMES)}")
+        super().__init__(name, cases, otherwise=otherwise)
+
+    def case(self) -> str:
+        """Return the robot's present part."""
+        store = self.store
+        frame, team, number = store.frame, store.team, store.me.id
+        if number not in team.plan.players:
+            team.plan.players.add(number)
+            team.attackers[number] = inf
+            team.plan.frame = None
+        task = agree(frame, team).tasks.get(number, Task.SUPPORT)
+        game = frame.game
+        if game.in_play and game.penalty is None:
+            return task.value
+        if game.halted:
+            return Part.HALT.value
+        ours = game.restart_team is frame.team
+        first = task is Task.ATTACK
+        if game.penalty is not None or game.restart is Restart.PENALTY:
+            taking = first and (ours or game.penalty is frame.team)
+            return Part.TAKE_PENALTY.value if taking else Part.PENALTY.value
+        if game.restart is not None and ours and first:
+            placing = game.restart is Restart.BALL_PLACEMENT
+            return Part.PLACE_BALL.value if placing else Part.TAKE_RESTART.value
+        lining_up = game.restart is Restart.KICKOFF and not (task is Task.RECEIVE and game.may_touch)
+        return Part.KICKOFF.value if lining_up else Part.DEAD_BALL.value
+
+
+_NAMES = [each.value for each in Part]

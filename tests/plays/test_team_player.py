@@ -1,0 +1,59 @@
+"""A team that shares out its tasks, in the simulator."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from robobt.match import load_scenario
+from robobt.match.loop import Match
+from robobt.skills.plan import Task
+from robobt.world import Team
+from robobt.worlds import sim_world
+
+pytestmark = pytest.mark.integration
+
+SECONDS = 25.0
+
+
+class Watched:
+    """What was seen in the beginning of a match against the baseline."""
+
+    def __init__(self) -> None:
+        self.failures: set[str] = set()
+        self.tasks: Counter[Task] = Counter()
+        self.attackers: list[int] = []
+        self.kicks = 0
+        scenario = load_scenario("team_v_baseline").lasting(SECONDS)
+        with Match(scenario, 4, sim_world) as match:
+            mine = [player for player in match.players if player.robot.team is Team.BLUE]
+            team = mine[0].store.team
+            while match.tick():
+                self.failures |= {player.problem for player in mine if player.problem}
+                self.kicks += sum(robot.team is Team.BLUE for robot in match.world.kicks)
+                if mine[0].store.frame.game.in_play:
+                    self.tasks.update(team.plan.tasks.values())
+                    self.attackers.append(list(team.plan.tasks.values()).count(Task.ATTACK))
+
+
+@pytest.fixture(scope="module")
+def watched() -> Watched:
+    return Watched()
+
+
+def test_no_tree_fails(watched: Watched) -> None:
+    assert not watched.failures
+
+
+def test_never_do_two_go_for_the_ball(watched: Watched) -> None:
+    assert max(watched.attackers) == 1
+
+
+def test_there_is_always_somebody_back_and_somebody_to_pass_to(watched: Watched) -> None:
+    assert watched.tasks[Task.WALL] > 0
+    assert watched.tasks[Task.SUPPORT] > 0
+
+
+def test_it_plays_the_ball(watched: Watched) -> None:
+    assert watched.kicks >= 3

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from robobt.skills import SettleBall
+from robobt.tree import Status
+from tests.skills.fixed_world import Alone, frame, held, robot
+
+
+def fast() -> tuple[float, ...]:
+    return (*held(robot()), 2.0, 0.0)
+
+
+ME = robot(velocity=(2.0, 0.0, 0.0), contact=True)
+
+
+def test_it_brakes_with_the_dribbler_on_while_the_ball_is_fast() -> None:
+    alone = Alone(SettleBall())
+    assert alone.tick(frame(ME, fast())) is Status.RUNNING
+    assert alone.command.vx < 2.0
+    assert alone.command.dribbler
+
+
+def test_it_is_done_once_the_ball_is_slow_and_stays_done() -> None:
+    alone = Alone(SettleBall())
+    alone.tick(frame(ME, fast()))
+    assert alone.tick(frame(ME, (*held(ME), 0.3, 0.0), time=0.1)) is Status.FAILURE
+    # What it does with the ball now may be fast.
+    assert alone.tick(frame(ME, fast(), time=0.2)) is Status.FAILURE
+
+
+def test_a_ball_that_was_lost_is_settled_anew() -> None:
+    alone = Alone(SettleBall())
+    alone.tick(frame(ME, (*held(ME), 0.3, 0.0)))
+    assert alone.tick(frame(robot(), (1.0, 0.0), time=0.1)) is Status.FAILURE
+    assert alone.tick(frame(ME, fast(), time=0.6)) is Status.RUNNING

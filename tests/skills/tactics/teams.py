@@ -1,0 +1,44 @@
+"""Teams whose robots share out their tasks, on hand-made frames."""
+
+from __future__ import annotations
+
+from robobt.skills.plan import Plan
+from robobt.skills.store import TeamStore
+from robobt.skills.tactics.agree import agree
+from robobt.world import GameState, RobotState
+from tests.skills.fixed_world import frame, robot
+from tests.skills.refereed import OPEN
+
+SIX = (
+    robot(-4.3, 0.0, number=0),
+    robot(-3.2, 0.3, number=1),
+    robot(-3.2, -0.3, number=2),
+    robot(-0.7, 0.0, number=3),
+    robot(0.6, 1.4, number=4),
+    robot(1.0, -1.5, number=5),
+)
+THEIRS = (
+    robot(4.3, 0.0, number=0),
+    robot(3.3, 0.2, number=1),
+    robot(3.3, -0.2, number=2),
+    robot(-2.5, 1.5, number=3),
+    robot(-2.0, -1.5, number=4),
+)
+
+
+class Agreement:
+    """A team that agrees frame by frame; robot 0 keeps the goal."""
+
+    def __init__(self) -> None:
+        self.team = TeamStore()
+        self.team.plan.players.update(range(1, 6))
+
+    def at(
+        self,
+        time: float,
+        ball: tuple[float, ...] = (0.0, 0.0),
+        own: tuple[RobotState, ...] = SIX,
+        theirs: tuple[RobotState, ...] = THEIRS,
+        game: GameState = OPEN,
+    ) -> Plan:
+        return agree(frame(own[0], ball, own[1:], theirs, time, game), self.team)

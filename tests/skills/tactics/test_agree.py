@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from robobt.skills.aims import Pass
+from robobt.skills.plan import Task
+from robobt.world import Team
+from robobt.world.geometry import distance
+from tests.skills.fixed_world import held, robot
+from tests.skills.refereed import free_kick
+from tests.skills.tactics.teams import SIX, THEIRS, Agreement
+
+
+def test_every_field_player_has_a_task_and_one_of_them_attacks() -> None:
+    plan = Agreement().at(0.0)
+    assert set(plan.tasks) == {1, 2, 3, 4, 5}
+    assert [number for number, task in plan.tasks.items() if task is Task.ATTACK] == [3]
+    assert all(number in plan.places for number, task in plan.tasks.items() if task is not Task.ATTACK)
+
+
+def test_who_can_have_a_rolling_ball_first_attacks_not_who_is_nearest() -> None:
+    agreement = Agreement()
+    agreement.at(0.0, (-0.3, 0.2, 3.0, 3.0))
+    assert agreement.team.attacker == 4
+
+
+def test_the_attacker_changes_only_for_a_clear_gain() -> None:
+    agreement = Agreement()
+    agreement.at(0.0, (-0.2, 0.0))
+    assert agreement.team.attacker == 3
+    agreement.at(1.0, (0.05, 0.6))
+    assert agreement.team.attacker == 3
+    agreement.at(2.0, (0.7, 1.3))
+    assert agreement.team.attacker == 4
+
+
+def test_a_pass_under_way_belongs_to_its_receiver() -> None:
+    agreement = Agreement()
+    team = agreement.team
+    team.receiver, team.pass_target, team.pass_time = 5, (1.0, -1.5), 0.0
+    agreement.at(0.3, (0.0, 0.0, 1.2, -1.7))
+    assert team.attacker == 5
+
+
+def test_who_took_a_restart_leaves_the_ball_to_the_others() -> None:
+    agreement = Agreement()
+    agreement.at(0.0)
+    agreement.team.kicker = 3
+    agreement.at(0.1, (0.1, 0.0))
+    assert agreement.team.attacker != 3
+
+
+@pytest.mark.parametrize("ball", [(-4.0, 0.5), (4.0, -0.5)])
+def test_nobody_attacks_a_ball_in_a_defence_area(ball: tuple[float, float]) -> None:
+    agreement = Agreement()
+    plan = agreement.at(0.0, ball)
+    assert agreement.team.attacker is None
+    assert Task.ATTACK not in plan.tasks.values()
+
+
+def test_the_receiver_of_the_next_pass_is_sent_to_its_target() -> None:
+    agreement = Agreement()
+    plan = agreement.at(0.0)
+    plan.next_pass, plan.next_pass_time = Pass(4, (2.0, 1.0), 4.0, 0.5), 0.0
+    plan = agreement.at(1 / 60)
+    assert plan.tasks[4] is Task.RECEIVE
+    assert plan.places[4] == (2.0, 1.0)
+
+
+def test_a_pass_that_nobody_means_any_more_is_forgotten() -> None:
+    agreement = Agreement()
+    plan = agreement.at(0.0)
+    plan.next_pass, plan.next_pass_time = Pass(4, (2.0, 1.0), 4.0, 0.5), 0.0
+    plan = agreement.at(1.0)
+    assert Task.RECEIVE not in plan.tasks.values()
+
+
+def test_without_the_ball_it_defends_and_with_it_it_supports() -> None:
+    holder = robot(-1.0, 1.0, number=3, contact=True)
+    theirs = (*THEIRS[:3], holder, THEIRS[4])
+    agreement = Agreement()
+    for step in range(60):
+        plan = agreement.at(step / 60, held(holder), theirs=theirs)
+    tasks = list(plan.tasks.values())
+    assert tasks.count(Task.WALL) == 2
+    assert Task.MARK in tasks
+    assert plan.marks
+    own = tuple(replace(it, ball_contact=it.id == 5) for it in SIX)
+    for step in range(60, 120):
+        plan = agreement.at(step / 60, held(own[5]), own=own, theirs=THEIRS[:3])
+    tasks = list(plan.tasks.values())
+    assert tasks.count(Task.SUPPORT) >= 3
+    assert Task.MARK not in tasks
+
+
+def test_supporters_stand_apart() -> None:
+    own = tuple(replace(it, ball_contact=it.id == 5) for it in SIX)
+    agreement = Agreement()
+    for step in range(40):
+        plan = agreement.at(step / 60, held(own[5]), own=own)
+    places = [plan.places[number] for number, task in plan.tasks.items() if task is Task.SUPPORT]
+    assert min(distance(a, b) for i, a in enumerate(places) for b in places[:i]) > 0.7
+
+
+def test_tasks_stay_while_nothing_changes() -> None:
+    agreement = Agreement()
+    seen = set()
+    for step in range(120):
+        plan = agreement.at(step / 60, (0.4, 0.4))
+        if step > 40:
+            seen.add(tuple(sorted(plan.tasks.items())))
+    assert len(seen) == 1
+
+
+def test_a_robot_that_has_left_has_no_task() -> None:
+    agreement = Agreement()
+    agreement.at(0.0)
+    plan = agreement.at(0.1, own=SIX[:4])
+    assert set(plan.tasks) == {1, 2, 3}
+
+
+def test_an_own_free_kick_counts_as_the_own_ball() -> None:
+    agreement = Agreement()
+    for step in range(60):
+        plan = agreement.at(step / 60, (2.0, 2.0), game=free_kick(Team.BLUE, (2.0, 2.0)))
+    assert plan.ours
+    for step in range(60, 120):
+        plan = agreement.at(step / 60, (2.0, 2.0), game=free_kick(Team.YELLOW, (2.0, 2.0)))
+    assert not plan.ours

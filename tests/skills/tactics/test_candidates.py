@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import pytest
+
+from robobt.skills.aims import Pass
+from robobt.skills.store import TeamStore
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.candidates import SHORTEST, passes
+from robobt.world import DIVISION_B, RobotState
+from robobt.world.geometry import Point, distance
+from robobt.world.rules import in_their_defense_area
+from tests.skills.fixed_world import frame, held, robot
+from tests.skills.refereed import OPEN
+
+ME = robot(-1.0, 0.0, number=1, contact=True)
+MATE = robot(0.5, 1.5, number=4)
+
+
+def found(
+    mates: tuple[RobotState, ...] = (MATE,),
+    theirs: tuple[RobotState, ...] = (),
+    places: dict[int, Point] | None = None,
+    last: Pass | None = None,
+    least: float = 0.15,
+) -> list[Pass]:
+    team = TeamStore()
+    team.plan.players.update((1, *(mate.id for mate in mates)))
+    view = frame(ME, held(ME), mates, theirs, game=OPEN)
+    agree(view, team)
+    team.plan.places.update(places or {})
+    return passes(view, team, ME, last, 1.5, least=least, most=100)
+
+
+def test_there_are_passes_to_points_about_every_mate_the_best_first() -> None:
+    rated = found((MATE, robot(1.0, -1.5, number=5)))
+    assert {one.receiver for one in rated} == {4, 5}
+    assert [one.score for one in rated] == sorted((one.score for one in rated), reverse=True)
+
+
+def test_no_pass_is_too_short_out_of_the_field_or_into_a_defence_area() -> None:
+    rated = found((robot(4.0, 1.4, number=4), robot(-0.2, 2.9, number=5), robot(-0.5, 0.3, number=6)))
+    ball = held(ME)
+    for one in rated:
+        assert distance(ball, one.target) >= SHORTEST
+        assert DIVISION_B.contains(*one.target)
+        assert not in_their_defense_area(DIVISION_B, *one.target)
+
+
+def test_who_does_not_share_out_tasks_gets_no_pass() -> None:
+    assert not found(())
+
+
+def test_the_ball_waits_for_a_receiver_that_has_a_long_way() -> None:
+    far = (-1.3, 1.6)
+    there = next(one for one in found(places={4: far}) if one.target == far)
+    assert there.wait > 0.1
+    here = next(one for one in found() if one.target == MATE.position)
+    assert here.wait == 0.0
+
+
+def test_the_last_pass_counts_more() -> None:
+    last = found()[3]
+    again = next(one for one in found(last=last) if one.target == last.target)
+    assert again.score == pytest.approx(1.5 * last.score)
+
+
+def test_a_hopeless_pass_is_left_out_unless_there_has_to_be_one() -> None:
+    wall = tuple(robot(-0.6, 0.35 + 0.05 * i, number=i) for i in range(4))
+    assert len(found(theirs=wall, least=0.0)) > len(found(theirs=wall))

@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+from math import atan2, cos, hypot, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robobt.motion.arrival import movers
+from robobt.skills.tactics.chances import aim_of, point_worth, redirect_angle, shot_chance
+from robobt.world.geometry import FloatArray, wrap_angle
+from tests.skills.fixed_world import robot
+
+GOAL = (4.5, 0.5)
+NOBODY = np.empty((0, 7))
+
+
+def chance(x: float, y: float, opponents: FloatArray = NOBODY, delay: float = 0.0) -> float:
+    return shot_chance(x, y, delay, opponents, *GOAL, np.empty(2))
+
+
+def test_an_open_goal_is_as_good_as_scored_from_nearby() -> None:
+    assert chance(3.0, 0.3) > 0.9
+
+
+def test_it_falls_with_the_distance_and_is_nil_behind_the_goal_line() -> None:
+    assert chance(3.0, 0.0) > chance(1.0, 0.0) > chance(-2.0, 0.0) > 0.0
+    assert chance(4.6, 0.0) == 0.0
+
+
+def test_a_goalkeeper_close_by_leaves_nothing() -> None:
+    assert chance(3.5, 0.0, movers([robot(3.7, 0.06), robot(3.7, -0.06)])) < 0.1
+
+
+def test_the_aim_avoids_the_goalkeeper() -> None:
+    best = np.empty(2)
+    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.3)]), *GOAL, best)
+    assert best[0] < -0.1
+    assert best[1] > 0.0
+
+
+def test_a_goalkeeper_on_its_way_is_aimed_behind() -> None:
+    best = np.empty(2)
+    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.0, velocity=(0.0, 1.5, 0.0))]), *GOAL, best)
+    assert best[0] < 0.0
+
+
+def test_with_time_the_defenders_get_between() -> None:
+    aside = movers([robot(4.2, -0.6), robot(3.4, -0.9)])
+    assert chance(2.5, 1.0, aside) > chance(2.5, 1.0, aside, delay=1.0)
+
+
+@given(st.floats(-1.0, 4.0), st.floats(-2.5, 2.5), st.floats(2.0, 4.4), st.floats(-1.0, 1.0))
+@settings(deadline=None)
+def test_left_and_right_are_alike(x: float, y: float, ox: float, oy: float) -> None:
+    left = chance(x, y, movers([robot(ox, oy)]))
+    assert chance(x, -y, movers([robot(ox, -oy)])) == pytest.approx(left, abs=1e-9)
+    assert 0.0 <= left <= 1.0
+
+
+def test_the_angle_of_a_redirect_lies_between_where_it_comes_from_and_the_goal() -> None:
+    assert redirect_angle(3.5, 0.0, 2.5, 0.0, 4.5) == pytest.approx(0.0)
+    assert redirect_angle(2.5, -2.0, 2.5, 0.0, 4.5) == pytest.approx(pi / 2)
+
+
+@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-1.0, 1.0))
+@settings(deadline=None)
+def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, wanted: float) -> None:
+    heading = aim_of(cos(wanted), sin(wanted), vx, vy, 6.0)
+    sideways = cos(heading) * vy - sin(heading) * vx
+    leaves = heading + atan2(sideways, 6.0)
+    assert abs(wrap_angle(leaves - wanted)) < 0.01
+
+
+def test_the_ball_is_worth_more_near_the_goal_and_away_from_opponents() -> None:
+    def worth(x: float, y: float, opponents: FloatArray = NOBODY) -> float:
+        return point_worth(0.0, -2.0, x, y, 0.8, opponents, *GOAL)
+
+    assert worth(2.5, 0.5) > worth(0.5, 0.5) > worth(-3.0, 0.5) > 0.0
+    near = movers([robot(-2.8, 0.6)])
+    assert worth(-3.0, 0.5, near) < worth(-3.0, 0.5)
+    assert hypot(worth(2.5, 0.5), 0.0) <= 1.0

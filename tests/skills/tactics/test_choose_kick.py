@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.choose_kick import ChooseKick
+from robobt.tree import Status
+from robobt.world import GameState, RobotState, Team
+from robobt.world.geometry import segment_distance
+from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.refereed import OPEN, free_kick
+
+KEEPER = robot(4.2, 0.0, number=0)
+
+
+class Chooser:
+    """Robot 1 with the ball; its team-mates take part in the plan."""
+
+    def __init__(self, skill: ChooseKick, mates: tuple[RobotState, ...] = ()) -> None:
+        self.alone, self.mates = Alone(skill), mates
+        self.alone.store.team.plan.players.update((1, *(mate.id for mate in mates)))
+
+    def at(
+        self,
+        time: float,
+        me: RobotState,
+        theirs: tuple[RobotState, ...] = (KEEPER,),
+        game: GameState = OPEN,
+        ball: tuple[float, ...] | None = None,
+    ) -> Status:
+        view = frame(me, ball or held(me), self.mates, theirs, time, game)
+        agree(view, self.alone.store.team)
+        return self.alone.tick(view, 1)
+
+
+ME = robot(3.2, 0.9, -0.5, number=1, contact=True)
+
+
+@pytest.mark.integration
+def test_a_good_shot_is_taken_at_once() -> None:
+    chooser = Chooser(ChooseKick())
+    assert chooser.at(0.0, ME, ()) is Status.SUCCESS
+    shot = chooser.alone.store.shot
+    assert shot is not None
+    assert shot.target[0] == 4.5
+    assert abs(shot.target[1]) < 0.5
+    assert chooser.alone.store.pass_ is None
+
+
+def test_far_from_the_goal_it_passes_forward_and_tells_the_team() -> None:
+    mate = robot(1.5, 1.5, number=4)
+    chooser = Chooser(ChooseKick(), (mate,))
+    assert chooser.at(0.0, robot(-1.5, 0.0, 0.5, number=1, contact=True)) is Status.SUCCESS
+    store = chooser.alone.store
+    assert store.pass_ is not None
+    assert store.pass_.receiver == 4
+    assert store.team.plan.next_pass == store.pass_
+    assert store.shot is None
+
+
+def test_nobody_is_passed_to_through_an_opponent() -> None:
+    mate = robot(1.5, 0.0, number=4)
+    chooser = Chooser(ChooseKick(), (mate,))
+    me = robot(-1.5, 0.0, number=1, contact=True)
+    opponent = robot(-0.5, 0.0, number=3)
+    chooser.at(0.0, me, (KEEPER, opponent))
+    chosen = chooser.alone.store.pass_
+    assert chosen is None or segment_distance(opponent.position, held(me), chosen.target) > 0.13
+
+
+def test_without_the_ball_there_is_nothing_to_choose() -> None:
+    chooser = Chooser(ChooseKick(), (robot(1.5, 1.5, number=4),))
+    me = robot(-1.5, 0.0, number=1)
+    near = robot(-0.8, 0.0, number=3)
+    assert chooser.at(0.0, me, (KEEPER, near), ball=(-1.0, 0.0)) is Status.FAILURE
+
+
+def test_a_restart_is_taken_in_the_end_whatever_there_is() -> None:
+    spot = (-1.0, 2.0)
+    mate = robot(-3.0, -2.0, number=4)
+    walls = tuple(robot(-1.2 - 0.1 * i, 1.4 - 0.2 * i, number=i) for i in range(4))
+    chooser = Chooser(ChooseKick(restart=True, patience=1.0, floor=0.04), (mate,))
+    me = robot(-1.2, 2.2, number=1)
+    game = free_kick(Team.BLUE, spot)
+    waiting = replace(game, may_touch=False)
+    chooser.at(0.0, me, walls, waiting, spot)
+    status = Status.FAILURE
+    for step in range(300):
+        status = chooser.at(1.0 + step / 60, me, walls, game, spot)
+        if status is Status.SUCCESS:
+            break
+    assert status is Status.SUCCESS

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robobt.motion.arrival import movers
+from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.skills.tactics.lanes import PASS_SPEEDS, arrive_chance, flight_time, kick_speed, lane_margin
+from tests.skills.fixed_world import robot
+
+NOBODY = np.empty((0, 7))
+
+
+@given(st.floats(0.5, 7.0), st.floats(0.5, 4.0))
+@settings(deadline=None)
+def test_kick_and_flight_are_those_of_the_ball_model(length: float, arrival: float) -> None:
+    least, most = PASS_SPEEDS
+    speed = kick_speed(length, arrival)
+    assert speed == pytest.approx(min(most, max(least, DEFAULT_BALL.kick_speed(length, arrival))))
+    assert flight_time(length, speed) == pytest.approx(min(10.0, DEFAULT_BALL.time_to(length, speed)))
+
+
+def chance(opponent: tuple[float, float], speed: float = 4.0, delay: float = 0.0) -> float:
+    return arrive_chance(0.0, 0.0, 3.0, 0.0, speed, delay, movers([robot(*opponent)]), NOBODY, -1)
+
+
+def test_a_lane_without_opponents_is_safe() -> None:
+    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, NOBODY, -1) > 0.99
+    assert chance((-2.0, 2.0)) > 0.95
+
+
+def test_an_opponent_in_the_lane_stops_the_pass() -> None:
+    assert chance((1.5, 0.05)) < 0.1
+
+
+def test_the_nearer_an_opponent_is_to_the_lane_the_worse() -> None:
+    chances = [chance((1.5, y)) for y in (0.2, 0.5, 1.0, 2.0)]
+    assert chances == sorted(chances)
+
+
+def test_a_faster_ball_and_an_earlier_kick_are_safer() -> None:
+    assert chance((2.0, 0.6), speed=5.5) > chance((2.0, 0.6), speed=3.0)
+    assert chance((2.0, 0.6)) > chance((2.0, 0.6), delay=0.3)
+
+
+def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
+    mates = movers([robot(1.5, 0.0)])
+    blocked = arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, -1)
+    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, 0) > 5.0 * blocked
+
+
+@given(st.floats(0.3, 2.7), st.floats(-2.0, 2.0))
+@settings(deadline=None)
+def test_both_sides_of_a_lane_are_alike(x: float, y: float) -> None:
+    left, right = (lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)])) for side in (y, -y))
+    assert left == pytest.approx(right)

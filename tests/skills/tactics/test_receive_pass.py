@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from math import atan2, cos, hypot, pi, sin
+
+import numpy as np
+import pytest
+
+from robobt.skills.tactics.receive_pass import ReceivePass
+from robobt.tree import Status
+from robobt.world.rules import has_ball
+from tests.simulation import Trial, blue
+from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.refereed import OPEN
+
+
+def test_it_needs_a_ball_that_rolls_towards_it() -> None:
+    alone = Alone(ReceivePass())
+    assert alone.tick(frame(robot(), (1.0, 0.0), game=OPEN)) is Status.FAILURE
+    assert alone.tick(frame(robot(), (1.0, 0.0, 2.0, 0.0), game=OPEN)) is Status.FAILURE
+    assert alone.tick(frame(robot(), (1.0, 0.0, -2.0, 0.0), game=OPEN)) is Status.RUNNING
+
+
+def test_with_the_ball_it_is_done() -> None:
+    me = robot(contact=True)
+    assert Alone(ReceivePass()).tick(frame(me, held(me), game=OPEN)) is Status.FAILURE
+
+
+@pytest.mark.parametrize("y", [-0.2, 0.0, 0.3])
+def test_a_ball_that_comes_from_the_front_is_taken(y: float) -> None:
+    # It comes out of the direction of the own goal: too far round for a shot with one touch.
+    trial = Trial({blue(1): ReceivePass()}, {blue(1): (0.0, y, pi)}, (-2.5, 0.0, 2.4, 0.0))
+    while trial.world.time < 3.0:
+        view = trial.tick()
+        me = view.robot(1)
+        assert me is not None
+        if has_ball(me, view.ball):
+            return
+    raise AssertionError("the ball was not taken")
+
+
+def drill(seed: int) -> bool:
+    """A ball rolls to a robot before the goal; whether it goes on at the goal with one touch."""
+    rng = np.random.default_rng(seed)
+    while True:
+        x, y = rng.uniform(1.5, 3.0), rng.uniform(-1.8, 1.8)
+        angle = rng.uniform(-0.9, 0.9) + atan2(-y, 4.5 - x)
+        length = rng.uniform(1.8, 2.8)
+        px, py = x + length * cos(angle), y + length * sin(angle)
+        if abs(px) < 4.3 and abs(py) < 2.8 and not (px > 3.3 and abs(py) < 1.2):
+            break
+    speed = rng.uniform(2.0, 2.8)
+    ball = (px, py, speed * (x - px) / length, speed * (y - py) / length)
+    off, way = rng.uniform(0.0, 0.2), rng.uniform(-pi, pi)
+    pose = (x + off * cos(way), y + off * sin(way), atan2(py - y, px - x))
+    trial = Trial({blue(1): ReceivePass(redirect_at=0.0)}, {blue(1): pose}, ball)
+    while trial.world.time < 2.5:
+        view = trial.tick()
+        if trial.kicks and view.ball.vx > 0.5:
+            at = view.ball.y + (4.5 - view.ball.x) * view.ball.vy / view.ball.vx
+            return abs(at) < 0.5 and hypot(view.ball.vx, view.ball.vy) > 4.0
+    return False
+
+
+@pytest.mark.integration
+def test_a_pass_before_the_goal_goes_on_at_the_goal_with_one_touch() -> None:
+    assert sum(drill(seed) for seed in range(20)) >= 15
