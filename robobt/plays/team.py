@@ -89,9 +89,9 @@ def field_player(
     """
     shooting = Shooting(rater, min_score, shot_distance)
     return StayOut(
-        "stay out",
+        "field player",
         first_of(
-            "field player",
+            "by the rules",
             when("halted", IsHalted(), Stop()),
             take_penalty(farthest),
             place_ball(farthest),
@@ -129,9 +129,9 @@ def defender(
     """
     shooting = Shooting(rater, min_score, shot_distance)
     return StayOut(
-        "stay out",
+        "defender",
         first_of(
-            "defender",
+            "by the rules",
             when("halted", IsHalted(), Stop()),
             take_penalty(farthest),
             place_ball(farthest),

@@ -54,7 +54,7 @@ def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: floa
         return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience)
 
     player = TaskSwitch(
-        "team player",
+        "part",
         {
             "halt": Stop(),
             "take_penalty": first_of(
@@ -71,7 +71,7 @@ def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: floa
         },
         otherwise=TakePlace(),
     )
-    return StayOut("no ball in the areas", player)
+    return StayOut("team player", player)
 
 
 def attack(choose: Callable[[], ChooseKick]) -> Behaviour:

@@ -210,9 +210,7 @@ class TestMatch:
         broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
         scenario.write_text(write_yaml(broken))
         said = complaint("match", scenario, "--on-error", "raise")
-        assert said.startswith(
-            f"robobt: {scenario}: trial 0: TreeError: blue 0: Scripted: RuntimeError: broken"
-        )
+        assert said.startswith(f"robobt: {scenario}: trial 0: blue 0: Scripted: RuntimeError: broken")
 
     def test_nodes_can_follow_a_script(self, scenario: Path):
         substitute = ["--substitute", "blue 0:Scripted=RUNNING"]
