@@ -76,6 +76,8 @@ def read_event(message: GameEvent, epoch: float, now: float) -> RefereeEvent | N
         return None
     values = _fields(getattr(message, kind.value), epoch)
     team, place = values.pop("by_team", None), values.pop("location", None)
+    # A dribble has no location of its own: what follows is where it began.
+    place = values.get("start") if place is None else place
     x, y = place if isinstance(place, tuple) else (0.0, 0.0)
     number = next((values.pop(name) for name in _OFFENDER if name in values), None)
     robot = None

@@ -56,6 +56,17 @@ def test_details_come_back_by_their_names(kind: EventKind, details: dict[str, De
     assert event.details == details
 
 
+def test_a_dribble_is_where_it_began() -> None:
+    start, end = (1.0, -0.5), (2.5, 0.0)
+    event = there_and_back(
+        RefereeEvent(
+            1.0, EventKind.BOT_DRIBBLED_BALL_TOO_FAR, Team.BLUE, details={"start": start, "end": end}
+        )
+    )
+    assert event is not None
+    assert (event.x, event.y) == start
+
+
 def test_a_moment_is_told_in_the_controllers_time() -> None:
     goal = RefereeEvent(20.0, EventKind.POSSIBLE_GOAL, Team.YELLOW, details={"last_touch_by_team": 18.25})
     message = write_event(goal, EPOCH, "me")
