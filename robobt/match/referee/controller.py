@@ -96,7 +96,7 @@ class Controller:
         state.record(event)
         if kind is EventKind.PLACEMENT_SUCCEEDED:
             if state.game.command in _PLACING and state.placing.team is team:
-                state.placing.succeed()
+                state.placing.succeed(state.following)
                 state.wait()
         elif kind is EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA and team is not None:
             self._too_close(team, event)

@@ -30,7 +30,7 @@ class Placing:
 
     Attributes:
         team: who places the ball now, None while nobody does.
-        done: whether a team has placed the ball in this stoppage.
+        done: whether the team that goes on has placed the ball in this stoppage, which needs no more time.
         by_hand: whether a hand puts the ball down in this stoppage.
         deadline: when the placing team's time is over [s].
     """
@@ -79,12 +79,12 @@ class Placing:
         self._interfered.clear()
         return team
 
-    def succeed(self) -> None:
-        """Note that the ball lies where it has to."""
+    def succeed(self, following: Resumption) -> None:
+        """Note that the ball lies where it has to; who takes the restart too is ready for it at once."""
         if self.team is not None:
             record = self._records[self.team]
             record.failures = max(0, record.failures - 1)
-        self.team, self.done = None, True
+        self.team, self.done = None, self.team is following.team
 
     def fail(self, frame: Frame, following: Resumption) -> tuple[RefereeEvent, Resumption]:
         """Note that the placing team's time is over; return the event, and how play goes on now."""

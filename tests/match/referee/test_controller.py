@@ -270,6 +270,12 @@ def test_after_a_success_the_kick_may_be_taken_at_once() -> None:
     assert match.game.may_touch
 
 
+def test_where_the_other_team_has_placed_the_ball_the_kicker_gets_two_seconds() -> None:
+    match = placing().until(C.BALL_PLACEMENT_BLUE, 31.0).lie(1.0, 2.8).happens(K.PLACEMENT_SUCCEEDED, BLUE)
+    assert match.wait(1.9).game.command is C.STOP
+    match.until(C.DIRECT_FREE_YELLOW, 0.3)
+
+
 def test_a_team_that_fails_is_followed_by_the_other_and_by_a_hand() -> None:
     match = placing().wait(29.9)
     assert K.PLACEMENT_FAILED not in match.kinds
