@@ -53,7 +53,7 @@ class OfficialReferee:
         self, setup: MatchSetup, start: Callable[[Mapping[str, object]], GameControllerProcess]
     ) -> None:
         self._setup, self._start = setup, start
-        self._automatic = AutomaticReferee(setup.field, setup.settings)
+        self._automatic = AutomaticReferee(setup.field, setup.settings, CONTROLLER_SEES)
         self._people = People(setup.field, setup.settings)
         self._follower = RefereeFollower()
         self._process: GameControllerProcess | None = None
@@ -73,11 +73,7 @@ class OfficialReferee:
             self._controller = LockstepController(self._process.stream)
         controller = self._controller
         seen = self._automatic.watch(frame, self._follower.game)
-        self._reports += [
-            game_event(write_event(event, EPOCH, ORIGIN))
-            for event in seen
-            if event.kind not in CONTROLLER_SEES
-        ]
+        self._reports += [game_event(write_event(event, EPOCH, ORIGIN)) for event in seen]
         events: list[RefereeEvent] = []
         try:
             if begins:

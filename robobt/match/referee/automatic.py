@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from robobt.match.referee.events import EventKind, RefereeEvent
+from robobt.match.referee.events import RefereeEvent
 from robobt.match.referee.rules.ball_handling import BallSpeed, DoubleTouch, Dribbling
 from robobt.match.referee.rules.ball_left import BallLeft
 from robobt.match.referee.rules.base import Rule
@@ -21,10 +21,8 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Team
 from robobt.world.state import Frame
 
-CONTROLLER_SEES = frozenset(
-    {EventKind.KEEPER_HELD_BALL, EventKind.NO_PROGRESS_IN_GAME, EventKind.TOO_MANY_ROBOTS}
-)
-"""What the league's game controller finds by itself in the tracked frames that it is sent."""
+CONTROLLER_SEES: tuple[type[Rule], ...] = (KeeperHeld, NoProgress, TooManyRobots)
+"""What the league's game controller looks for itself in the tracked frames that it is sent."""
 
 
 class AutomaticReferee:
@@ -36,12 +34,18 @@ class AutomaticReferee:
     Args:
         field: the field, which tells the division.
         settings: what it looks for; the rules' own by default.
+        but: rules that somebody else looks after.
     """
 
-    def __init__(self, field: FieldGeometry, settings: RefereeSettings | None = None) -> None:
+    def __init__(
+        self,
+        field: FieldGeometry,
+        settings: RefereeSettings | None = None,
+        but: tuple[type[Rule], ...] = (),
+    ) -> None:
         settings = settings or RefereeSettings()
         self.scene = Scene(field, settings)
-        rules = list(rules_of(division_of(field), settings))
+        rules = [rule for rule in rules_of(division_of(field), settings) if not isinstance(rule, but)]
         self._rules = {phase: [rule for rule in rules if phase in rule.phases] for phase in Phase}
 
     def watch(self, frame: Frame, game: GameState) -> Sequence[RefereeEvent]:
