@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +36,9 @@ DECIDED = {K.GOAL, K.INVALID_GOAL, K.PLACEMENT_FAILED, K.MULTIPLE_FOULS, K.MULTI
 
 LATE = 0.5
 """The official controller looks at the match every 0.1 to 0.4 s [s]."""
+
+CARD_SLACK = 5.0
+"""A card that was over too soon is given so much more time [s]."""
 
 STOPS = {
     K.BALL_LEFT_FIELD_GOAL_LINE,
@@ -111,7 +114,7 @@ class Beside:
             told.events.update(f"{event.kind} {who}" for event in events if event.kind in DECIDED)
         told.events.update(str(event.kind) for event in given)
         self._lately = [one for one in self._lately if frame.time - one[0] < 3.0]
-        self._lately += [(frame.time, event.kind) for event in decision.events]
+        self._lately += [(frame.time, event.kind) for event in (*decision.events, *ours.events)]
         theirs = decision.game
         if theirs.stage_time is not None and self.own.state.stages.length is not None:
             # Both clocks show the same, whatever was decided before.
@@ -147,6 +150,8 @@ class Beside:
             theirs.upcoming is not None and theirs.upcoming.name.startswith("PREPARE_KICKOFF")
         ):
             return "a goal leads to a HALT and 10 s of STOP there, to a STOP here"
+        if seen(replace(ours, blue=theirs.blue, yellow=theirs.yellow)) == seen(theirs):
+            return "play is stopped for some 0.1 s less a restart here, so that cards are over sooner"
         places = set(PLACE.values())
         if (
             ours.command in places
@@ -174,7 +179,12 @@ class Beside:
         state.stages.stage = game.stage
         state.placing.begin(state.following)
         for side, score in ((Team.BLUE, game.blue_score), (Team.YELLOW, game.yellow_score)):
-            state.records[side].score = score
+            record, most = state.records[side], game.status(side).max_robots
+            record.score = score
+            while most is not None and record.max_robots > most:
+                record.yellow.append(CARD_SLACK)
+            while most is not None and record.yellow and record.max_robots < most:
+                record.yellow.remove(min(record.yellow))
         if game.command in PLACE.values() and game.restart_team is not None:
             state.placing.order(game.restart_team, frame.time)
             state.give(game.command, state.placing.deadline)
