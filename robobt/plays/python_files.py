@@ -7,6 +7,7 @@ import traceback
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+from zlib import crc32
 
 from robobt.config.errors import ConfigError
 from robobt.plays.base import PLAYS
@@ -53,7 +54,7 @@ def imported_files() -> tuple[Path, ...]:
 
 
 def _run(path: Path, source: bytes, shown: str) -> ModuleType:
-    spec = spec_from_file_location(_free_name(path), path)
+    spec = spec_from_file_location(_own_name(path), path)
     assert spec is not None
     module = module_from_spec(spec)
     # Behind all else, so that a file called like an installed module does not take its place.
@@ -71,15 +72,9 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
     return module
 
 
-def _free_name(path: Path) -> str:
-    """Return a name that no installed module has; the same in a process that runs the same files."""
-    stem = path.stem.replace(".", "_")
-    name = f"file_{stem}"
-    number = 1
-    while name in sys.modules:
-        number += 1
-        name = f"file_{stem}_{number}"
-    return name
+def _own_name(path: Path) -> str:
+    """Return a name that no installed module has; the same in every process that runs this file."""
+    return f"file_{path.stem.replace('.', '_')}_{crc32(bytes(path)):08x}"
 
 
 def _problem(error: BaseException, path: Path, shown: str) -> PythonFileError:
