@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
 from typing import Literal
 
@@ -103,7 +103,8 @@ class KickToTarget(DrivingSkill):
         touch_downs: at which of a chip's touch-downs it is to be at the target.
 
     Raises:
-        ValueError: no such style, a chip in RoboBulls' or fewer than one touch-down.
+        ValueError: no such style, a chip in RoboBulls', fewer than one touch-down, or a kick speed or
+            tolerance that is not positive.
     """
 
     reads = ("shot", "pass_")
@@ -130,6 +131,10 @@ class KickToTarget(DrivingSkill):
             raise ValueError("RoboBulls' style has no chip; leave style at 'default'")
         if self.touch_downs < 1:
             raise ValueError(f"touch_downs must be at least 1, not {self.touch_downs}")
+        for setting in ("kick_speed", "tolerance", "pass_tolerance"):
+            value = getattr(self, setting)
+            if value is not None and not value > 0.0:
+                raise ValueError(f"{setting} must be positive, not {value}")
         self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
         self._robobulls: RobobullsKick | None = None
         if self.style == "robobulls":
@@ -179,9 +184,8 @@ class KickToTarget(DrivingSkill):
             least, most = _SHOT_TOLERANCE
             return self._with(shot.target, min(most, max(least, 0.5 * shot.tolerance)), SHOT_SPEED, None)
         if pass_ is not None:
-            if self.pass_tolerance is not None:
-                return _Order(pass_.target, self.pass_tolerance, pass_.speed, pass_)
-            return self._with(pass_.target, _PASS_TOLERANCE, pass_.speed, pass_)
+            order = self._with(pass_.target, _PASS_TOLERANCE, pass_.speed, pass_)
+            return order if self.pass_tolerance is None else replace(order, tolerance=self.pass_tolerance)
         return None
 
     def _with(self, target: Point, tolerance: float, speed: float, pass_: Pass | None) -> _Order:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from math import atan2, cos, degrees, hypot, pi, radians, sin
+from math import atan2, cos, degrees, hypot, nan, pi, radians, sin
 
 import pytest
 
@@ -278,3 +278,24 @@ def test_a_ball_close_before_it_is_taken_rather_than_gone_round() -> None:
         alone.tick(view)
         straight_on = alone.command.vx > 0.3 and abs(alone.command.vy) < 0.1
         assert straight_on is drives_on
+
+
+def test_a_pass_with_a_tolerance_of_its_own_is_kicked_and_chipped_as_told() -> None:
+    me = robot(contact=True)
+    for kick, speed, angle in (
+        (KickToTarget(pass_tolerance=0.06, kick_speed=2.5), 2.5, 0.0),
+        (KickToTarget(pass_tolerance=0.06, chip=True, kick_speed=4.5), 4.5, CHIP_ANGLE),
+    ):
+        alone = Alone(kick)
+        alone.store.pass_ = pass_to(2, 3.0, 0.0)
+        alone.tick(frame(me, held(me)))
+        assert (alone.command.kick_speed, alone.command.kick_angle) == (speed, angle)
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [("kick_speed", 0.0), ("kick_speed", nan), ("tolerance", -0.1), ("pass_tolerance", 0.0)],
+)
+def test_a_speed_or_tolerance_that_is_not_positive_is_refused(setting: str, value: float) -> None:
+    with pytest.raises(ValueError, match=setting):
+        KickToTarget(**{setting: value})  # type: ignore[arg-type]
