@@ -113,7 +113,7 @@ def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
 
 def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> int | None:
     ball, game, field = frame.ball, frame.game, frame.field
-    if game.penalty is frame.team and game.may_touch and team.attacker is not None:
+    if game.penalty is frame.team and game.may_touch and team.attacker in plan.own_times:
         return team.attacker
     placing = game.restart is Restart.BALL_PLACEMENT
     if not placing and (

@@ -9,7 +9,7 @@ from robobt.skills.plan import Task
 from robobt.world import Team
 from robobt.world.geometry import distance
 from tests.skills.fixed_world import held, robot
-from tests.skills.refereed import free_kick
+from tests.skills.refereed import free_kick, penalty, penalty_in_play
 from tests.skills.tactics.teams import SIX, THEIRS, Agreement
 
 
@@ -129,3 +129,12 @@ def test_an_own_free_kick_counts_as_the_own_ball() -> None:
     for step in range(60, 120):
         plan = agreement.at(step / 60, (2.0, 2.0), game=free_kick(Team.YELLOW, (2.0, 2.0)))
     assert not plan.ours
+
+
+def test_a_penalty_kick_whose_taker_has_left_the_field_is_taken_by_another() -> None:
+    agreement, spot = Agreement(), (0.0, 0.0)
+    taker = agreement.at(0.0, spot, game=penalty(Team.BLUE, spot))
+    assert taker.tasks[3] is Task.ATTACK
+    left = tuple(each for each in SIX if each.id != 3)
+    plan = agreement.at(0.1, spot, left, game=penalty_in_play(Team.BLUE))
+    assert Task.ATTACK in [plan.tasks[each.id] for each in left[1:]]
