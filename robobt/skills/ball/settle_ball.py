@@ -21,6 +21,9 @@ class SettleBall(Skill):
         slow: speed of the ball at which it is settled [m/s].
         pause: so long after the robot had the ball it takes it anew [s].
         share: share of what the dribbler bears.
+
+    Raises:
+        ValueError: ``slow`` or ``pause`` is negative, or ``share`` is not above 0 and at most 1.
     """
 
     slow: float = 0.6
@@ -28,6 +31,14 @@ class SettleBall(Skill):
     share: float = 0.85
     _settled: bool = field(default=False, init=False)
     _had: float = field(default=-10.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for setting in ("slow", "pause"):
+            if not getattr(self, setting) >= 0.0:
+                raise ValueError(f"{setting} must be 0 or more, not {getattr(self, setting)}")
+        if not 0.0 < self.share <= 1.0:
+            raise ValueError(f"share must be above 0 and at most 1, not {self.share}")
 
     def on_running(self) -> Status:
         """Brake for one tick."""

@@ -33,6 +33,10 @@ class ChooseKick(Skill):
         max_distance: no shots from farther than this from the goal [m].
         model: predictor of a shot's scene: a shipped model or a file.
         restart: whether the ball lies for an own restart: the time counts from when it may be taken.
+
+    Raises:
+        ValueError: a chance, worth or share is not 0 to 1, ``patience`` is not positive, or ``keep``,
+            ``every`` or ``max_distance`` is negative.
     """
 
     reads = ("team",)
@@ -55,6 +59,14 @@ class ChooseKick(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        for setting in ("shoot_at", "pass_at", "floor"):
+            if not 0.0 <= getattr(self, setting) <= 1.0:
+                raise ValueError(f"{setting} must be 0 to 1, not {getattr(self, setting)}")
+        if not self.patience > 0.0:
+            raise ValueError(f"patience must be positive, not {self.patience}")
+        for setting in ("keep", "max_distance"):
+            if not getattr(self, setting) >= 0.0:
+                raise ValueError(f"{setting} must be 0 or more, not {getattr(self, setting)}")
         self._look = RateLimit(self.every)
         self._rater = ExpectedGoal(model=self.model, threshold=0.6)
 

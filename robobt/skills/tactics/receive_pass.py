@@ -9,7 +9,7 @@ import numpy as np
 
 from robobt.motion.arrival import arrival_time, movers
 from robobt.motion.ball_model import DEFAULT_BALL
-from robobt.motion.catch import catch
+from robobt.motion.catch import MOUTH, catch
 from robobt.motion.path_planner import travel
 from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.skills.base import Skill, skill
@@ -20,9 +20,6 @@ from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.rules import has_ball, in_own_defense_area
-
-_MOUTH = 0.0965
-"""From the robot's centre to that of a ball before its front [m]."""
 
 _FASTEST = 6.45
 """Of a ball that leaves, sideways speed included [m/s]."""
@@ -66,6 +63,9 @@ class ReceivePass(Skill):
         slowest: ball that still rolls [m/s].
         widest: largest angle between where the ball comes from and the goal [rad].
         redirect_at: least chance of a goal of a shot with one touch, 0 to 1.
+
+    Raises:
+        ValueError: ``slowest`` is not positive, ``widest`` is negative, or ``redirect_at`` is not 0 to 1.
     """
 
     reads = ("team",)
@@ -80,6 +80,12 @@ class ReceivePass(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not self.slowest > 0.0:
+            raise ValueError(f"slowest must be positive, not {self.slowest}")
+        if not self.widest >= 0.0:
+            raise ValueError(f"widest must be 0 or more, not {self.widest}")
+        if not 0.0 <= self.redirect_at <= 1.0:
+            raise ValueError(f"redirect_at must be 0 to 1, not {self.redirect_at}")
         self._best = np.zeros(2)
 
     def on_start(self) -> None:
@@ -115,7 +121,7 @@ class ReceivePass(Skill):
             x, y = planned
         elif aside < _ON_LINE and ahead > 0.1:
             # On the line already: here, unless an opponent would be there before.
-            place = max(ahead - _MOUTH, 0.0)
+            place = max(ahead - MOUTH, 0.0)
             time = DEFAULT_BALL.time_for(place, speed, rolling)
             first = min(plan.their_times.values(), default=10.0)
             if time < first - 0.1:
@@ -124,12 +130,12 @@ class ReceivePass(Skill):
         time = min(3.0, DEFAULT_BALL.time_for(way, speed, rolling))
         heading = self._redirect(x, y, time, speed, ux, uy)
         if heading is None:
-            if ahead > _MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
+            if ahead > MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
                 store.command = catch(me, ball, limits, frame.period)
             else:
                 store.command = meet(frame, me, limits, rolling)
             return self.run("taking the ball")
-        place_at = (x - _MOUTH * cos(heading), y - _MOUTH * sin(heading))
+        place_at = (x - MOUTH * cos(heading), y - MOUTH * sin(heading))
         order = travel(frame, me, place_at, heading, limits)
         gap = hypot(dx, dy)
         if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:

@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+from math import nan
+
+import pytest
+
 from robobt.skills import SettleBall
 from robobt.tree import Status
 from tests.skills.fixed_world import Alone, frame, held, robot
@@ -32,3 +36,11 @@ def test_a_ball_that_was_lost_is_settled_anew() -> None:
     alone.tick(frame(ME, (*held(ME), 0.3, 0.0)))
     assert alone.tick(frame(robot(), (1.0, 0.0), time=0.1)) is Status.FAILURE
     assert alone.tick(frame(ME, fast(), time=0.6)) is Status.RUNNING
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"), [("slow", -0.1), ("pause", nan), ("share", 0.0), ("share", 1.1)]
+)
+def test_a_setting_that_makes_no_sense_is_refused(setting: str, value: float) -> None:
+    with pytest.raises(ValueError, match=setting):
+        SettleBall(**{setting: value})  # type: ignore[arg-type]

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import nan
 
 import pytest
 
@@ -92,3 +93,21 @@ def test_a_restart_is_taken_in_the_end_whatever_there_is() -> None:
         if status is Status.SUCCESS:
             break
     assert status is Status.SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [
+        ("shoot_at", 2.0),
+        ("pass_at", -0.1),
+        ("floor", 1.5),
+        ("shoot_at", nan),
+        ("patience", 0.0),
+        ("patience", -1.0),
+        ("keep", -1.0),
+        ("max_distance", nan),
+    ],
+)
+def test_a_setting_that_makes_no_sense_is_refused(setting: str, value: float) -> None:
+    with pytest.raises(ValueError, match=setting):
+        ChooseKick(**{setting: value})  # type: ignore[arg-type]

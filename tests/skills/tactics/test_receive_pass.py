@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, hypot, nan, pi, sin
 
 import numpy as np
 import pytest
@@ -64,3 +64,11 @@ def drill(seed: int) -> bool:
 @pytest.mark.integration
 def test_a_pass_before_the_goal_goes_on_at_the_goal_with_one_touch() -> None:
     assert sum(drill(seed) for seed in range(20)) >= 15
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"), [("slowest", 0.0), ("widest", -0.1), ("redirect_at", 1.1), ("redirect_at", nan)]
+)
+def test_a_setting_that_makes_no_sense_is_refused(setting: str, value: float) -> None:
+    with pytest.raises(ValueError, match=setting):
+        ReceivePass(**{setting: value})  # type: ignore[arg-type]
