@@ -1,1 +1,1 @@
-"""What the play set ``team`` agrees on: tasks, places, passes and marks."""
+"""What robots that play ``team_player`` agree on: tasks, places, passes and marks."""

@@ -190,11 +190,11 @@ def rate_points(
     goal_x: float,
     half_goal: float,
 ) -> FloatArray:
-    """Rate passes from (ox, oy) to every point: (G, 3), chance to arrive, worth there, flight time [s].
+    """Rate passes from (ox, oy) to every point: (G, 2), chance to arrive and worth there.
 
     ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m].
     """
-    out = np.empty((len(points), 3))
+    out = np.empty((len(points), 2))
     nobody = np.empty((0, 7))
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
@@ -203,5 +203,4 @@ def rate_points(
         time = flight_time(length, speed)
         out[g, 0] = arrive_chance(ox, oy, x, y, speed, delay, opponents, nobody, -1)
         out[g, 1] = point_worth(ox, oy, x, y, delay + time, opponents, goal_x, half_goal)
-        out[g, 2] = time
     return out
