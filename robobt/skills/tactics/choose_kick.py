@@ -12,6 +12,7 @@ from robobt.skills.store import Pass, Shot
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
 from robobt.skills.tactics.chances import point_worth
+from robobt.skills.tactics.lanes import PASS_SPEEDS
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 
@@ -127,6 +128,15 @@ class ChooseKick(Skill):
             self._pass = best if best.wait > _IN_TIME and not pressed else replace(best, wait=0.0)
         elif shot_score >= self.shoot_at * share:
             self._shot = shot
+        elif late:
+            self._pass = self._into_space()
+
+    def _into_space(self) -> Pass:
+        """Return a short kick towards the opponents' goal, for whoever gets there."""
+        ball, (x, y) = self.ball, self.frame.field.their_goal
+        way = max(hypot(x - ball.x, y - ball.y), _SPACE)
+        target = (ball.x + _SPACE / way * (x - ball.x), ball.y + _SPACE / way * (y - ball.y))
+        return Pass(self.me.id, target, PASS_SPEEDS[0], 0.0)
 
     def _best_shot(self) -> Shot | None:
         frame, me, ball, field = self.frame, self.me, self.ball, self.frame.field
@@ -159,6 +169,9 @@ _BETTER = 1.15
 
 _IN_TIME = 0.1
 """A receiver that is so much too late meets the ball a little farther on [s]."""
+
+_SPACE = 1.5
+"""How far a restart goes for which there is neither shot nor pass [m]."""
 
 _LATE = 1.0
 """So long after its patience is at an end it takes a restart with what there is [s]."""

@@ -55,7 +55,7 @@ def mark_places(frame: Frame, most: int) -> list[tuple[int, Point]]:
     for robot in threats(frame)[: max(0, most)]:
         bx, by = ball.x - robot.x, ball.y - robot.y
         gx, gy = goal_x - robot.x, goal_y - robot.y
-        to_ball, to_goal = hypot(bx, by), hypot(gx, gy)
+        to_ball, to_goal = max(hypot(bx, by), 1e-6), max(hypot(gx, gy), 1e-6)
         ux, uy = bx / to_ball + 0.7 * gx / to_goal, by / to_ball + 0.7 * gy / to_goal
         size = max(hypot(ux, uy), 1e-6)
         places.append((robot.id, (robot.x + MARK_GAP * ux / size, robot.y + MARK_GAP * uy / size)))

@@ -78,11 +78,11 @@ def test_without_the_ball_there_is_nothing_to_choose() -> None:
     assert chooser.at(0.0, me, (KEEPER, near), ball=(-1.0, 0.0)) is Status.FAILURE
 
 
-def test_a_restart_is_taken_in_the_end_whatever_there_is() -> None:
+@pytest.mark.parametrize("mates", [(robot(-3.0, -2.0, number=4),), ()])
+def test_a_restart_is_taken_in_the_end_whatever_there_is(mates: tuple[RobotState, ...]) -> None:
     spot = (-1.0, 2.0)
-    mate = robot(-3.0, -2.0, number=4)
     walls = tuple(robot(-1.2 - 0.1 * i, 1.4 - 0.2 * i, number=i) for i in range(4))
-    chooser = Chooser(ChooseKick(restart=True, patience=1.0, floor=0.04), (mate,))
+    chooser = Chooser(ChooseKick(restart=True, patience=1.0, floor=0.04), mates)
     me = robot(-1.2, 2.2, number=1)
     game = free_kick(Team.BLUE, spot)
     waiting = replace(game, may_touch=False)
