@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 
 from robobt.skills.store import Store
-from robobt.tree import Behaviour
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
 from robobt.world.game import GameState, Team
@@ -58,18 +56,9 @@ class RefereeSwitch(Switch, Bound[Store]):
         ValueError: a case does not name a phase; the message lists those there are.
     """
 
-    def __init__(
-        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
-    ) -> None:
-        for case in cases:
-            if case not in _NAMES:
-                raise ValueError(f"{case!r} is no phase; there are {', '.join(_NAMES)}")
-        super().__init__(name, cases, otherwise=otherwise)
+    kind = Phase
 
     def case(self) -> str:
         """Return the present phase as this team sees it."""
         frame = self.store.frame
         return phase(frame.game, frame.team).value
-
-
-_NAMES = [each.value for each in Phase]

@@ -6,6 +6,7 @@ from functools import lru_cache
 from math import cos, hypot, pi, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robobt.motion.arrival import arrival_time
 from robobt.skills.store import Pass, TeamStore
@@ -118,7 +119,7 @@ def _offsets() -> list[tuple[float, float]]:
 @compiled
 def _rate(
     points: FloatArray,
-    owners: FloatArray,
+    owners: NDArray[np.int64],
     ox: float,
     oy: float,
     heading: float,

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 from math import inf
 
 from robobt.skills.plan import Task
 from robobt.skills.store import Store
 from robobt.skills.tactics.agree import agree
-from robobt.tree import Behaviour
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
 from robobt.world.game import Restart
@@ -53,13 +51,7 @@ class TaskSwitch(Switch, Bound[Store]):
         ValueError: a case does not name a part; the message lists those there are.
     """
 
-    def __init__(
-        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
-    ) -> None:
-        for case in cases:
-            if case not in _NAMES:
-                raise ValueError(f"{case!r} is no part; there are {', '.join(_NAMES)}")
-        super().__init__(name, cases, otherwise=otherwise)
+    kind = Part
 
     def case(self) -> str:
         """Return the robot's present part."""
@@ -85,6 +77,3 @@ class TaskSwitch(Switch, Bound[Store]):
             return Part.PLACE_BALL.value if placing else Part.TAKE_RESTART.value
         lining_up = game.restart is Restart.KICKOFF and not (task is Task.RECEIVE and game.may_touch)
         return Part.KICKOFF.value if lining_up else Part.DEAD_BALL.value
-
-
-_NAMES = [each.value for each in Part]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from enum import StrEnum
+from typing import ClassVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -21,11 +23,23 @@ class Switch(Composite):
     Args:
         cases: a child for each case; one child may serve several cases.
         otherwise: the child for every other case.
+
+    Raises:
+        ValueError: the switch has a :attr:`kind` and a case is none of its values; the message lists them.
     """
+
+    kind: ClassVar[type[StrEnum] | None] = None
+    """What the cases are, where they are known beforehand."""
 
     def __init__(
         self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
     ) -> None:
+        if self.kind is not None:
+            known = [each.value for each in self.kind]
+            for case in cases:
+                if case not in known:
+                    what = self.kind.__name__.lower()
+                    raise ValueError(f"{case!r} is no {what}; there are {', '.join(known)}")
         children = list(dict.fromkeys([*cases.values(), *([] if otherwise is None else [otherwise])]))
         super().__init__(name, children)
         # By place, so that a child that is replaced is replaced in its cases too.
