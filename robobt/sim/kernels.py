@@ -119,6 +119,7 @@ def control_tick(
     width = robots + 1
     move = np.zeros(2)
     pull = np.zeros(2)
+    met = np.zeros(2)
     hit = np.zeros(3)
     driven = np.zeros(robots)
     contacts = np.zeros((robots, CONTACTS, SCRATCH))
@@ -232,12 +233,13 @@ def control_tick(
                 ball[0], ball[1] = _ELSEWHERE * (a + 1), _ELSEWHERE
                 move[0] = move[1] = 0.0
             elif glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
-                share = sweep(rows, first, robots, walls, origins[a], move, p, dt)
+                share = sweep(rows, first, robots, walls, origins[a], move, p, dt, met)
                 if share < 1.0:
-                    length = hypot(move[0], move[1]) * dt
-                    back = max(1.0 - share - _OVERLAP / length, 0.0)
-                    ball[0] -= move[0] * dt * back
-                    ball[1] -= move[1] * dt * back
+                    # From then on it goes with what it met, which may move away from it.
+                    x, y = move[0] - met[0], move[1] - met[1]
+                    back = max(1.0 - share - _OVERLAP / (hypot(x, y) * dt), 0.0)
+                    ball[0] -= x * dt * back
+                    ball[1] -= y * dt * back
             ball[3] = target[a, 0] = move[0]
             ball[4] = target[a, 1] = move[1]
         cursor[0] = 0

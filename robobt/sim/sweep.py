@@ -97,8 +97,11 @@ def sweep(
     move: FloatArray,
     p: FloatArray,
     dt: float,
+    met: FloatArray,
 ) -> float:
     """Return the share of the step after which a fast ball first meets a robot or a wall, 1 if none.
+
+    ``met`` (2,) takes the velocity of what it meets [m/s].
 
     At 6.5 m/s and 5 ms the ball moves 33 mm a step, more than its radius and
     than the goal's walls are thick: a solver that looks only at where the ball
@@ -115,13 +118,17 @@ def sweep(
         if px * px + py * py > reach * reach or px * dx + py * dy >= 0.0:
             continue
         c, s = cos(row[2]), sin(row[2])
-        share = min(
-            share, _meets_robot(c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, p)
-        )
+        when = _meets_robot(c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, p)
+        if when < share:
+            share = when
+            met[0], met[1] = row[3], row[4]
     x, y = ball[0] - origin[0], ball[1] - origin[1]
     dx, dy = move[0] * dt, move[1] * dt
     for k in range(walls.shape[0]):
-        share = min(share, _meets_box(x, y, dx, dy, walls[k], radius))
+        when = _meets_box(x, y, dx, dy, walls[k], radius)
+        if when < share:
+            share = when
+            met[0] = met[1] = 0.0
     return share
 
 

@@ -162,3 +162,17 @@ def test_a_ball_at_the_front_corners_bounces_or_passes_but_never_sticks(
         moved = ((ball.x - before.x) ** 2 + (ball.y - before.y) ** 2) ** 0.5
         stuck = stuck + 1 if before.speed > 1.0 and moved < 0.5 * before.speed * world.period else 0
         assert stuck <= 3
+
+
+@pytest.mark.parametrize("kind", ["default", "sumatra"])
+@pytest.mark.parametrize("heading", [0.0, pi])
+@pytest.mark.parametrize("away", [0.5, 1.3, 2.0])
+def test_a_ball_bounces_off_a_robot_that_drives_away_from_it(kind: str, heading: float, away: float) -> None:
+    contact = preset(kind).contact
+    world = one_robot(kind, ball=(0.5, 0, 0, 0), field=DIVISION_B)
+    world.reset(Placement({ME: (0, 0, heading)}, (0.5, 0, -3.3, 0), {ME: (-away, 0)}), seed=0)
+    bounce = contact.front_restitution if heading == 0.0 else contact.hull_restitution
+    while world.truth().ball.vx < -3.0:
+        world.act({ME: RobotCommand(vx=-away * cos(heading))})
+        assert world.time < 1.0, "the ball flies on"
+    assert world.truth().ball.vx == pytest.approx(-away + bounce * (3.25 - away), abs=0.15)
