@@ -255,7 +255,8 @@ def test_no_low_ball_tunnels_through_a_robot(
     rows = seen(thrown((-away, aside, along, 0.0, 0.0, up), [(0.0, 0.0, 0.0)], preset(name)), 0.6)
     low, behind = rows[:, 4] < ROBOT_HEIGHT - 0.01, np.hypot(rows[:, 0], rows[:, 1]) < 0.6 * ROBOT_RADIUS
     assert not (low & behind).any()
-    if abs(aside) < 0.05 and up * up < 2 * GRAVITY * ROBOT_HEIGHT:
+    # Farther out, the wheels of grSim's robot may send it around.
+    if abs(aside) < preset(name).body.mouth_width / 2 and up * up < 2 * GRAVITY * ROBOT_HEIGHT:
         assert rows[:, 0].max() < 0.0
 
 
