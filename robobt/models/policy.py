@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.config.errors import one_line
-from robobt.models.card import ModelCard
+from robobt.models.card import Kind, ModelCard
 from robobt.models.checks.onnx_file import check_onnx
 from robobt.models.checks.operations import check_frozen, check_loaded
 from robobt.models.checks.source import checked_members
@@ -22,10 +22,9 @@ from robobt.models.file import (
     ModelError,
     ModelFile,
     pack_archive,
-    read_model_file,
     unpack_archive,
 )
-from robobt.models.find import find_model
+from robobt.models.fitting import read_fitting_model
 from robobt.world.features import ObservationSpec
 
 if TYPE_CHECKING:
@@ -84,7 +83,11 @@ class Policy:
 
 
 def load_policy(
-    name_or_path: str | Path, *, skill: str | None = None, observation: ObservationSpec | None = None
+    name_or_path: str | Path,
+    *,
+    kind: Kind | None = None,
+    skill: str | None = None,
+    observation: ObservationSpec | None = None,
 ) -> Policy:
     """Load a model: a shipped one by its name, any other by its path.
 
@@ -96,22 +99,15 @@ def load_policy(
 
     Args:
         name_or_path: name of a shipped model, or a file.
+        kind: what it has to be; None for any.
         skill: skill that will use it; None for any.
         observation: observation that it will be given; None for any.
 
     Raises:
         ModelError: it cannot be used; the message names the file and says why.
     """
-    path = find_model(name_or_path)
-    file = read_model_file(path)
-    card = file.card
-    problem = card.observation.problem()
-    if skill is not None and card.skill != skill:
-        problem = f"is a model for {card.skill}, not for {skill}"
-    elif observation is not None and card.observation.name != observation.name:
-        problem = f"takes the observation {card.observation.name!r}, not {observation.name!r}"
-    if problem is not None:
-        raise ModelError(f"{path}: {problem}")
+    file = read_fitting_model(name_or_path, kind=kind, skill=skill, observation=observation)
+    path, card = file.path, file.card
     key = (path.resolve(), file.sha256)
     if key not in _LOADED:
         try:

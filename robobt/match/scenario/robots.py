@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BaseModel, Field, ValidationError, field_validator, model_validator
 
 from robobt.config.errors import FieldError, RobobtError, message_of, short_repr
+from robobt.config.validation import first_problem
 from robobt.match.scenario.starts import Part, RobotStart
 from robobt.plays import PLAYS
 from robobt.plays.files import find_play, is_play_file
@@ -57,6 +58,12 @@ class RobotSetup(Part):
             raise FieldError("substitute", message_of(error)) from error
         except (TreeFileError, WiringError) as error:
             raise FieldError("play", message_of(error)) from error
+        except ValidationError as error:
+            # Settings of an object that the play makes of its parameters, such as a rater.
+            field, problem = first_problem(error, BaseModel)
+            if field.partition(".")[0] not in self.params:
+                raise FieldError("params", f"{field}: {problem}") from error
+            raise FieldError(f"params.{field}", problem) from error
         except Exception as error:
             raise FieldError("params", message_of(error)) from error
         if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:

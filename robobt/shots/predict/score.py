@@ -9,7 +9,6 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from robobt.models.card import Measured
-from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
 from robobt.shots.data.inputs import asked_inputs
 from robobt.shots.data.problems import ShotDataError
@@ -32,9 +31,7 @@ def predicted_by(model: str | Path, table: pa.Table) -> FloatArray:
         ModelError: there is no such model, or it is no shot predictor.
         ShotDataError: a shot lacks what the model needs to know.
     """
-    policy = load_policy(model)
-    if policy.card.kind != "shot_predictor":
-        raise ModelError(f"{policy.path}: is a {policy.card.kind}, not a shot_predictor")
+    policy = load_policy(model, kind="shot_predictor")
     scenes = asked_inputs(table)
     inputs = pair_features(scenes) if policy.card.observation.name == SHOT.name else scenes
     unknown = np.flatnonzero(~np.isfinite(inputs).all(axis=1))

@@ -7,8 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
+from pydantic import BaseModel, ValidationError
 
 from robobt.config.errors import short_repr
+from robobt.config.validation import first_problem
 from robobt.tree.check import entries_of
 from robobt.tree.interop.model import (
     Definition,
@@ -205,6 +207,9 @@ class _Builder:
             raise
         except ParameterError as error:
             raise self._error(line, f"{what}: {error.parameter}: {error}") from error
+        except ValidationError as error:
+            field, problem = first_problem(error, BaseModel)
+            raise self._error(line, f"{what}: {field}: {problem}") from error
         except Exception as error:
             problem = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
             raise self._error(line, f"{what}: {problem}") from error

@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import hypot
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
 from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, normal_cdf, runs
 from robobt.skills.aim.raters.openings import goal_mouth
-from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.skills.aim.raters.shot_predictor import check_shot_predictor, shot_predictor
 from robobt.skills.store import Shot
 from robobt.world.features import SCENE_OPPONENTS, SHOT_SCENE, shot_scene
 from robobt.world.geometry import FloatArray, Point
@@ -31,11 +31,21 @@ class ExpectedGoal(ShotRater):
     shooter do not count, team-mates ahead of it count as opponents do.
     """
 
-    model: str = Field("shot_expected", description="predictor of a shot's scene: a shipped model or a file")
+    model: str = Field(
+        "shot_expected",
+        validate_default=True,
+        description="predictor of a shot's scene: a shipped model or a file",
+    )
     threshold: float = Field(0.9, ge=0, le=1, description="probability that any aim within the tolerance has")
     keep: float = Field(0.9, gt=0, le=1, description="share of the best probability that still counts as it")
     kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
+
+    @field_validator("model")
+    @classmethod
+    def _usable(cls, model: str) -> str:
+        check_shot_predictor(model, SHOT_SCENE)
+        return model
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""

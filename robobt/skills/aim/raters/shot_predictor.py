@@ -5,7 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from robobt.models.file import ModelError
+from robobt.models.checks.source import checked_members
+from robobt.models.file import ModelError, unpack_archive
+from robobt.models.find import find_model
+from robobt.models.fitting import read_fitting_model
 from robobt.world.features import ObservationSpec
 
 if TYPE_CHECKING:
@@ -17,7 +20,32 @@ def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
     """Load a shot predictor by a shipped model's name or a file's path, once per process."""
     from robobt.models.policy import load_policy
 
-    policy = load_policy(model, observation=observation)
-    if policy.card.kind != "shot_predictor":
-        raise ModelError(f"{policy.path}: is a {policy.card.kind}, not a shot_predictor")
-    return policy
+    return load_policy(model, kind="shot_predictor", observation=observation)
+
+
+def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
+    """Refuse a shot predictor that cannot be used, as far as can be told without importing torch.
+
+    A tree is built several times before a match, so the same file is read once.
+
+    Raises:
+        ModelError: it is missing, cut, foreign or made for something else; the message names the file.
+    """
+    path = find_model(model).absolute()
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        # Reading it says what is wrong.
+        _check_file(str(path), None, observation)
+    else:
+        _check_file(str(path), (status.st_mtime_ns, status.st_size), observation)
+
+
+@lru_cache(maxsize=32)
+def _check_file(path: str, state: tuple[int, int] | None, observation: ObservationSpec) -> None:  # noqa: ARG001
+    file = read_fitting_model(path, kind="shot_predictor", observation=observation)
+    if file.format == "torchscript":
+        try:
+            checked_members(unpack_archive(file.content))
+        except ModelError as error:
+            raise ModelError(f"{path}: {error}") from error

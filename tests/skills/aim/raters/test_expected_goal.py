@@ -3,7 +3,6 @@ from math import pi
 import numpy as np
 import pytest
 
-from robobt.models.file import ModelError
 from robobt.skills.aim.raters import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.world import DIVISION_B, RobotState
@@ -73,6 +72,5 @@ def test_robots_behind_the_shooter_do_not_count():
 
 
 def test_a_model_that_judges_something_else_is_refused():
-    scene = frame(ME, BALL, opponents=(robot(4.2, 0.0, pi),))
-    with pytest.raises(ModelError, match="shot_nn"):
-        ExpectedGoal(model="shot_nn").rate_all(scene, BALL, ME)
+    with pytest.raises(ValueError, match=r"shot_nn.*takes the observation"):
+        ExpectedGoal(model="shot_nn")
