@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
+from math import isfinite
+from numbers import Real
 from typing import ClassVar, Generic, Self, TypeAlias, TypeVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+
+from robobt.config.errors import short_repr
 
 StoreT = TypeVar("StoreT")
 
@@ -62,7 +66,17 @@ class Leaf(Behaviour, Bound[StoreT]):
     optional: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, name: str = "") -> None:
+        """Make the leaf.
+
+        Raises:
+            ValueError: a number it is made from is not finite, as tree files and scenarios refuse it too.
+        """
         super().__init__(name or type(self).__name__)
+        args, kwargs = self._given
+        # Once for all leaves: no comparison with NaN holds, and a leaf's own checks easily let it through.
+        if not all(_is_finite(value) for value in (*args, *kwargs.values())):
+            wrong = [(key, value) for key, value in self.parameters().items() if not _is_finite(value)]
+            raise ValueError(f"{wrong[0][0]} must be finite, not {short_repr(wrong[0][1])}")
 
     def needs(self) -> list[tuple[str, ...]]:
         """Return what other nodes have to write into the store: of each item, one of its entries.
@@ -129,6 +143,13 @@ class Leaf(Behaviour, Bound[StoreT]):
             self.on_done(new_status)
         elif self.status is Status.RUNNING:
             self.on_interrupt()
+
+
+def _is_finite(value: object) -> bool:
+    """Return whether there is no infinite number and no NaN in a value, or in the sequence that it is."""
+    if isinstance(value, tuple | list):
+        return all(_is_finite(entry) for entry in value)
+    return not isinstance(value, Real) or isinstance(value, int) or isfinite(value)
 
 
 def no_status(answer: object) -> TypeError:

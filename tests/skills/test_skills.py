@@ -6,13 +6,14 @@ import inspect
 import pkgutil
 from dataclasses import fields
 from importlib import import_module
+from math import inf, nan
 from typing import Any
 
 import pytest
 
 import robobt.skills
 from robobt.skills import SKILLS, Skill, Store
-from robobt.tree.parameters import parameters_of
+from robobt.tree.parameters import members_of, parameters_of
 
 
 @pytest.mark.parametrize("name", list(SKILLS))
@@ -30,6 +31,18 @@ class TestEverySkill:
         assert first.name == "name"
         assert all(parameter.kind is parameter.KEYWORD_ONLY for parameter in parameters)
         assert all(parameter.hint is not Any for parameter in parameters_of(cls))
+
+    @pytest.mark.parametrize("value", [nan, inf, -inf])
+    def test_refuses_numbers_that_are_not_finite(self, name: str, value: float) -> None:
+        cls = SKILLS[name]
+        for parameter in parameters_of(cls):
+            kinds = members_of(parameter.hint)
+            if float in kinds:
+                with pytest.raises(ValueError, match=f"^{parameter.name} must be"):
+                    cls(**{parameter.name: value})
+            if tuple[float, float] in kinds:
+                with pytest.raises(ValueError, match=f"^{parameter.name} must be finite"):
+                    cls(**{parameter.name: (0.0, value)})
 
     def test_says_what_it_does_and_what_its_parameters_mean(self, name: str) -> None:
         cls = SKILLS[name]

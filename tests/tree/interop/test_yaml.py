@@ -383,7 +383,6 @@ class Unregistered(Leaf[None]):
         ),
         (Sequence("", memory=True), "names that are printable"),
         (Stop(name="a\tb"), "names that are printable"),
-        (GoToPose(heading=float("inf")), "GoToPose: heading: inf cannot be written"),
     ],
 )
 def test_what_a_file_cannot_say_is_an_error_with_the_nodes_path(root: Behaviour, problem: str) -> None:
