@@ -17,6 +17,7 @@ from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
+from robobt.match.referee.events import RefereeEvent
 from robobt.sim.settings import SimSettings
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState
@@ -248,6 +249,11 @@ class Feed:
             return None
         self._tracker = tracked[0]
         return VisionPacket(_detections(tracked[1]), None)
+
+    def reported(self, now: float) -> list[RefereeEvent]:
+        """Return the game controller's events since this was asked last, as if they had happened now [s]."""
+        events = [] if self.referee is None else self.referee.reported(now)
+        return events if self.sign() > 0.0 else [event.mirrored() for event in events]
 
     def _game(self, frame: Frame) -> GameState:
         if self.referee is None:

@@ -19,6 +19,7 @@ from robobt.league.placing import Placer
 from robobt.league.watch import MatchWatch
 from robobt.league.wire.commands import clamp_command
 from robobt.league.wire.packets import PacketCounts
+from robobt.match.referee.events import RefereeEvent
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
@@ -184,6 +185,10 @@ class LeagueWorld(World):
         """Return who was seen to kick during the last act, and when; see the protocol."""
         return self._kicks
 
+    def reported(self) -> list[RefereeEvent]:
+        """See :meth:`robobt.world.World.reported`."""
+        return self._feed.reported(self._time)
+
     def place_ball(self, x: float, y: float) -> None:
         """Put the ball down at rest; where nothing may be placed, a person has to."""
         check_inside("the ball", (x, y), self._feed.filter.field)
@@ -232,9 +237,9 @@ class LeagueWorld(World):
 
     def _restart_time(self) -> None:
         """Begin the match's time at 0, now."""
-        self._time = 0.0
-        self._kicks = []
+        self._time, self._kicks = 0.0, []
         self._feed.filter.kicks.clear()
+        self._feed.reported(0.0)
         self._looked, self._looked_at = self._feed.now(), self._feed.vision_now()
         self._began = self._looked_at
         self._restarts = self._feed.filter.restarts

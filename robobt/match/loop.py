@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -27,7 +27,7 @@ from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.protocol import World
+from robobt.world.protocol import ReportedEvent, World
 from robobt.world.rules import own_side, without_absent
 from robobt.world.state import Frame, RobotId
 
@@ -146,12 +146,13 @@ class Match:
         check()
         truth = self.world.truth()
         self._time = truth.time
-        events: tuple[RefereeEvent, ...] = ()
+        events: Sequence[ReportedEvent]
         if self._referee is not None:
             events = self._follow_referee(truth)
         else:
             # A world may have a referee of its own: the league's game controller.
-            self.game = truth.game
+            self.game, events = truth.game, self.world.reported()
+        self._note_events(events)
         truth.game = self.game
         self.measures.update(truth, self.game, self._commands, self.world.seen_kicks())
         if self._teams is not None:
@@ -249,15 +250,17 @@ class Match:
         assert self._referee is not None
         decision = self._referee.update(truth)
         self.game = decision.game
-        for event in decision.events:
+        if decision.place_ball is not None:
+            self.world.place_ball(*decision.place_ball)
+        return decision.events
+
+    def _note_events(self, events: Sequence[ReportedEvent]) -> None:
+        for event in events:
             self._trace.event(f"{event.kind} {event.robot}")
             if self._recorder is not None:
                 self._recorder.event(
                     event.kind, event.time, team=event.team, robot=event.robot, text=event.text
                 )
-        if decision.place_ball is not None:
-            self.world.place_ball(*decision.place_ball)
-        return decision.events
 
     def _record(self, recorder: Recorder, truth: Frame, packed: bytes, observed: Frame) -> None:
         for robot in self.measures.kicked:

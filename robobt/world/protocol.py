@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from robobt.world.command import RobotCommand
+from robobt.world.game import Team
 from robobt.world.state import Frame, RobotId
 
 
@@ -23,6 +24,30 @@ class Placement:
     robots: dict[RobotId, tuple[float, float, float]] = field(default_factory=dict)
     ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     velocities: dict[RobotId, tuple[float, float]] = field(default_factory=dict)
+
+
+class ReportedEvent(Protocol):
+    """An event as referees report it: what, when, who did it and in words."""
+
+    @property
+    def kind(self) -> str:
+        """The league's name in lower case."""
+
+    @property
+    def time(self) -> float:
+        """When [s]."""
+
+    @property
+    def team(self) -> Team | None:
+        """Who did it."""
+
+    @property
+    def robot(self) -> RobotId | None:
+        """Which robot, as far as known."""
+
+    @property
+    def text(self) -> str:
+        """The details."""
 
 
 @runtime_checkable
@@ -66,6 +91,10 @@ class World(Protocol):
         None where that follows from the true states and the commands.
         """
         return None
+
+    def reported(self) -> Sequence[ReportedEvent]:
+        """Return the events that the referee there has reported since this was asked last."""
+        return ()
 
     @property
     def shows_truth(self) -> bool:
@@ -116,6 +145,10 @@ class WrappedWorld(World):
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
         """See :meth:`World.seen_kicks`."""
         return self.world.seen_kicks()
+
+    def reported(self) -> Sequence[ReportedEvent]:
+        """See :meth:`World.reported`."""
+        return self.world.reported()
 
     @property
     def shows_truth(self) -> bool:

@@ -13,13 +13,17 @@ from robobt.league.factory import LeagueFactory
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.wire.commands import Teleport
 from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.gamecontroller import RefereePublisher
+from robobt.league.wire.gameevents import write_event
+from robobt.league.wire.sockets import Sender
 from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario, run_trials
+from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.sim.settings import REALISM, SimSettings, preset
 from robobt.world import World
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B
-from robobt.world.game import Team
+from robobt.world.game import GameState, RefereeCommand, Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 from robobt.worlds import world_from
@@ -315,3 +319,22 @@ def test_a_game_controller_decides_score_and_end() -> None:
     with connect(free_endpoints()) as world:
         assert not world.refereed
         assert world.scenario_ends
+
+
+@pytest.mark.parametrize(("turned", "x"), [(False, 1.0), (True, -1.0)])
+def test_what_a_game_controller_reports_is_told_once_from_our_side(turned: bool, x: float) -> None:
+    endpoints = free_endpoints()
+    event = RefereeEvent(3.0, EventKind.BOT_CRASH_UNIQUE, Team.BLUE, ME, 1.0, 0.5)
+    packet = RefereePublisher().write(
+        GameState(RefereeCommand.HALT, events=(event.kind,)), 5.0, [write_event(event, 0.0, "referee")]
+    )
+    options: dict[str, object] = {"follow_referee": True, "blue_on_positive_half": turned}
+    with served(field(), endpoints, SPEED), connect(endpoints, **options) as world:
+        world.reset(START, 0)
+        with Sender(*endpoints.referee) as sender:
+            heard: list[RefereeEvent] = []
+            for _ in range(30):
+                sender.send(packet)
+                world.act({})
+                heard += world.reported()
+    assert [(event.kind, event.robot, event.x) for event in heard] == [("bot_crash_unique", ME, x)]

@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from robobt.match import Match, MatchResult, play_match
 from robobt.match.recording import load_recording
-from robobt.match.referee.events import Decision
+from robobt.match.referee.events import Decision, EventKind, RefereeEvent
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.world import Frame, RobotCommand, RobotId, Team
 from robobt.world.field import FieldGeometry
@@ -325,3 +325,24 @@ def test_the_referee_is_closed_when_a_match_breaks_off() -> None:
         match.tick()
         raise ZeroDivisionError
     assert referee.closed == 1
+
+
+class Controlled(PlainWorld):
+    """A world with a game controller, which reports a foul once."""
+
+    @property
+    def refereed(self) -> bool:
+        return True
+
+    def reported(self) -> list[RefereeEvent]:
+        if self.ticks != 3:
+            return []
+        return [RefereeEvent(self.ticks * self.period, EventKind.BOT_CRASH_UNIQUE, Team.BLUE, BLUE_0)]
+
+
+def test_what_the_worlds_own_referee_reports_is_counted_and_recorded(tmp_path: Path):
+    path = tmp_path / "match.robobt.arrows"
+    result = play_match(scenario().lasting(0.3), 1, Controlled, path)
+    assert (result.teams["blue"].fouls, result.teams["yellow"].fouls) == (1, 0)
+    crashes = [event for event in load_recording(path).events if event.kind == "bot_crash_unique"]
+    assert [(crash.team, crash.robot) for crash in crashes] == [(Team.BLUE, BLUE_0)]

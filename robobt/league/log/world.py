@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.log.files import LogError, LogKind, LogRecord, read_log
 from robobt.league.wire.gamecontroller import RefereeFollower
-from robobt.league.wire.gameevents import read_event
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
@@ -90,13 +88,10 @@ class LogWorld(World):
     def place_ball(self, x: float, y: float) -> None:
         """Do nothing: the ball is where it was."""
 
-    def events(self) -> list[RefereeEvent]:
-        """Return the game events that the referee messages have told since this was asked last."""
-        now = self._ticks * self.period
-        read = [read_event(message, 0.0, now) for message in self._referee.news]
-        self._referee.news.clear()
+    def reported(self) -> list[RefereeEvent]:
+        """See :meth:`robobt.world.World.reported`."""
         # A log's clocks may differ from the frames' time, so that only the tick is known.
-        return [replace(event, time=now) for event in read if event is not None]
+        return self._referee.reported(self._ticks * self.period)
 
     @property
     def ended(self) -> bool:
@@ -175,7 +170,7 @@ def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path
     world.reset(Placement(), 0)
     with Recorder(out, header) as recorder:
         while True:
-            for event in world.events():
+            for event in world.reported():
                 recorder.event(event.kind, event.time, team=event.team, robot=event.robot, text=event.text)
             recorder.tick(world.truth())
             if world.ended:

@@ -16,7 +16,7 @@ from robobt.league.referee.people import People
 from robobt.league.referee.process import GameControllerError, GameControllerProcess
 from robobt.league.referee.setup import ORIGIN, MatchSetup, game_event
 from robobt.league.wire.gamecontroller import RefereeFollower
-from robobt.league.wire.gameevents import read_event, write_event
+from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.messages import Change
 from robobt.league.wire.messages import Referee as RefereeMessage
@@ -118,15 +118,11 @@ class OfficialReferee:
 
     def _hear(self, messages: Iterable[RefereeMessage], now: float) -> list[RefereeEvent]:
         """Follow the controller's messages; return the events that are new in them at this time [s]."""
-        events = []
+        events: list[RefereeEvent] = []
         for message in messages:
             if not self._follower.follow(message):
                 raise GameControllerError("the game controller names a place that is on no field")
-            for event in self._follower.news:
-                read = read_event(event, EPOCH, now)
-                if read is not None:
-                    events.append(read)
-            self._follower.news.clear()
+            events += self._follower.reported(now, EPOCH)
         return events
 
 

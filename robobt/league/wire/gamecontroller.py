@@ -6,14 +6,16 @@ Source of the states: RoboCup SSL rules, chapter "Referee commands".
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
 
+from robobt.league.wire.gameevents import read_event
 from robobt.league.wire.messages import GameEvent
 from robobt.league.wire.messages import Referee as RefereeMessage
 from robobt.league.wire.packets import MAX_OBJECTS, PacketCounts, on_field, read
 from robobt.league.wire.tracker import SOURCE
+from robobt.match.referee.events import RefereeEvent
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import IN_PLAY_DISTANCE
@@ -59,7 +61,6 @@ class RefereeFollower:
         game: the current state, in the coordinates of the packets; HALT before the first.
         blue_on_positive_half: whether blue defends +x; None until a packet says so.
         counts: what happened to the packets.
-        news: game events that were new in the packets; whoever uses them empties the list.
     """
 
     def __init__(self) -> None:
@@ -68,7 +69,7 @@ class RefereeFollower:
         )
         self.blue_on_positive_half: bool | None = None
         self.counts = PacketCounts()
-        self.news: list[GameEvent] = []
+        self._news: list[GameEvent] = []
         self._told: set[bytes] = set()
         self._counter: tuple[int, int, int] | None = None
         self._ready: tuple[Point, float] | None = None
@@ -111,7 +112,7 @@ class RefereeFollower:
         events = message.game_events[:MAX_OBJECTS]
         told = {event.SerializeToString(): event for event in events}
         # They stay in the packets until play goes on.
-        self.news = (self.news + [event for each, event in told.items() if each not in self._told])[
+        self._news = (self._news + [event for each, event in told.items() if each not in self._told])[
             -MAX_OBJECTS:
         ]
         self._told = set(told)
@@ -148,6 +149,17 @@ class RefereeFollower:
     def follow(self, message: RefereeMessage) -> bool:
         """Update the state from a message of the one controller there is; False when it is implausible."""
         return bool(self._update(message))
+
+    def reported(self, now: float, epoch: float | None = None) -> list[RefereeEvent]:
+        """Return the game events that are new in the packets since this was asked last.
+
+        They are in the coordinates of the packets. ``epoch`` is the Unix time at which the frames' time
+        was 0 [s]; where it is None, all of them are said to have happened ``now``.
+        """
+        read = [read_event(message, epoch or 0.0, now) for message in self._news]
+        self._news.clear()
+        events = [event for event in read if event is not None]
+        return events if epoch is not None else [replace(event, time=now) for event in events]
 
     def watch(self, frame: Frame) -> GameState:
         """Return the state in view of the ball: a restart ends when the ball moves, or times out.
@@ -236,8 +248,14 @@ class RefereePublisher:
         self._counter = 0
         self._command_time = 0
 
-    def write(self, game: GameState, time: float) -> bytes:
-        """Return the packet for a state in world coordinates (blue defends -x) at a time [s]."""
+    def write(self, game: GameState, time: float, events: Sequence[GameEvent] = ()) -> bytes:
+        """Return the packet for a state in world coordinates (blue defends -x).
+
+        Args:
+            game: the state.
+            time: when it is sent [s].
+            events: the messages of the state's game events; without them only their kinds are told.
+        """
         now = max(0, round(time * 1e6))
         last, current = self._last, (game.command, game.restart if game.stopped else None, game.restart_team)
         if last is None or current[0] is not last[0] or (game.stopped and current != last):
@@ -278,6 +296,7 @@ class RefereePublisher:
             message.current_action_time_remaining = round(game.action_time * 1e6)
         if game.stage_time is not None:
             message.stage_time_left = round(game.stage_time * 1e6)
-        for event in game.events:
+        message.game_events.extend(events)
+        for event in () if events else game.events:
             message.game_events.add().type = GameEvent.Type.Value(event.upper())
         return bytes(message.SerializeToString())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from robobt.world.game import GameState, Team
@@ -79,6 +79,14 @@ class RefereeEvent:
     x: float = 0.0
     y: float = 0.0
     details: Mapping[str, Detail] = field(default_factory=dict)
+
+    def mirrored(self) -> RefereeEvent:
+        """Return the event as seen from the other side of the field."""
+        turned = {
+            name: (-value[0], -value[1]) if isinstance(value, tuple) else value
+            for name, value in self.details.items()
+        }
+        return replace(self, x=-self.x, y=-self.y, details=turned)
 
     @property
     def text(self) -> str:

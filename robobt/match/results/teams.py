@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import atan2, hypot
-from typing import Protocol
 
 import numpy as np
 from pydantic import ConfigDict
@@ -20,6 +19,7 @@ from robobt.skills.aim.raters import RATERS
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance, line_crossing_x
+from robobt.world.protocol import ReportedEvent
 from robobt.world.rules import ball_out
 from robobt.world.state import Frame, RobotId, RobotState
 
@@ -42,18 +42,6 @@ _STRIDE = 0.1
 
 _JUMP = 1.0
 """A robot that is farther from where it was a piece before was put there [m]."""
-
-
-class TeamEvent(Protocol):
-    """An event as referees and recordings have it: its kind by the league's name, and who did it."""
-
-    @property
-    def kind(self) -> str:
-        """The league's name in lower case."""
-
-    @property
-    def team(self) -> Team | None:
-        """Who did it."""
 
 
 @dataclass(slots=True)
@@ -122,7 +110,7 @@ class TeamStatistics:
         self._owned = dict.fromkeys(Team, 0)
         self._rater = RATERS["expected_goal"]()
 
-    def update(self, frame: Frame, game: GameState, events: Iterable[TeamEvent] = ()) -> None:
+    def update(self, frame: Frame, game: GameState, events: Iterable[ReportedEvent] = ()) -> None:
         """Take in the next frame, the state of the game as of it and what happened in it."""
         self._touches.watch(frame)
         for event in events:
@@ -151,7 +139,7 @@ class TeamStatistics:
             for team, figures in self._teams.items()
         }
 
-    def _count(self, event: TeamEvent) -> None:
+    def _count(self, event: ReportedEvent) -> None:
         if event.team is None:
             return
         figures = self._teams[event.team]

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import pytest
 
+from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import Clock, SimServer
 from robobt.league.serve.serving import served_line_up
@@ -283,6 +284,22 @@ def test_the_servers_referee_publishes_what_it_decides(endpoints: Endpoints) -> 
         eventually(lambda: list(controller.receive()) or True)
         assert follower.game.command is server.referee.referee.game.command
         assert follower.game.restart is server.referee.referee.game.restart
+
+
+def test_the_servers_referee_publishes_who_committed_a_foul() -> None:
+    placement = Placement({ME: (-1.0, 0.0, 0.0), HER: (0.4, 0.0, 0.0)}, (0.0, 0.0, 0.0, 0.0))
+    field = ServedField(DIVISION_B, placement)
+    follower, told = RefereeFollower(), []
+    referee = ServedReferee(field, RefereeSettings())
+    for _ in range(270):
+        field.step()
+        message = referee.judge(1000.0 + field.time)
+        if message is not None:
+            assert follower.read(message)
+            told += follower.reported(field.time)
+    # It stays too close to the ball at the kick-off and is reported every two seconds.
+    assert {(event.kind, event.robot) for event in told} == {("defender_too_close_to_kick_point", HER)}
+    assert len(told) == 2
 
 
 def test_a_server_whose_port_is_taken_says_so_and_frees_the_others(

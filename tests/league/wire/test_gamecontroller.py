@@ -7,10 +7,12 @@ from dataclasses import replace
 import pytest
 
 from robobt.league.wire.gamecontroller import RefereeFollower, RefereePublisher
+from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import Referee
+from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.world.field import DIVISION_B
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
-from robobt.world.state import BallState, Frame
+from robobt.world.state import BallState, Frame, RobotId
 
 
 class Controller:
@@ -279,3 +281,29 @@ def test_a_penalty_is_taken_where_the_ball_lies_not_at_the_last_designated_posit
     controller.say("NORMAL_START", at=(0.0, 0.0))
     game = controller.ball(-1.5, 0.0, 1.1)
     assert (game.restart, game.may_touch, game.placement) == (Restart.PENALTY, True, (-1.5, 0.0))
+
+
+CRASH = RefereeEvent(3.0, EventKind.BOT_CRASH_UNIQUE, Team.YELLOW, RobotId(Team.YELLOW, 4), 1.0, -2.0)
+FAST = RefereeEvent(4.0, EventKind.BOT_TOO_FAST_IN_STOP, Team.BLUE, RobotId(Team.BLUE, 2), 0.5, 0.25)
+
+
+def test_events_are_published_with_who_did_what_and_reported_once() -> None:
+    publisher, follower = RefereePublisher(), RefereeFollower()
+    events = [write_event(event, 100.0, "robobt") for event in (CRASH, FAST)]
+    stopped = replace(STOPPED, events=("bot_crash_unique", "bot_too_fast_in_stop"))
+    follower.read(publisher.write(replace(stopped, events=stopped.events[:1]), 104.0, events[:1]))
+    follower.read(publisher.write(stopped, 105.0, events))
+    assert follower.game == stopped
+    heard = follower.reported(5.0, 100.0)
+    assert [(e.kind, e.team, e.robot, e.time, e.x, e.y) for e in heard] == [
+        (e.kind, e.team, e.robot, e.time, e.x, e.y) for e in (CRASH, FAST)
+    ]
+    follower.read(publisher.write(stopped, 106.0, events))
+    assert follower.reported(6.0) == []
+
+
+def test_events_on_a_clock_of_their_own_are_of_now() -> None:
+    follower = RefereeFollower()
+    follower.read(RefereePublisher().write(STOPPED, 1.0, [write_event(CRASH, 1e9, "robobt")]))
+    (heard,) = follower.reported(7.0)
+    assert heard.time == 7.0
