@@ -10,7 +10,7 @@ from robobt.match.players import Player
 from robobt.motion.path_planner import travel
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, distance
-from robobt.world.rules import SUBSTITUTION_REACH, in_substitution_area
+from robobt.world.presence import SUBSTITUTION_REACH, in_substitution_area
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _log = logging.getLogger(__name__)

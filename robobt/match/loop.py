@@ -27,8 +27,9 @@ from robobt.signals import check, let_go, uninterrupted
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.presence import without_absent
 from robobt.world.protocol import ReportedEvent, World
-from robobt.world.rules import own_side, without_absent
+from robobt.world.rules import own_side
 from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)

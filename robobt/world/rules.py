@@ -11,13 +11,11 @@ Source: RoboCup SSL rules, chapters "Scoring Goals", "Ball Leaves The Field" and
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
 from math import copysign, cos, hypot, pi, radians, sin
 
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
-from robobt.world.game import GameState, Team
+from robobt.world.game import Team
 from robobt.world.geometry import Point
 from robobt.world.state import (
     BALL_RADIUS,
@@ -45,9 +43,6 @@ AREA_DISTANCE = 0.2
 
 PLACED_DISTANCE = 0.15
 """A ball this near to its spot has been placed. Source: SSL rules [m]."""
-
-SUBSTITUTION_REACH = 1.0
-"""How far from the half-way line robots may leave and enter over a touch line. Source: SSL rules [m]."""
 
 CARRY_DISTANCE = 1.0
 """A robot may carry the ball no farther than this, as the crow flies. Source: SSL rules [m]."""
@@ -185,50 +180,6 @@ def area_distance(field: FieldGeometry, defender: Team, x: float, y: float) -> f
     ahead = field.half_length - field.defense_depth - own_side(defender) * x
     aside = abs(y) - field.defense_width / 2
     return hypot(max(0.0, ahead), max(0.0, aside))
-
-
-# Robots on the field.
-
-
-def in_substitution_area(field: FieldGeometry, robot: RobotState) -> bool:
-    """Return whether a robot stands in a substitution area: beside the half-way line, over a touch line."""
-    return abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
-
-
-def taken_off(field: FieldGeometry, robots: Iterable[RobotState], most: int | None) -> frozenset[int]:
-    """Return the numbers of a team's robots that count as off the field.
-
-    Of a team that has more robots than ``most``, as after a card, so many too many are off as stand in its
-    substitution area, centre outside a touch line and at most 1 m from the half-way line: their handler has
-    taken them. A robot that only fetches the ball there is not. Of several those with the highest numbers
-    are off; None allows any number.
-
-    Args:
-        field: the field.
-        robots: all of the team's, from either side's view.
-        most: how many the team may have.
-    """
-    robots = tuple(robots)
-    excess = 0 if most is None else len(robots) - most
-    if excess <= 0:
-        return frozenset()
-    outside = [robot.id for robot in robots if in_substitution_area(field, robot)]
-    return frozenset(sorted(outside)[-excess:])
-
-
-def without_absent(frame: Frame, game: GameState) -> Frame:
-    """Return the frame without the robots that count as off the field; itself where all play."""
-    own, opponents = game.status(frame.team).max_robots, game.status(frame.team.other).max_robots
-    if (own is None or len(frame.own) <= own) and (opponents is None or len(frame.opponents) <= opponents):
-        return frame
-    off = taken_off(frame.field, frame.own, own), taken_off(frame.field, frame.opponents, opponents)
-    if not off[0] and not off[1]:
-        return frame
-    return replace(
-        frame,
-        own=tuple(robot for robot in frame.own if robot.id not in off[0]),
-        opponents=tuple(robot for robot in frame.opponents if robot.id not in off[1]),
-    )
 
 
 # Touches and possession.

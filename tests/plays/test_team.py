@@ -25,7 +25,8 @@ from robobt.world import (
     RobotState,
     Team,
 )
-from robobt.world.rules import in_own_defense_area, touches, without_absent
+from robobt.world.presence import without_absent
+from robobt.world.rules import in_own_defense_area, touches
 from robobt.worlds import sim_world
 from tests.skills.fixed_world import moved
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, penalty_in_play, stop_before

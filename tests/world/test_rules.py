@@ -28,7 +28,6 @@ from robobt.world.rules import (
     own_side,
     owner,
     scorer,
-    taken_off,
     touches,
 )
 from robobt.world.state import GOAL_HEIGHT, RECEIVED_HEIGHT, ROBOT_HEIGHT
@@ -305,35 +304,6 @@ def test_the_flat_front_turns_with_the_robot(heading: float) -> None:
 
 def test_a_ball_well_aside_is_not_touched() -> None:
     assert not touches(robot(), BallState(0.05, 0.15))
-
-
-# Robots on the field.
-
-OUTSIDE = FIELD.half_width + 0.15
-
-
-def team(*places: tuple[float, float]) -> list[RobotState]:
-    return [RobotState(number, x, y) for number, (x, y) in enumerate(places)]
-
-
-@pytest.mark.parametrize("y", [OUTSIDE, -OUTSIDE])
-def test_a_robot_too_many_is_off_once_it_stands_beside_the_half_way_line(y: float) -> None:
-    robots = team((-4.0, 0.0), (0.9, y), (1.0, 1.0))
-    assert taken_off(FIELD, robots, 2) == {1}
-    assert taken_off(FIELD, robots, 3) == frozenset()
-    assert taken_off(FIELD, robots, None) == frozenset()
-
-
-@pytest.mark.parametrize(("x", "y"), [(1.01, OUTSIDE), (0.0, FIELD.half_width - 0.01)])
-def test_a_robot_elsewhere_is_not_off(x: float, y: float) -> None:
-    assert taken_off(FIELD, team((-4.0, 0.0), (x, y)), 1) == frozenset()
-
-
-def test_no_more_robots_are_off_than_there_are_too_many() -> None:
-    robots = team((-4.0, 0.0), (0.0, OUTSIDE), (0.5, -OUTSIDE), (1.0, 0.0))
-    assert taken_off(FIELD, robots, 3) == {2}
-    assert taken_off(FIELD, robots, 2) == {1, 2}
-    assert taken_off(FIELD, robots, 1) == {1, 2}
 
 
 # In the air.

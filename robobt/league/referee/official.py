@@ -26,7 +26,7 @@ from robobt.match.referee.openings import opening_of
 from robobt.match.refereeing import referee_settings
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
-from robobt.world.rules import without_absent
+from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
 _DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.8

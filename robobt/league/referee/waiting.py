@@ -12,7 +12,8 @@ from robobt.match.referee.restarts import penalty
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import distance
-from robobt.world.rules import ball_out, in_defense_area, own_side, without_absent
+from robobt.world.presence import without_absent
+from robobt.world.rules import ball_out, in_defense_area, own_side
 from robobt.world.state import ROBOT_RADIUS, Frame
 
 _NEAR_BALL = 0.54

@@ -21,6 +21,7 @@ from robobt.league.wire.packets import on_field
 from robobt.sim.settings import BallSettings
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.geometry import Point
+from robobt.world.presence import GOAL_SUBSTITUTION_WIDTH
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _MM = 1000.0
@@ -30,13 +31,6 @@ _LINE_THICKNESS = 0.01
 
 _GOAL_HEIGHT = 0.16
 """Height of the goals [m]. Source: RoboCup SSL rules."""
-
-_SUBSTITUTION_WIDTH = 0.3
-"""Strip along the walls behind the goal lines in which robots are off the field [m].
-
-The rules have it in division A; without it the game controller counts robots that left the
-field for a card as long as they are seen.
-"""
 
 CAMERA_HEIGHT = 4.0
 """Height of the cameras above the ground [m]. Source: grSim's."""
@@ -168,7 +162,8 @@ def _write_size(size: SSL_GeometryFieldSize, field: FieldGeometry) -> None:
     size.goal_height = _mm(_GOAL_HEIGHT)
     size.boundary_width = _mm(field.margin)
     size.boundary_width_goal_line = _mm(field.goal_line_margin)
-    size.goal_substitution_area_width = _mm(min(_SUBSTITUTION_WIDTH, field.goal_line_margin))
+    # The rules have it in division A only, the game controller's default geometry in both.
+    size.goal_substitution_area_width = _mm(min(GOAL_SUBSTITUTION_WIDTH, field.goal_line_margin))
     size.penalty_area_depth = _mm(field.defense_depth)
     size.penalty_area_width = _mm(field.defense_width)
     size.goal_center_to_penalty_mark = _mm(field.penalty_distance)

@@ -18,7 +18,7 @@ from robobt.match.referee.verdicts import HIGHEST_GOAL, PENALTY_BREACHES, resump
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
-from robobt.world.rules import without_absent
+from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
 _SPOT_PATIENCE = 3.0

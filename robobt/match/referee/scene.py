@@ -9,7 +9,8 @@ from robobt.match.referee.touches import Touches
 from robobt.world.division import Division, division_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
-from robobt.world.rules import ball_out, without_absent
+from robobt.world.presence import without_absent
+from robobt.world.rules import ball_out
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 

@@ -14,7 +14,8 @@ from robobt.match import load_scenario
 from robobt.match.loop import Match
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world.game import GameState, Team
-from robobt.world.rules import in_own_defense_area, without_absent
+from robobt.world.presence import without_absent
+from robobt.world.rules import in_own_defense_area
 from robobt.world.state import Frame
 from robobt.worlds import sim_world
 
