@@ -20,10 +20,13 @@ from robobt.tree.engine.closures import Marks as Marks
 from robobt.tree.engine.closures import Stop as Stop
 from robobt.tree.engine.closures import Tick as Tick
 from robobt.tree.engine.closures import Visit as Visit
+from robobt.tree.engine.closures import marks_of as marks_of
 from robobt.tree.engine.closures import not_a_status as not_a_status
 from robobt.tree.engine.closures import own_method as own_method
+from robobt.tree.engine.closures import shown as shown
 from robobt.tree.engine.dispatch import compile_node as compile_node
 from robobt.tree.engine.dispatch import compile_tree as compile_tree
+from robobt.tree.engine.dispatch import register as register
 from robobt.tree.engine.fast_tree import LEAVING as LEAVING
 from robobt.tree.engine.fast_tree import FastTree as FastTree
 from robobt.tree.engine.fast_tree import abandon as abandon

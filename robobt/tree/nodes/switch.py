@@ -10,7 +10,18 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
-from robobt.tree.engine import Plan, Stop, Tick, Visit, composite_stop, own_method, replan
+from robobt.tree.engine import (
+    Plan,
+    Stop,
+    Tick,
+    Visit,
+    composite_stop,
+    marks_of,
+    own_method,
+    register,
+    replan,
+    shown,
+)
 
 
 class Switch(Composite):
@@ -82,17 +93,23 @@ class Switch(Composite):
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
         """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
+        marks, show = marks_of(visit), shown(self, visit)
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []
         stop = composite_stop(self, visit, children, plan)
+        before: tuple[int | None, object] | None = None
 
         def tick() -> Status:
+            nonlocal before
             if self.children != children:
                 replan(self, visit, children, plan)
             if initialise is not None and self.status is not Status.RUNNING:
                 initialise()
             chosen = self._choose()
+            if marks is not None and (chosen, self.feedback_message) != before:
+                before = (chosen, self.feedback_message)
+                marks.changed = True
             for place, step in enumerate(plan):
                 if place != chosen and step.child.status is not Status.INVALID:
                     step.stop(Status.INVALID)
@@ -108,8 +125,8 @@ class Switch(Composite):
                     self.status = status
                 else:
                     stop(status)
-            if visit is not None:
-                visit(self)
+            if show is not None:
+                show(self)
             return status
 
         return tick, stop
@@ -119,3 +136,14 @@ class Switch(Composite):
         chosen = self._places.get(case, self._otherwise)
         self.feedback_message = case if chosen is not None else f"nothing to do in {case}"
         return chosen
+
+
+def _closures(switch: Switch, visit: Visit | None) -> tuple[Tick, Stop]:
+    return switch.closures(visit)
+
+
+def _without_hooks(switch: Behaviour) -> bool:
+    return own_method(switch, "initialise") is own_method(switch, "terminate") is None
+
+
+register(Switch, _closures, _without_hooks)
