@@ -101,6 +101,16 @@ def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
 
 
 @compiled
+def arrival_times(robots: FloatArray, places: FloatArray) -> FloatArray:
+    """Compute when every robot, a row of :func:`movers`, can stand at every place (m, 2): (n, m) [s]."""
+    out = np.empty((len(robots), len(places)))
+    for i in range(len(robots)):
+        for j in range(len(places)):
+            out[i, j] = arrival_time(robots[i], places[j, 0], places[j, 1], 0.0)
+    return out
+
+
+@compiled
 def way_in(time: float, speed: float, rolling: float) -> float:
     """Return how far a ball goes within ``time`` that rolls from the speed ``rolling`` on [m]."""
     way = 0.0
@@ -129,30 +139,42 @@ def meetings(
         half_length: half the field's length [m].
         half_width: half its width [m].
     """
-    n = len(robots)
-    out = np.empty((n, 3))
+    # Where the ball is from step to step, up to where it has to be met at the latest.
+    path = np.empty((int(_HORIZON / STEP) + 2, 3))
     speed = hypot(ball[2], ball[3])
     ux, uy = 0.0, 0.0
     if speed > 0.0:
         ux, uy = ball[2] / speed, ball[3] / speed
-    for i in range(n):
-        time, before, slack, x, y = 0.0, 0.0, 0.0, ball[0], ball[1]
+    last, time, way = 0, 0.0, 0.0
+    while True:
+        x, y = ball[0] + way * ux, ball[1] + way * uy
+        path[last, 0], path[last, 1], path[last, 2] = time, x, y
+        further = way_in(time + STEP, speed, rolling)
+        gone = abs(x) > half_length or abs(y) > half_width
+        if gone or further - way < 0.02 or time >= _HORIZON:
+            break
+        last += 1
+        time += STEP
+        way = further
+    out = np.empty((len(robots), 3))
+    for i in range(len(robots)):
+        robot = robots[i]
+        fastest = max(robot[TOP], hypot(robot[VX], robot[VY]))
+        k, late = 0, 0.0
         while True:
-            way = way_in(time, speed, rolling)
-            x, y = ball[0] + way * ux, ball[1] + way * uy
-            late = arrival_time(robots[i], x, y, _BODY) - time
-            gone = abs(x) > half_length or abs(y) > half_width
-            still = way_in(time + STEP, speed, rolling) - way < 0.02
-            if late <= 0.0:
-                if time > 0.0 and before > 0.0:
-                    slack = STEP * late / (before - late)
-                break
-            if gone or still or time >= _HORIZON:
-                time += late
-                break
-            before = late
-            time += STEP
-        out[i, 0] = time + slack
+            time, x, y = path[k, 0], path[k, 1], path[k, 2]
+            # Most steps are out of its reach, which is seen without computing when it would be there.
+            if k == last or hypot(x - robot[X], y - robot[Y]) - _BODY < fastest * time + 1e-6:
+                late = arrival_time(robot, x, y, _BODY) - time
+                if k == last or late <= 0.0:
+                    break
+            k += 1
+        if late > 0.0:
+            time += late
+        elif k > 0:
+            before = arrival_time(robot, path[k - 1, 1], path[k - 1, 2], _BODY) - path[k - 1, 0]
+            time += STEP * late / (before - late)
+        out[i, 0] = time
         out[i, 1] = x
         out[i, 2] = y
     return out

@@ -11,7 +11,7 @@ from math import hypot, inf
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from robobt.motion.arrival import arrival_time, meetings, movers
+from robobt.motion.arrival import arrival_times, meetings, movers
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.defence import mark_places, wall_places
@@ -83,11 +83,11 @@ def pass_under_way(frame: Frame, team: TeamStore) -> bool:
 def _look(frame: Frame, plan: Plan) -> None:
     ball, field = frame.ball, frame.field
     plan.rolling = plan.watch.rolling_speed(frame)
-    plan.own_movers, plan.their_movers = movers(frame.own), movers(frame.opponents)
+    everybody = movers((*frame.own, *frame.opponents))
+    plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
-    size = (field.half_length, field.half_width)
-    ours = meetings(plan.own_movers, state, plan.rolling, *size)[:, 0].tolist()
-    theirs = meetings(plan.their_movers, state, plan.rolling, *size)[:, 0].tolist()
+    times = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)[:, 0].tolist()
+    ours, theirs = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, theirs, strict=True)}
 
@@ -171,17 +171,14 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     old_marks, old_tasks = plan.marks, plan.tasks
     plan.marks = {}
     if jobs and free:
-        cost = np.empty((len(free), len(jobs)))
-        rows = movers(free)
+        times = arrival_times(movers(free), np.array([place for _, place, _ in jobs]))
         for i, robot in enumerate(free):
-            for j, (task, place, what) in enumerate(jobs):
-                time = arrival_time(rows[i], place[0], place[1], 0.0)
-                if old_tasks.get(robot.id) is task and (
-                    task is not Task.MARK or old_marks.get(robot.id) == what
-                ):
-                    time -= KEEP_GAIN
-                # Crossing over is worse than two short ways: the longest counts most.
-                cost[i, j] = time + 0.15 * time * time
+            old = old_tasks.get(robot.id)
+            for j, (task, _, what) in enumerate(jobs):
+                if old is task and (task is not Task.MARK or old_marks.get(robot.id) == what):
+                    times[i, j] -= KEEP_GAIN
+        # Crossing over is worse than two short ways: the longest counts most.
+        cost = times + 0.15 * times * times
         rows_taken, jobs_taken = linear_sum_assignment(cost)
         for row, column in zip(rows_taken.tolist(), jobs_taken.tolist(), strict=True):
             task, place, what = jobs[column]
