@@ -33,6 +33,7 @@ class KeptView:
         _restore(self._the_ball, _BALL, ball)
         for robot, values in zip(self._robots, robots, strict=True):
             _restore(robot, _ROBOT, values)
+        self._view.made.clear()
         return True
 
     def _read(self) -> tuple[tuple[object, ...], tuple[object, ...], list[tuple[object, ...]]]:

@@ -17,7 +17,7 @@ import numpy as np
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotState
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 X, Y, VX, VY, TOP, ACCELERATION, BRAKING = range(7)
 """Columns of :func:`movers`."""
@@ -40,6 +40,22 @@ def movers(robots: Iterable[RobotState]) -> FloatArray:
         (r.x, r.y, r.vx, r.vy, r.limits.max_speed, r.limits.acceleration, r.limits.braking) for r in robots
     ]
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+
+def movers_of(frame: Frame) -> FloatArray:
+    """Return :func:`movers` of everybody on the field, the own team first; made once a frame."""
+    made: FloatArray | None = frame.made.get("movers")
+    if made is None:
+        made = frame.made["movers"] = movers((*frame.own, *frame.opponents))
+    return made
+
+
+def place_of(frame: Frame, me: RobotState) -> int:
+    """Return which row of :func:`movers_of` is the own robot's, -1 where it is not in the frame."""
+    for place, robot in enumerate(frame.own):
+        if robot.id == me.id:
+            return place
+    return -1
 
 
 @compiled

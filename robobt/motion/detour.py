@@ -1,34 +1,40 @@
-"""Ways round circular obstacles: the geometry beneath the path planner."""
+"""Ways round circular obstacles: the geometry beneath the path planner, compiled."""
 
 from __future__ import annotations
 
 from math import acos, atan2, cos, hypot, inf, pi, sin, sqrt, tan
 
-from robobt.world.geometry import Point
+import numpy as np
 
-Circle = tuple[float, float, float]
-"""Centre x and y, radius [m]."""
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
 
 _CLEARANCE = 0.04
 """How much wider than the blocking circle a detour is, so that the next plan finds it free [m]."""
 _WIDEST_TURN = 0.9
 
 
-def first_hit(start: Point, end: Point, circles: list[Circle], end_counts: bool) -> Circle | None:
-    """Return the circle that the segment enters first, shrunk to leave out the segment's ends.
+@compiled
+def first_hit(
+    x: float, y: float, gx: float, gy: float, circles: FloatArray, end_counts: bool
+) -> tuple[int, float]:
+    """Find the circle that the segment from (x, y) to (gx, gy) enters first.
 
-    ``end_counts`` says whether a circle around the end is shrunk too.
+    ``circles`` are (n, 3), centre and radius [m]; each is shrunk to leave out the segment's start.
+    ``end_counts`` says whether one around the end is shrunk too.
+
+    Returns:
+        Its row, -1 where there is none, and its radius, shrunk [m].
     """
-    x, y = start
-    gx, gy = end
     dx, dy = gx - x, gy - y
     length = hypot(dx, dy)
+    hit, hit_radius = -1, 0.0
     if length < 1e-6:
-        return None
+        return hit, hit_radius
     ux, uy = dx / length, dy / length
     nearest = inf
-    hit: Circle | None = None
-    for cx, cy, radius in circles:
+    for i in range(len(circles)):
+        cx, cy, radius = circles[i, 0], circles[i, 1], circles[i, 2]
         ox, oy = cx - x, cy - y
         ahead = ox * ux + oy * uy
         if ahead <= 0.0 or ahead >= length + radius:
@@ -49,42 +55,49 @@ def first_hit(start: Point, end: Point, circles: list[Circle], end_counts: bool)
         entry = ahead - sqrt(half_chord)
         if entry < length and entry < nearest:
             nearest = entry
-            hit = (cx, cy, radius)
-    return hit
+            hit, hit_radius = i, radius
+    return hit, hit_radius
 
 
+@compiled
 def detour(
-    start: Point, end: Point, circle: Circle, side: float, circles: list[Circle], depth: int
-) -> tuple[Point, float, float]:
-    """Compute the first waypoint round ``circle`` on one side.
+    x: float,
+    y: float,
+    gx: float,
+    gy: float,
+    circle: FloatArray,
+    side: float,
+    circles: FloatArray,
+    depth: int,
+) -> tuple[float, float, float, float]:
+    """Compute the first waypoint from (x, y) to (gx, gy) round ``circle`` on one side.
 
-    A ``side`` of 1 leaves the circle to the right, -1 to the left; ``depth`` is how many more circles to go
-    round on the first leg.
+    A ``side`` of 1 leaves the circle to the right, -1 to the left; ``depth`` is how many more of ``circles``
+    to go round on the first leg.
 
     Returns:
-        The point where the tangents from start and end meet, the length of the
+        The point where the tangents from start and end meet, x and y, the length of the
         path plus a penalty for what else is in it, and the angle turned there.
     """
-    cx, cy, radius = circle
+    cx, cy, radius = circle[0], circle[1], circle[2]
     wide = radius + _CLEARANCE
-    sx, sy = start[0] - cx, start[1] - cy
-    gx, gy = end[0] - cx, end[1] - cy
-    to_start, to_end = hypot(sx, sy), hypot(gx, gy)
+    to_start, to_end = hypot(x - cx, y - cy), hypot(gx - cx, gy - cy)
     near, far = min(wide, to_start), min(wide, to_end)
-    turned = (atan2(sy, sx) - atan2(gy, gx)) * side % (2.0 * pi)
+    turned = (atan2(y - cy, x - cx) - atan2(gy - cy, gx - cx)) * side % (2.0 * pi)
     to_tangent = acos(near / to_start) if to_start > 0.0 else 0.0
     arc = max(0.0, turned - to_tangent - (acos(far / to_end) if to_end > 0.0 else 0.0))
     leg = sqrt(max(0.0, to_start * to_start - near * near))
     cost = leg + wide * arc + sqrt(max(0.0, to_end * to_end - far * far))
-    tangent = atan2(-sy, -sx) + side * (pi / 2.0 - to_tangent)
+    tangent = atan2(cy - y, cx - x) + side * (pi / 2.0 - to_tangent)
     reach = leg + near * tan(min(arc / 2.0, _WIDEST_TURN)) + 0.01
-    corner = (start[0] + reach * cos(tangent), start[1] + reach * sin(tangent))
+    corner_x, corner_y = x + reach * cos(tangent), y + reach * sin(tangent)
     if depth > 0:
-        others = [other for other in circles if other[0] != cx or other[1] != cy]
-        blocking = first_hit(start, corner, others, False)
-        if blocking is not None:
-            point, extra, bend = detour(start, corner, blocking, side, others, depth - 1)
-            return (point, cost + extra - reach + 0.1, arc + bend)
-        if first_hit(corner, end, others, True) is not None:
+        others = circles[np.flatnonzero((circles[:, 0] != cx) | (circles[:, 1] != cy))]
+        blocking, shrunk = first_hit(x, y, corner_x, corner_y, others, False)
+        if blocking >= 0:
+            nearer = np.array((others[blocking, 0], others[blocking, 1], shrunk))
+            px, py, extra, bend = detour(x, y, corner_x, corner_y, nearer, side, others, depth - 1)
+            return px, py, cost + extra - reach + 0.1, arc + bend
+        if first_hit(corner_x, corner_y, gx, gy, others, True)[0] >= 0:
             cost += 0.2
-    return (corner, cost, arc)
+    return corner_x, corner_y, cost, arc

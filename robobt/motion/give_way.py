@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
+from robobt.motion.arrival import VX, VY, X, Y, movers_of, place_of
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _CLOSING = 1.0
@@ -27,27 +30,45 @@ def give_way(frame: Frame, me: RobotState, order: RobotCommand, *, mates: bool =
     Of two robots that drive at each other each lets the other be the faster one: neither drives on
     faster than leaves room to brake, and an oncoming robot uses that room up.
     """
-    c, s = cos(me.heading), sin(me.heading)
-    vx, vy = c * order.vx - s * order.vy, s * order.vx + c * order.vy
+    everybody = movers_of(frame)
+    if mates:
+        others, skip = everybody, place_of(frame, me)
+    else:
+        others, skip = everybody[len(frame.own) :], -1
+    changed, vx, vy = _slowed(me.x, me.y, me.heading, order.vx, order.vy, others, skip)
+    if changed:
+        order.vx, order.vy = vx, vy
+    return order
+
+
+@compiled
+def _slowed(
+    x: float, y: float, heading: float, ahead: float, left: float, others: FloatArray, skip: int
+) -> tuple[bool, float, float]:
+    """Return whether a velocity ahead and to the left has to change, and the one to drive with [m/s].
+
+    Of ``others``, as of movers, the row ``skip`` is the robot itself.
+    """
+    c, s = cos(heading), sin(heading)
+    vx, vy = c * ahead - s * left, s * ahead + c * left
     changed = False
-    for other in frame.others(me.id) if mates else frame.opponents:
-        dx, dy = other.x - me.x, other.y - me.y
+    for i in range(len(others)):
+        ox, oy = others[i, VX], others[i, VY]
+        dx, dy = others[i, X] - x, others[i, Y] - y
         centres = hypot(dx, dy)
         gap = max(0.0, centres - 2.0 * ROBOT_RADIUS)
-        if gap > _LOOK or centres == 0.0:
+        if i == skip or gap > _LOOK or centres == 0.0:
             continue
         nx, ny = dx / centres, dy / centres
         # Only where it would be hit: what passes by does not matter.
-        across = abs(nx * (vy - other.vy) - ny * (vx - other.vx))
-        closing = nx * (vx - other.vx) + ny * (vy - other.vy)
+        across = abs(nx * (vy - oy) - ny * (vx - ox))
+        closing = nx * (vx - ox) + ny * (vy - oy)
         if closing <= 0.0 or across * gap > closing * 3.0 * ROBOT_RADIUS:
             continue
-        coming = max(0.0, -(nx * other.vx + ny * other.vy))
+        coming = max(0.0, -(nx * ox + ny * oy))
         most = max(0.0, sqrt(_CLOSING * _CLOSING + 2.0 * _BRAKING * gap) - coming)
-        ahead = nx * vx + ny * vy
-        if ahead > most:
-            vx, vy = vx - (ahead - most) * nx, vy - (ahead - most) * ny
+        towards = nx * vx + ny * vy
+        if towards > most:
+            vx, vy = vx - (towards - most) * nx, vy - (towards - most) * ny
             changed = True
-    if changed:
-        order.vx, order.vy = c * vx + s * vy, c * vy - s * vx
-    return order
+    return changed, c * vx + s * vy, c * vy - s * vx

@@ -13,13 +13,17 @@ from __future__ import annotations
 from functools import lru_cache
 from math import cos, hypot, inf, sqrt
 
-from robobt.motion.detour import Circle, detour, first_hit
+import numpy as np
+
+from robobt.motion.arrival import VX, VY, X, Y, movers_of, place_of
+from robobt.motion.detour import detour, first_hit
 from robobt.motion.give_way import give_way
 from robobt.motion.pilot import drive
 from robobt.motion.stadium import outside_stadium
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import compiled
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import Point
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
 from robobt.world.rules import (
     AREA_DISTANCE,
@@ -35,6 +39,8 @@ ROBOT_GAP = 0.03
 BALL_GAP = 0.01
 """Gap to an avoided ball below which a way is blocked [m]. Source: RoboBulls' published code."""
 
+_ROBOTS_APART = 2.0 * ROBOT_RADIUS + ROBOT_GAP
+_NOBODY = np.empty((0, 7))
 _AREA_GAP = 0.02
 _WALL_GAP = 0.02
 _LOOK_AHEAD = 0.4
@@ -165,10 +171,32 @@ def next_waypoint(
         if corner != (-target[0], target[1]):
             goal = (-corner[0], corner[1])
     corner_first = goal != target
-    circles = _circles(frame, me, goal, avoid_robots, ball_gap if avoid_ball else None)
-    first = first_hit(me.position, goal, circles, not corner_first) if circles else None
-    if first is None:
+    hit, radius, circles = -1, 0.0, _NOBODY
+    keep_off = _keep_off(frame)
+    if avoid_robots or avoid_ball or keep_off:
+        ball = frame.ball
+        ball_radius = -1.0
+        if avoid_ball or keep_off:
+            ball_radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else ball_gap)
+        hit, radius, circles = _blocked(
+            x,
+            y,
+            me.vx,
+            me.vy,
+            goal[0],
+            goal[1],
+            not corner_first,
+            movers_of(frame) if avoid_robots else _NOBODY,
+            place_of(frame, me),
+            ball.x,
+            ball.y,
+            ball.vx,
+            ball.vy,
+            ball_radius,
+        )
+    if hit < 0:
         return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
+    first = np.array((circles[hit, 0], circles[hit, 1], radius))
     acceleration = min(me.limits.acceleration, me.limits.lateral_acceleration)
     best = (goal, 0.0)
     least = inf
@@ -179,10 +207,9 @@ def next_waypoint(
         # The match waits; a robot that sways between two like ways tries one for a while, then the other.
         insists = 1.0 if int(frame.time / _INSIST) % 2 == 0 else -1.0
     for side in (1.0, -1.0):
-        point, cost, arc = detour(me.position, goal, first, side, circles, 4)
+        px, py, cost, arc = detour(x, y, goal[0], goal[1], first, side, circles, 4)
         if side == insists:
             cost -= _HEADSTRONG
-        px, py = point
         gap = hypot(px - x, py - y)
         if gap > 0.0:
             # Keep to the side one is already driving to.
@@ -191,8 +218,8 @@ def next_waypoint(
             cost += 10.0
         if cost < least:
             bend = 1.0 / cos(min(arc, 2.8) / 2.0) - 1.0
-            passing = sqrt(acceleration * max(first[2], _CORNER_SLACK / max(bend, 1e-3)))
-            best, least = (point, passing), cost
+            passing = sqrt(acceleration * max(radius, _CORNER_SLACK / max(bend, 1e-3)))
+            best, least = ((px, py), passing), cost
     return best
 
 
@@ -269,26 +296,43 @@ def _open(
     return goalkeeper or not in_own_defense_area(field, x, y, ROBOT_RADIUS)
 
 
-def _circles(
-    frame: Frame, me: RobotState, goal: Point, avoid_robots: bool, ball_gap: float | None
-) -> list[Circle]:
-    """Return the obstacles near enough to matter, each where it will be when the robot gets there."""
-    x, y = me.x, me.y
-    reach = hypot(goal[0] - x, goal[1] - y) + 1.0
-    pace = 1.0 / max(1.0, hypot(me.vx, me.vy))
-    circles: list[Circle] = []
-    if avoid_robots:
-        radius = 2.0 * ROBOT_RADIUS + ROBOT_GAP
-        for robot in frame.others(me.id):
-            ox, oy = robot.x, robot.y
-            gap = hypot(ox - x, oy - y)
-            if gap < reach:
-                ahead = min(_LOOK_AHEAD, gap * pace)
-                circles.append((ox + robot.vx * ahead, oy + robot.vy * ahead, radius))
-    keep_off = _keep_off(frame)
-    if ball_gap is not None or keep_off:
-        ball = frame.ball
-        ahead = min(_LOOK_AHEAD, hypot(ball.x - x, ball.y - y) * pace)
-        radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else ball_gap or 0.0)
-        circles.append((ball.x + ball.vx * ahead, ball.y + ball.vy * ahead, radius))
-    return circles
+@compiled
+def _blocked(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    gx: float,
+    gy: float,
+    end_counts: bool,
+    robots: FloatArray,
+    skip: int,
+    ball_x: float,
+    ball_y: float,
+    ball_vx: float,
+    ball_vy: float,
+    ball_radius: float,
+) -> tuple[int, float, FloatArray]:
+    """Return what :func:`first_hit` does and the obstacles (n, 3) near enough to matter.
+
+    Each is where it will be when the robot gets there. Of ``robots``, as of movers, the row ``skip`` is
+    the robot itself; a ball with a radius below 0 is no obstacle.
+    """
+    circles = np.empty((len(robots) + 1, 3))
+    n = 0
+    reach = hypot(gx - x, gy - y) + 1.0
+    pace = 1.0 / max(1.0, hypot(vx, vy))
+    for i in range(len(robots)):
+        ox, oy = robots[i, X], robots[i, Y]
+        gap = hypot(ox - x, oy - y)
+        if i != skip and gap < reach:
+            ahead = min(_LOOK_AHEAD, gap * pace)
+            circles[n] = (ox + robots[i, VX] * ahead, oy + robots[i, VY] * ahead, _ROBOTS_APART)
+            n += 1
+    if ball_radius >= 0.0:
+        ahead = min(_LOOK_AHEAD, hypot(ball_x - x, ball_y - y) * pace)
+        circles[n] = (ball_x + ball_vx * ahead, ball_y + ball_vy * ahead, ball_radius)
+        n += 1
+    circles = circles[:n]
+    hit, radius = first_hit(x, y, gx, gy, circles, end_counts)
+    return hit, radius, circles

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.geometry import FloatArray
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 
 ROBOT_RADIUS = 0.09
@@ -108,8 +109,24 @@ class BallState:
         return hypot(self.vx, self.vy)
 
 
+class Derived:
+    """What follows from a frame and many ask for: worked out once, and kept with it."""
+
+    __slots__ = ("_made",)
+    _made: dict[str, FloatArray]
+
+    @property
+    def made(self) -> dict[str, FloatArray]:
+        """What has been worked out so far; to be cleared by whoever changes the frame."""
+        try:
+            return self._made
+        except AttributeError:
+            self._made = {}
+            return self._made
+
+
 @dataclass(slots=True)
-class Frame:
+class Frame(Derived):
     """The field at one instant as ``team`` sees it: own goal at -x, attack towards +x.
 
     Attributes:

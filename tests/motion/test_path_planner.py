@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robobt.motion import detour, give_way, path_planner
 from robobt.motion.path_planner import allowed_target, next_waypoint, slowed, travel
 from robobt.world import (
     DIVISION_A,
@@ -243,3 +244,37 @@ def test_whoever_places_the_ball_may_enter_both_defence_areas(target: Point) -> 
     assert allowed_target(seen, me, target) != target
     assert allowed_target(seen, me, target, placing=True) == target
     assert next_waypoint(seen, me, target, placing=True)[0] == target
+
+
+COMPILED = (
+    (path_planner, "_blocked"),
+    (path_planner, "first_hit"),
+    (path_planner, "detour"),
+    (detour, "first_hit"),
+    (detour, "detour"),
+    (give_way, "_slowed"),
+)
+
+
+def orders(seed: int) -> list[float]:
+    """What robots among many others are sent, on their way and round each other."""
+    numbers = random.Random(seed)
+    found = []
+    for _ in range(50):
+        others = [
+            RobotState(i, numbers.uniform(-2, 2), numbers.uniform(-2, 2), 0.0, numbers.gauss(0, 1), 0.5)
+            for i in range(1, 12)
+        ]
+        me = robot(numbers.uniform(-3, 3), numbers.uniform(-3, 3), velocity=(numbers.gauss(0, 1), 0.3, 0.0))
+        seen = frame(me, (0.3, 0.2), mates=tuple(others[:5]), opponents=tuple(others[5:]), game=STOPPED)
+        order = travel(seen, me, (numbers.uniform(-3, 3), 0.0), 0.0, me.limits, avoid_ball=True)
+        order = give_way.give_way(seen, me, order, mates=True)
+        found += [order.vx, order.vy, order.omega]
+    return found
+
+
+def test_compiled_code_drives_as_python_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    compiled = orders(1)
+    for module, name in COMPILED:
+        monkeypatch.setattr(module, name, getattr(module, name).py_func)
+    assert orders(1) == pytest.approx(compiled, abs=1e-9)

@@ -11,7 +11,7 @@ from math import hypot, inf
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from robobt.motion.arrival import arrival_times, meetings, movers
+from robobt.motion.arrival import arrival_times, meetings, movers, movers_of
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.defence import mark_places, wall_places
@@ -83,7 +83,7 @@ def pass_under_way(frame: Frame, team: TeamStore) -> bool:
 def _look(frame: Frame, plan: Plan) -> None:
     ball, field = frame.ball, frame.field
     plan.rolling = plan.watch.rolling_speed(frame)
-    everybody = movers((*frame.own, *frame.opponents))
+    everybody = movers_of(frame)
     plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
     times = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)[:, 0].tolist()
