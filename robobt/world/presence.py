@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Sequence
+from math import inf
 
 from robobt.world.division import A, division_of
 from robobt.world.field import FieldGeometry
@@ -22,18 +22,8 @@ def in_substitution_area(field: FieldGeometry, robot: RobotState) -> bool:
     return abs(robot.y) > field.half_width and abs(robot.x) <= SUBSTITUTION_REACH
 
 
-def in_goal_substitution_area(field: FieldGeometry, robot: RobotState, side: float = -1.0) -> bool:
-    """Return whether a robot stands wholly in its team's goal substitution area, which division A has.
-
-    ``side`` is -1 where the team defends -x, else 1. Source: SSL rules of 2026; the limit, the league's game
-    controller, which does not count robots there.
-    """
-    limit = field.outer[0] - GOAL_SUBSTITUTION_WIDTH + ROBOT_RADIUS
-    return side * robot.x >= limit and division_of(field) is A
-
-
 def taken_off(
-    field: FieldGeometry, robots: Iterable[RobotState], most: int | None, side: float = -1.0
+    field: FieldGeometry, robots: Sequence[RobotState], most: int | None, side: float = -1.0
 ) -> frozenset[int]:
     """Return the numbers of a team's robots that count as off the field.
 
@@ -48,15 +38,12 @@ def taken_off(
         most: how many the team may have.
         side: of the team's goal in these coordinates, -1 or 1.
     """
-    robots = tuple(robots)
     excess = 0 if most is None else len(robots) - most
     if excess <= 0:
         return frozenset()
-    outside = [
-        robot.id
-        for robot in robots
-        if in_substitution_area(field, robot) or in_goal_substitution_area(field, robot, side)
-    ]
+    # Wholly in the area, as the league's game controller counts.
+    line = field.outer[0] - GOAL_SUBSTITUTION_WIDTH + ROBOT_RADIUS if division_of(field) is A else inf
+    outside = [it.id for it in robots if in_substitution_area(field, it) or side * it.x >= line]
     return frozenset(sorted(outside)[-excess:])
 
 
@@ -69,8 +56,14 @@ def without_absent(frame: Frame, game: GameState) -> Frame:
     off = taken_off(field, frame.own, own), taken_off(field, frame.opponents, opponents, side=1.0)
     if not off[0] and not off[1]:
         return frame
-    return replace(
-        frame,
-        own=tuple(robot for robot in frame.own if robot.id not in off[0]),
-        opponents=tuple(robot for robot in frame.opponents if robot.id not in off[1]),
+    return Frame(
+        frame.time,
+        field,
+        frame.ball,
+        tuple([robot for robot in frame.own if robot.id not in off[0]]) if off[0] else frame.own,
+        tuple([robot for robot in frame.opponents if robot.id not in off[1]]) if off[1] else frame.opponents,
+        frame.team,
+        frame.period,
+        frame.game,
+        frame.last_touch,
     )

@@ -26,13 +26,15 @@ from robobt.match.referee.openings import opening_of
 from robobt.match.refereeing import referee_settings
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
+from robobt.world.game import Restart
 from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
-_DECIDING, _STOPPED, _IN_PLAY = 0.1, 0.2, 0.8
+_DECIDING, _STOPPED, _WAITING = 0.1, 0.2, 0.8
 """Time from one look of the controller at the match to the next [s].
 
-While it has something to decide, while play is stopped, while the ball is in play. Reports are told at once.
+While it has something to decide, while play is stopped, while it waits for a report: with the ball in play
+or being placed. Reports are told at once.
 """
 
 _DECIDES = 1.5
@@ -87,9 +89,11 @@ class OfficialReferee:
                     self._reports = []
                     self._decided = frame.time + _DECIDES
                     events += self._hear(controller.change(changes), frame.time)
-                pause = _IN_PLAY if self._follower.game.in_play else _STOPPED
+                game = self._follower.game
+                waits = game.in_play or game.restart is Restart.BALL_PLACEMENT
+                pause = _WAITING if waits else _STOPPED
                 self._due = frame.time + (_DECIDING if frame.time < self._decided else pause)
-                controller.ask(frame.time, without_absent(frame, self._follower.game))
+                controller.ask(frame.time, without_absent(frame, game))
         except GameControllerError as error:
             crash = "" if self._process is None else self._process.crash()
             raise GameControllerError(f"{error}: {crash}" if crash else str(error)) from error

@@ -74,15 +74,15 @@ class Crash(Rule):
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report two robots every two seconds."""
         for blue, yellow in close_pairs(scene.frame, _TOUCHING):
-            pair = blue, yellow
+            pair, speed = (blue, yellow), _closing(blue, yellow)
             if scene.before is not None:
                 earlier = (
                     _robot(scene.before.own, blue) or blue,
                     _robot(scene.before.opponents, yellow) or yellow,
                 )
-                if _closing(*earlier) > _closing(*pair):
-                    pair = earlier
-            speed = _closing(*pair)
+                before = _closing(*earlier)
+                if before > speed:
+                    pair, speed = earlier, before
             if speed > self._limit and self._again.ready((blue.id, yellow.id), scene.time):
                 yield _crash(scene, *pair, speed)
 
