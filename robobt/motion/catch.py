@@ -1,6 +1,6 @@
 """Take a rolling ball softly: give way along its path, so that it meets the mouth slowly.
 
-A dribbler takes a ball that comes at it no faster than ``catch_speed``; a faster one bounces off.
+A dribbler takes a ball that comes at it no faster than its ``receive_speed``; a faster one bounces off.
 """
 
 from __future__ import annotations
@@ -17,6 +17,15 @@ MOUTH = 0.0965
 
 _SHARE = 0.8
 """Share of its acceleration that a robot plans with to give way."""
+
+_SETTLES = 0.1
+"""Time constant with which the robot comes onto the line at last [s]."""
+
+_LEAST = 0.3
+"""Share of its acceleration that a robot always gives way with."""
+
+_CARRY = 0.7
+"""How far the robot may brake with the ball [m]; the rules allow 1 m of dribbling."""
 
 _SLACK = 0.8
 """Share of the catch speed at which the ball is met."""
@@ -40,12 +49,20 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     side = 1.0 if left >= 0.0 else -1.0
     leftward = me.vy * ux - me.vx * uy
     stands = period + 2.0 * me.limits.reaction
-    across = side * approach_speed(
-        side * left, side * leftward, limits.max_speed, limits.acceleration, limits.braking, stands
-    )
-    slow = _SLACK * me.limits.catch_speed
+    step = limits.acceleration * stands
+    gentle = _SHARE * limits.acceleration
+    most = min(limits.max_speed, abs(left) / _SETTLES)
+    across = side * approach_speed(side * left, side * leftward, most, gentle, gentle, stands)
+    # The wheels share what they can do: first onto the line, with the rest along it.
+    across = leftward + min(step, max(-step, across - leftward))
+    slow = _SLACK * me.limits.receives
     closing = sqrt(slow * slow + 2.0 * _SHARE * limits.acceleration * gap)
-    away = min(limits.max_speed, max(0.0, speed - closing))
+    # No faster than it can stop again before it has carried the ball too far.
+    most = min(limits.max_speed, sqrt(2.0 * _SHARE * me.limits.hold_acceleration * _CARRY))
+    away = min(most, max(0.0, speed - closing))
+    onward = me.vx * ux + me.vy * uy
+    rest = max(_LEAST * step, sqrt(max(0.0, step * step - (across - leftward) ** 2)))
+    away = onward + min(rest, max(-rest, away - onward))
     vx, vy = ux * away - uy * across, uy * away + ux * across
     order = command(me, vx, vy, turn_rate(me, atan2(-uy, -ux), limits, period), limits, period)
     order.dribbler = True

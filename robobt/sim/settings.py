@@ -110,7 +110,9 @@ class SimSettings(Settings):
     body: BodySettings = BodySettings()
     wheels: WheelSettings | None = Field(None, description="of robots that slip; none without")
     shell: ShellSettings | None = Field(None, description="of robots with wheels; a round hull without")
-    limits: RobotLimits = Field(RobotLimits(), description="of robots that are given none of their own")
+    limits: RobotLimits = Field(
+        RobotLimits(receive_speed=1.6), description="of robots that are given none of their own"
+    )
     dribbler: DribblerSettings = DribblerSettings()
     kicker: KickerSettings = KickerSettings()
     contact: ContactSettings = ContactSettings()
@@ -142,6 +144,7 @@ _GRSIM = SimSettings(
         max_turn=20.0,
         turn_acceleration=50.0,
         catch_speed=0.6,
+        receive_speed=3.0,
         hold_acceleration=50.0,
         reaction=1 / 60,
     ),
@@ -224,6 +227,7 @@ PRESETS: dict[str, SimSettings] = {
             max_turn=20.0,
             turn_acceleration=50.0,
             catch_speed=1.0,
+            receive_speed=3.0,
             hold_acceleration=15.0,
         ),
         dribbler=DribblerSettings(kind="force", pull=20.0, side=20.0, reach=0.01),
@@ -233,7 +237,9 @@ PRESETS: dict[str, SimSettings] = {
     "robobulls": SimSettings(
         ball=_GRSIM_BALL,
         body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
-        limits=_GRSIM.limits.model_copy(update={"braking": 4.6, "catch_speed": 4.0, "reaction": 0.0}),
+        limits=_GRSIM.limits.model_copy(
+            update={"braking": 4.6, "catch_speed": 4.0, "receive_speed": 4.0, "reaction": 0.0}
+        ),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
         kicker=KickerSettings(
             max_speed=7.5, damping=0.2, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0

@@ -11,9 +11,9 @@ class RobotLimits(Settings):
     """Limits of one robot's motion, SI units.
 
     ``side_acceleration`` and ``side_braking`` default to the forward values,
-    ``turn_braking`` to ``turn_acceleration``. The defaults are the typical league
-    robot of the simulators' presets: 3 m/s, 3 m/s^2, braking at 6 m/s^2, and a
-    dribbler that pulls at the ball with 4 m/s^2.
+    ``turn_braking`` to ``turn_acceleration``, ``receive_speed`` to ``catch_speed``. The
+    defaults are the typical league robot of the simulators' presets: 3 m/s, 3 m/s^2,
+    braking at 6 m/s^2, and a dribbler that pulls at the ball with 4 m/s^2.
     """
 
     max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
@@ -26,6 +26,9 @@ class RobotLimits(Settings):
     turn_braking: float | None = Field(None, gt=0, le=5000, description="slowing a turn down [rad/s^2]")
     catch_speed: float = Field(
         0.5, gt=0, le=10, description="speed relative to a ball at which the dribbler still takes it [m/s]"
+    )
+    receive_speed: float | None = Field(
+        None, gt=0, le=10, description="the same of a ball that comes at a robot that does not brake [m/s]"
     )
     hold_acceleration: float = Field(
         3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"
@@ -43,6 +46,11 @@ class RobotLimits(Settings):
     def lateral_braking(self) -> float:
         """Braking sideways [m/s^2]."""
         return self.braking if self.side_braking is None else self.side_braking
+
+    @property
+    def receives(self) -> float:
+        """Speed at which a ball may come at the dribbler [m/s]."""
+        return self.catch_speed if self.receive_speed is None else self.receive_speed
 
     @property
     def angular_braking(self) -> float:

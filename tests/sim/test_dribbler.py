@@ -7,7 +7,7 @@ from math import pi, sqrt
 import pytest
 
 from robobt.sim import PRESETS, SimWorld, preset
-from robobt.world import DIVISION_A, DIVISION_B, Placement, RobotCommand
+from robobt.world import BALL_RADIUS, DIVISION_A, DIVISION_B, Placement, RobotCommand
 from tests.sim.rig import IT, ME, ball_offset, holding, one_robot, time_lost
 
 
@@ -146,3 +146,15 @@ def test_a_ball_that_is_taken_from_the_dribbler_stays_where_it_is_put(name: str)
         world.act({ME: RobotCommand(dribbler=True)})
         ball = world.truth().ball
         assert (ball.x, ball.y, ball.speed) == (-1.5, -1.0, 0.0)
+
+
+@pytest.mark.parametrize("kind", ["default", "grsim", "rsim", "sumatra", "robobulls"])
+@pytest.mark.parametrize("backing", [0.0, 0.7, 1.5])
+def test_an_arriving_ball_stays_up_to_the_speed_among_the_limits(kind: str, backing: float) -> None:
+    world = one_robot(kind, ball=(0.5, 0, 0, 0), period=1 / 60)
+    fast = backing + world.settings.limits.receives
+    world.reset(Placement({ME: (0, 0, 0)}, (0.5, 0.015, -fast, 0), {ME: (-backing, 0)}), seed=0)
+    for _ in range(40):
+        world.act({ME: RobotCommand(vx=-backing, dribbler=True)})
+    offset, _ = ball_offset(world)
+    assert offset < world.settings.body.face + BALL_RADIUS + 0.01

@@ -28,6 +28,9 @@ REDIRECT_SPEED = 3.2
 SHORTEST_REDIRECT = 1.8
 """Of a pass that is to be sent on with one touch [m]."""
 
+REDIRECT_WORTH = 0.25
+"""Least that the ball has to be worth at the end of a pass that is to be sent on with one touch."""
+
 TURNS = 0.2
 """What a receiver needs to turn to where it sends the ball on [s]."""
 
@@ -162,6 +165,8 @@ def _rate(
             if chance < size[5]:
                 continue
             worth = point_worth(ox, oy, x, y, wait + flight, opponents, half_length, half_goal)
+            if arrival == REDIRECT_SPEED and worth < REDIRECT_WORTH:
+                continue
             score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
             if score > out[g, 0]:
                 out[g, 0] = score

@@ -10,7 +10,14 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from robobt.skills.tactics.lanes import RECEIVE_SPEED, arrive_chance, flight_time, kick_speed, sigmoid
+from robobt.skills.tactics.lanes import (
+    RECEIVE_SPEED,
+    arrive_chance,
+    flight_time,
+    kick_speed,
+    sigmoid,
+    time_to_pass,
+)
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -32,6 +39,9 @@ _SPREAD = 0.045
 
 _NEAR_GOAL = 2.2
 """Opponents nearer to their goal's middle keep between it and the ball [m]."""
+
+_FREE = 1.5
+"""Whoever gets to the ball so much before the first opponent, or half of it, has it for itself [s]."""
 
 _KEEPS = 0.75
 """An opponent nearer to its goal's middle than this keeps it [m]."""
@@ -172,10 +182,10 @@ def point_worth(
         shot = shot_chance(x, y, delay + turn, opponents, goal_x, half_goal, best)
         if angle > WIDEST:
             shot *= 0.7
-    nearest = 10.0
+    first = 10.0
     for j in range(len(opponents)):
-        nearest = min(nearest, hypot(opponents[j, 0] - x, opponents[j, 1] - y))
-    free = min(1.0, nearest / 1.2)
+        first = min(first, time_to_pass(opponents[j], x, y))
+    free = min(1.0, max(0.05, 0.5 + (first - delay) / _FREE))
     later = free * (0.04 + 0.10 * max(0.0, 1.0 - to_goal / (2.0 * goal_x)))
     return shot + (1.0 - shot) * later
 
