@@ -14,7 +14,7 @@ from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 
-from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.ball_model import DEFAULT_BALL, way_in
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
@@ -127,19 +127,6 @@ def arrival_times(robots: FloatArray, places: FloatArray) -> FloatArray:
 
 
 @compiled
-def way_in(time: float, speed: float, rolling: float) -> float:
-    """Return how far a ball goes within ``time`` that rolls from the speed ``rolling`` on [m]."""
-    way = 0.0
-    if rolling < speed:
-        sliding = min(time, (speed - rolling) / _SLIDE)
-        way = (speed - 0.5 * _SLIDE * sliding) * sliding
-        speed -= _SLIDE * sliding
-        time -= sliding
-    rolled = min(time, speed / _ROLL)
-    return way + (speed - 0.5 * _ROLL * rolled) * rolled
-
-
-@compiled
 def meetings(
     robots: FloatArray, ball: FloatArray, rolling: float, half_length: float, half_width: float
 ) -> FloatArray:
@@ -165,7 +152,7 @@ def meetings(
     while True:
         x, y = ball[0] + way * ux, ball[1] + way * uy
         path[last, 0], path[last, 1], path[last, 2] = time, x, y
-        further = way_in(time + STEP, speed, rolling)
+        further = way_in(time + STEP, speed, rolling, _SLIDE, _ROLL)
         gone = abs(x) > half_length or abs(y) > half_width
         if gone or further - way < 0.02 or time >= _HORIZON:
             break

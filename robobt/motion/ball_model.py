@@ -9,10 +9,57 @@ from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.world.command import CHIP_ANGLE
+from robobt.world.compiled import compilable
 from robobt.world.state import GRAVITY
 
 _LAST_APEX = 0.01
 """A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
+
+
+@compilable
+def way_in(time: float, speed: float, rolling: float, slide: float, roll: float) -> float:
+    """Return how far a ball seen at ``speed`` goes within ``time`` [m].
+
+    It slides with the deceleration ``slide`` down to the speed ``rolling``, then rolls with ``roll`` [m/s^2].
+    """
+    way = 0.0
+    if rolling < speed:
+        sliding = min(time, (speed - rolling) / slide)
+        way = (speed - 0.5 * slide * sliding) * sliding
+        speed -= slide * sliding
+        time -= sliding
+    rolled = min(time, speed / roll)
+    return way + (speed - 0.5 * roll * rolled) * rolled
+
+
+@compilable
+def time_for(way: float, speed: float, rolling: float, slide: float, roll: float) -> float:
+    """Return the seconds for ``way`` [m], the inverse of :func:`way_in`; inf if the ball rests before."""
+    if way <= 0.0:
+        return 0.0
+    time = 0.0
+    if rolling < speed:
+        slid = (speed * speed - rolling * rolling) / (2.0 * slide)
+        if way <= slid:
+            return (speed - sqrt(speed * speed - 2.0 * slide * way)) / slide
+        time, way, speed = (speed - rolling) / slide, way - slid, rolling
+    at_end = speed * speed - 2.0 * roll * way
+    return time + (speed - sqrt(at_end)) / roll if at_end >= 0.0 else inf
+
+
+@compilable
+def kick_speed(distance: float, arrival_speed: float, slide: float, roll: float, share: float) -> float:
+    """Return the kick speed with which a ball has ``arrival_speed`` after ``distance`` [m/s, m].
+
+    It rolls from ``share`` of that speed on; ``slide`` and ``roll`` are as for :func:`way_in`.
+    """
+    sliding = sqrt(arrival_speed * arrival_speed + 2.0 * slide * distance)
+    if share * sliding <= arrival_speed:
+        return sliding
+    squared = (distance + arrival_speed * arrival_speed / (2.0 * roll)) / (
+        (1.0 - share * share) / (2.0 * slide) + share * share / (2.0 * roll)
+    )
+    return sqrt(squared)
 
 
 class BallModel(Settings):
@@ -37,40 +84,18 @@ class BallModel(Settings):
 
         It rolls from the speed ``rolling`` on [m/s]; None when it rolls already.
         """
-        way = 0.0
-        if rolling is not None and rolling < speed:
-            sliding = min(time, (speed - rolling) / self.slide_deceleration)
-            way = (speed - 0.5 * self.slide_deceleration * sliding) * sliding
-            speed -= self.slide_deceleration * sliding
-            time -= sliding
-        rolled = min(time, speed / self.roll_deceleration)
-        return way + (speed - 0.5 * self.roll_deceleration * rolled) * rolled
+        rolls = speed if rolling is None else rolling
+        return way_in(time, speed, rolls, self.slide_deceleration, self.roll_deceleration)
 
     def time_for(self, way: float, speed: float, rolling: float | None = None) -> float:
         """Return the seconds for ``way`` [m], the inverse of :meth:`way_in`; inf if the ball rests before."""
-        if way <= 0.0:
-            return 0.0
-        time = 0.0
-        if rolling is not None and rolling < speed:
-            slide = self.slide_deceleration
-            slid = (speed * speed - rolling * rolling) / (2.0 * slide)
-            if way <= slid:
-                return (speed - sqrt(speed * speed - 2.0 * slide * way)) / slide
-            time, way, speed = (speed - rolling) / slide, way - slid, rolling
-        at_end = speed * speed - 2.0 * self.roll_deceleration * way
-        return time + (speed - sqrt(at_end)) / self.roll_deceleration if at_end >= 0.0 else inf
+        rolls = speed if rolling is None else rolling
+        return time_for(way, speed, rolls, self.slide_deceleration, self.roll_deceleration)
 
     def kick_speed(self, distance: float, arrival_speed: float) -> float:
         """Return the kick speed with which the ball has ``arrival_speed`` after ``distance`` [m/s, m]."""
-        slide, roll, share = self.slide_deceleration, self.roll_deceleration, self.switch_share
-        distance = max(0.0, distance)
-        sliding = sqrt(arrival_speed * arrival_speed + 2.0 * slide * distance)
-        if share * sliding <= arrival_speed:
-            return sliding
-        squared = (distance + arrival_speed * arrival_speed / (2.0 * roll)) / (
-            (1.0 - share * share) / (2.0 * slide) + share * share / (2.0 * roll)
-        )
-        return sqrt(squared)
+        slide, roll = self.slide_deceleration, self.roll_deceleration
+        return kick_speed(max(0.0, distance), arrival_speed, slide, roll, self.switch_share)
 
 
 class ChipModel(Settings):

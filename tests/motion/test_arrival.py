@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import arrival_time, axis_time, meetings, movers, way_in
-from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.arrival import arrival_time, axis_time, meetings, movers
 from robobt.motion.pilot import drive, travel_time
 from robobt.world import RobotLimits, RobotState
 from tests.skills.fixed_world import moved, robot
@@ -59,13 +58,6 @@ def test_the_pilot_takes_little_longer(velocity: tuple[float, float, float]) -> 
         time += 1 / 60
         assert time < 5.0
     assert predicted - 0.1 <= time <= 1.15 * predicted + 0.1
-
-
-@given(st.floats(0.0, 4.0), st.floats(0.0, 6.0), st.floats(0.3, 1.0))
-@settings(deadline=None)
-def test_the_ball_rolls_as_the_model_says(time: float, speed: float, share: float) -> None:
-    rolling = share * speed
-    assert way_in(time, speed, rolling) == pytest.approx(DEFAULT_BALL.way_in(time, speed, rolling))
 
 
 def meet(me: RobotState, *ball: float) -> tuple[float, float, float]:

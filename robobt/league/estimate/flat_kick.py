@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from robobt.motion.ball_model import way_in
 from robobt.sim.settings import BallSettings
 from robobt.world.geometry import FloatArray
 
@@ -50,14 +51,8 @@ def _sliding(along: FloatArray, t: FloatArray, gap: float, ball: BallSettings) -
 
     def off(speed: float) -> FloatArray:
         rolls = ball.switch_share * (speed + 0.5 * gap * ball.slide_deceleration)
-        sliding = np.minimum(t, max(speed - rolls, 0.0) / ball.slide_deceleration)
-        at_end = speed - ball.slide_deceleration * sliding
-        rolling = np.minimum(t - sliding, at_end / ball.roll_deceleration)
-        slid, rolled = (
-            (speed + at_end) / 2 * sliding,
-            (at_end - 0.5 * ball.roll_deceleration * rolling) * rolling,
-        )
-        apart: FloatArray = slid + rolled - along
+        slide, roll = ball.slide_deceleration, ball.roll_deceleration
+        apart: FloatArray = np.array([way_in(time, speed, rolls, slide, roll) for time in t.tolist()]) - along
         return apart - float(apart.mean())
 
     speed = max(float((along[-1] - along[0]) / (t[-1] - t[0])), 0.1)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import exp, hypot, sqrt
+from math import exp, hypot, inf, sqrt
 
-from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion import ball_model
+from robobt.motion.ball_model import DEFAULT_BALL, time_for
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -31,25 +32,15 @@ _SHARE = DEFAULT_BALL.switch_share
 @compiled
 def kick_speed(length: float, arrival: float) -> float:
     """Return the kick speed with which a ball has the speed ``arrival`` after ``length`` [m/s, m]."""
-    sliding = sqrt(arrival * arrival + 2.0 * _SLIDE * length)
-    if _SHARE * sliding > arrival:
-        rolled = length + arrival * arrival / (2.0 * _ROLL)
-        shares = (1.0 - _SHARE * _SHARE) / (2.0 * _SLIDE) + _SHARE * _SHARE / (2.0 * _ROLL)
-        sliding = sqrt(rolled / shares)
-    return min(PASS_SPEEDS[1], max(PASS_SPEEDS[0], sliding))
+    speed = ball_model.kick_speed(length, arrival, _SLIDE, _ROLL, _SHARE)
+    return min(PASS_SPEEDS[1], max(PASS_SPEEDS[0], speed))
 
 
 @compiled
 def flight_time(length: float, speed: float) -> float:
     """Return when a ball kicked at ``speed`` has gone ``length`` [s]; 10 where it rests before."""
-    rolling = _SHARE * speed
-    slid = (speed * speed - rolling * rolling) / (2.0 * _SLIDE)
-    if length <= slid:
-        return (speed - sqrt(speed * speed - 2.0 * _SLIDE * length)) / _SLIDE
-    left = rolling * rolling - 2.0 * _ROLL * (length - slid)
-    if left < 0.0:
-        return 10.0
-    return (speed - rolling) / _SLIDE + (rolling - sqrt(left)) / _ROLL
+    time = time_for(length, speed, _SHARE * speed, _SLIDE, _ROLL)
+    return time if time < inf else 10.0
 
 
 @compiled
