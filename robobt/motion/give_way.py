@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
+import numpy as np
+
 from robobt.motion.arrival import VX, VY, X, Y, movers_of, place_of
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import compiled
@@ -35,21 +37,22 @@ def give_way(frame: Frame, me: RobotState, order: RobotCommand, *, mates: bool =
         others, skip = everybody, place_of(frame, me)
     else:
         others, skip = everybody[len(frame.own) :], -1
-    changed, vx, vy = _slowed(me.x, me.y, me.heading, order.vx, order.vy, others, skip)
+    now = np.array((me.x, me.y, me.heading, order.vx, order.vy), dtype=np.float64)
+    changed, vx, vy = _slowed(now, others, skip)
     if changed:
         order.vx, order.vy = vx, vy
     return order
 
 
 @compiled
-def _slowed(
-    x: float, y: float, heading: float, ahead: float, left: float, others: FloatArray, skip: int
-) -> tuple[bool, float, float]:
-    """Return whether a velocity ahead and to the left has to change, and the one to drive with [m/s].
+def _slowed(now: FloatArray, others: FloatArray, skip: int) -> tuple[bool, float, float]:
+    """Return whether a command's velocity has to change, and the one to drive with [m/s].
 
-    Of ``others``, as of movers, the row ``skip`` is the robot itself.
+    ``now`` has place and heading of the robot and the velocity ahead and to the left that it is to have; of
+    ``others``, as of movers, the row ``skip`` is the robot itself.
     """
-    c, s = cos(heading), sin(heading)
+    x, y, ahead, left = now[0], now[1], now[3], now[4]
+    c, s = cos(now[2]), sin(now[2])
     vx, vy = c * ahead - s * left, s * ahead + c * left
     changed = False
     for i in range(len(others)):

@@ -178,24 +178,14 @@ def next_waypoint(
         ball_radius = -1.0
         if avoid_ball or keep_off:
             ball_radius = ROBOT_RADIUS + BALL_RADIUS + (STOP_DISTANCE if keep_off else ball_gap)
+        way = (x, y, me.vx, me.vy, *goal, ball.x, ball.y, ball.vx, ball.vy, ball_radius)
+        robots = movers_of(frame) if avoid_robots else _NOBODY
         hit, radius, circles = _blocked(
-            x,
-            y,
-            me.vx,
-            me.vy,
-            goal[0],
-            goal[1],
-            not corner_first,
-            movers_of(frame) if avoid_robots else _NOBODY,
-            place_of(frame, me),
-            ball.x,
-            ball.y,
-            ball.vx,
-            ball.vy,
-            ball_radius,
+            np.array(way, dtype=np.float64), robots, place_of(frame, me), not corner_first
         )
     if hit < 0:
         return (goal, me.limits.max_speed * 0.5 if corner_first else 0.0)
+    ends = (float(x), float(y), float(goal[0]), float(goal[1]))
     first = np.array((circles[hit, 0], circles[hit, 1], radius))
     acceleration = min(me.limits.acceleration, me.limits.lateral_acceleration)
     best = (goal, 0.0)
@@ -207,7 +197,7 @@ def next_waypoint(
         # The match waits; a robot that sways between two like ways tries one for a while, then the other.
         insists = 1.0 if int(frame.time / _INSIST) % 2 == 0 else -1.0
     for side in (1.0, -1.0):
-        px, py, cost, arc = detour(x, y, goal[0], goal[1], first, side, circles, 4)
+        px, py, cost, arc = detour(*ends, first, side, circles, 4)
         if side == insists:
             cost -= _HEADSTRONG
         gap = hypot(px - x, py - y)
@@ -298,30 +288,25 @@ def _open(
 
 @compiled
 def _blocked(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    gx: float,
-    gy: float,
-    end_counts: bool,
-    robots: FloatArray,
-    skip: int,
-    ball_x: float,
-    ball_y: float,
-    ball_vx: float,
-    ball_vy: float,
-    ball_radius: float,
+    way: FloatArray, robots: FloatArray, skip: int, end_counts: bool
 ) -> tuple[int, float, FloatArray]:
     """Return what :func:`first_hit` does and the obstacles (n, 3) near enough to matter.
 
-    Each is where it will be when the robot gets there. Of ``robots``, as of movers, the row ``skip`` is
-    the robot itself; a ball with a radius below 0 is no obstacle.
+    Each is where it will be when the robot gets there.
+
+    Args:
+        way: place and velocity of the robot, where it drives to, place and velocity of the ball, and how far
+            to stay from the ball; below 0 it is no obstacle. An array, for numba would compile anew for every
+            mixture of int and float.
+        robots: as of movers.
+        skip: the row of the robot itself.
+        end_counts: as for :func:`first_hit`.
     """
+    x, y, gx, gy, ball_radius = way[0], way[1], way[4], way[5], way[10]
     circles = np.empty((len(robots) + 1, 3))
     n = 0
     reach = hypot(gx - x, gy - y) + 1.0
-    pace = 1.0 / max(1.0, hypot(vx, vy))
+    pace = 1.0 / max(1.0, hypot(way[2], way[3]))
     for i in range(len(robots)):
         ox, oy = robots[i, X], robots[i, Y]
         gap = hypot(ox - x, oy - y)
@@ -330,8 +315,8 @@ def _blocked(
             circles[n] = (ox + robots[i, VX] * ahead, oy + robots[i, VY] * ahead, _ROBOTS_APART)
             n += 1
     if ball_radius >= 0.0:
-        ahead = min(_LOOK_AHEAD, hypot(ball_x - x, ball_y - y) * pace)
-        circles[n] = (ball_x + ball_vx * ahead, ball_y + ball_vy * ahead, ball_radius)
+        ahead = min(_LOOK_AHEAD, hypot(way[6] - x, way[7] - y) * pace)
+        circles[n] = (way[6] + way[8] * ahead, way[7] + way[9] * ahead, ball_radius)
         n += 1
     circles = circles[:n]
     hit, radius = first_hit(x, y, gx, gy, circles, end_counts)

@@ -14,10 +14,13 @@ swing about its target.
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, pi, radians, sin, sqrt
+from math import radians
 
+import numpy as np
+
+from robobt.motion.speeds import command_numbers, drive_numbers, numbers, stop_time, turn_rate_numbers
 from robobt.world.command import RobotCommand
-from robobt.world.geometry import Point, wrap_angle
+from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotState
 
@@ -30,12 +33,6 @@ ROBOBULLS_LIMITS = RobotLimits(
     turn_braking=radians(100.0),
 )
 """How RoboBulls' published code drives any robot (PilotOmni and config/motion.yaml)."""
-
-_STRAIGHT = 0.25
-"""Sideways motion that stops within this share of a period is left out of the plan."""
-
-_ACROSS_FIRST = 1.5
-"""How much the motion across is preferred; found by trial over random starts."""
 
 
 def drive(
@@ -62,27 +59,8 @@ def drive(
         period: time until the next command [s].
         final_speed: speed allowed at the target [m/s], for waypoints.
     """
-    dx, dy = target[0] - me.x, target[1] - me.y
-    distance = hypot(dx, dy)
-    vx = vy = 0.0
-    stands = period + 2.0 * me.limits.reaction
-    if distance > 0.0:
-        ux, uy = dx / distance, dy / distance
-        bearing = atan2(uy, ux) - me.heading
-        acceleration = along(limits.acceleration, limits.lateral_acceleration, bearing)
-        braking = along(limits.braking, limits.lateral_braking, bearing)
-        ahead, across = ux * me.vx + uy * me.vy, ux * me.vy - uy * me.vx
-        distance += final_speed * final_speed / (2.0 * braking)
-        if abs(across) < _STRAIGHT * braking * stands:
-            ahead = approach_speed(distance, ahead, limits.max_speed, acceleration, braking, stands)
-            across = 0.0
-        else:
-            sideways = along(limits.braking, limits.lateral_braking, bearing + 0.5 * pi)
-            ahead, across = _turning_in(
-                distance, ahead, across, limits, acceleration, braking, sideways, stands
-            )
-        vx, vy = ux * ahead - uy * across, uy * ahead + ux * across
-    return command(me, vx, vy, turn_rate(me, heading, limits, period), limits, period)
+    task = np.array((*target, heading, final_speed), dtype=np.float64)
+    return RobotCommand(*drive_numbers(_state(me), task, *_limits(me, limits), period))
 
 
 def command(
@@ -96,15 +74,8 @@ def command(
     ``vx`` and ``vy`` are the target velocity at the end of the period [m/s], ``omega`` is the turning rate
     [rad/s], ``period`` the time until the next command [s].
     """
-    squared = vx * vx + vy * vy
-    if squared > limits.max_speed * limits.max_speed:
-        scale = limits.max_speed / sqrt(squared)
-        vx, vy = vx * scale, vy * scale
-    if limits is not me.limits or me.limits.reaction > 0.0:
-        vx, vy = _gentle(me, vx, vy, limits, period)
-    heading = me.heading + 0.5 * omega * period
-    c, s = cos(heading), sin(heading)
-    return RobotCommand(c * vx + s * vy, c * vy - s * vx, omega)
+    vx, vy, omega = float(vx), float(vy), float(omega)
+    return RobotCommand(*command_numbers(_state(me), vx, vy, omega, *_limits(me, limits), period))
 
 
 def roughly(heading: float, wanted: float, slack: float) -> float:
@@ -121,46 +92,7 @@ def roughly(heading: float, wanted: float, slack: float) -> float:
 
 def turn_rate(me: RobotState, heading: float, limits: RobotLimits, period: float) -> float:
     """Compute the turning rate to command now so as to end at ``heading`` [rad/s]."""
-    error = wrap_angle(heading - me.heading)
-    side = 1.0 if error >= 0.0 else -1.0
-    rate = side * approach_speed(
-        side * error,
-        side * me.omega,
-        limits.max_turn,
-        limits.turn_acceleration,
-        limits.angular_braking,
-        period + 2.0 * me.limits.reaction,
-    )
-    if limits.turn_acceleration < me.limits.turn_acceleration:
-        step = limits.turn_acceleration * (period + me.limits.reaction)
-        rate = min(me.omega + step, max(me.omega - step, rate))
-    return rate
-
-
-def approach_speed(
-    distance: float, speed: float, cruise: float, acceleration: float, braking: float, period: float
-) -> float:
-    """Compute the highest speed at the end of a period from which the robot can still stop in time.
-
-    The robot is taken to change to that speed at its limit and to hold it for
-    the rest of the period. Unit of length is free: metres or radians.
-
-    ``distance`` is what is left, not negative, ``speed`` that towards the target now, ``cruise`` the most to
-    return; of angles as of ways.
-    """
-    v = speed if speed > 0.0 else 0.0
-    # Way made within the period while braking to w, and from w to rest:
-    # w * period + (v - w)^2 / (2 * braking) + w^2 / (2 * braking).
-    if v * period + v * v / (2.0 * braking) > distance:
-        half = 0.5 * (v - braking * period)
-        root = half * half - 0.5 * v * v + braking * distance
-        return min(cruise, max(0.0, half + sqrt(root))) if root > 0.0 else 0.0
-    # While speeding up to w: w * period - (w - v)^2 / (2 * acceleration), then to rest.
-    a = 0.5 / braking - 0.5 / acceleration
-    b = period + v / acceleration
-    c = distance + 0.5 * v * v / acceleration
-    root = b * b + 4.0 * a * c
-    return min(cruise, 2.0 * c / (b + sqrt(root))) if root > 0.0 else cruise
+    return turn_rate_numbers(_state(me), float(heading), numbers(me.limits), numbers(limits), period)
 
 
 def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
@@ -168,81 +100,13 @@ def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
 
     ``speed`` is that towards the target at the start, negative when it is away from it [m/s].
     """
-    a, b, cruise = limits.acceleration, limits.braking, limits.max_speed
-    if speed < 0.0:
-        return -speed / b + travel_time(distance + speed * speed / (2.0 * b), 0.0, limits)
-    if speed * speed / (2.0 * b) > distance:
-        beyond = speed * speed / (2.0 * b) - distance
-        return speed / b + travel_time(beyond, 0.0, limits)
-    peak = sqrt((distance + 0.5 * speed * speed / a) / (0.5 / a + 0.5 / b))
-    if peak <= cruise or speed >= cruise:
-        peak = max(peak, speed) if speed < cruise else speed
-        used = (peak * peak - speed * speed) / (2.0 * a) + peak * peak / (2.0 * b)
-        return (peak - speed) / a + peak / b + max(0.0, distance - used) / peak if peak > 0.0 else 0.0
-    used = (cruise * cruise - speed * speed) / (2.0 * a) + cruise * cruise / (2.0 * b)
-    return (cruise - speed) / a + cruise / b + (distance - used) / cruise
+    return stop_time(distance, speed, limits.acceleration, limits.braking, limits.max_speed)
 
 
-def along(forward: float, lateral: float, bearing: float) -> float:
-    """Return the limit along ``bearing`` from the heading, between its forward and sideways values."""
-    if forward == lateral:
-        return forward
-    return 1.0 / hypot(cos(bearing) / forward, sin(bearing) / lateral)
+def _state(me: RobotState) -> FloatArray:
+    return np.array((me.x, me.y, me.heading, me.vx, me.vy, me.omega), dtype=np.float64)
 
 
-def _turning_in(
-    distance: float,
-    ahead: float,
-    across: float,
-    limits: RobotLimits,
-    acceleration: float,
-    braking: float,
-    sideways: float,
-    period: float,
-) -> Point:
-    """Compute the velocity ahead and across for a robot that does not drive straight at its target.
-
-    Both parts share what the wheels can do in proportion to the time each needs.
-    Commanding the target speed ahead regardless would leave nothing to stop the
-    motion across, and the robot would circle its target for ever.
-    """
-    time_ahead = max(1e-6, travel_time(distance, ahead, limits))
-    drift = abs(across)
-    time_across = drift / sideways + travel_time(0.5 * drift * drift / sideways, 0.0, limits)
-    ratio = _ACROSS_FIRST * time_across / time_ahead
-    share_ahead = 1.0 / sqrt(1.0 + ratio * ratio)
-    share_across = ratio * share_ahead
-    target = approach_speed(
-        distance, ahead, limits.max_speed, acceleration * share_ahead, braking * share_ahead, period
-    )
-    change = target - ahead
-    rate = acceleration if change > 0.0 and ahead >= 0.0 else braking
-    step = min(abs(change), rate * share_ahead * period)
-    step_across = min(drift, sideways * share_across * period)
-    # The direction of the change is what matters; how far it gets is the robot's affair.
-    stretch = min(abs(change) / step if step > 0.0 else inf, drift / step_across)
-    change = step * stretch if change > 0.0 else -step * stretch
-    across -= step_across * stretch if across > 0.0 else -step_across * stretch
-    return (ahead + change, across)
-
-
-def _gentle(me: RobotState, vx: float, vy: float, limits: RobotLimits, period: float) -> Point:
-    dx, dy = vx - me.vx, vy - me.vy
-    change = hypot(dx, dy)
-    if change == 0.0:
-        return (vx, vy)
-    own = me.limits
-    bearing = atan2(dy, dx) - me.heading
-    rate = along(limits.acceleration, limits.lateral_acceleration, bearing)
-    lead = own.reaction
-    if rate >= along(own.acceleration, own.lateral_acceleration, bearing):
-        lead *= 2.0
-        if lead == 0.0:
-            rate = inf
-    if vx * vx + vy * vy < me.vx * me.vx + me.vy * me.vy:
-        rate = max(rate, along(limits.braking, limits.lateral_braking, bearing))
-    most = rate * (period + lead)
-    if change <= most:
-        return (vx, vy)
-    share = most / change
-    return (me.vx + dx * share, me.vy + dy * share)
+def _limits(me: RobotState, limits: RobotLimits) -> tuple[FloatArray, FloatArray, bool]:
+    """Return the robot's own limits, the given ones, and whether the robot does not keep to them itself."""
+    return numbers(me.limits), numbers(limits), limits is not me.limits or me.limits.reaction > 0.0

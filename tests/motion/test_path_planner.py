@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion import detour, give_way, path_planner
+from robobt.motion import detour, give_way, path_planner, pilot, speeds
 from robobt.motion.path_planner import allowed_target, next_waypoint, slowed, travel
 from robobt.world import (
     DIVISION_A,
@@ -253,6 +253,9 @@ COMPILED = (
     (detour, "first_hit"),
     (detour, "detour"),
     (give_way, "_slowed"),
+    (pilot, "drive_numbers"),
+    (speeds, "command_numbers"),
+    (speeds, "turn_rate_numbers"),
 )
 
 
