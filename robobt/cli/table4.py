@@ -58,6 +58,15 @@ def table4(
         list[str] | None,
         typer.Option("--only", help="A combination by its name; may be given often. All by default."),
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FOLDER",
+            help="Keep the runs here as they finish: the command, given again, goes on where it stopped.",
+        ),
+    ] = None,
     picture: Annotated[
         Path | None, typer.Option("--picture", help="Draw the times into this file (.png).")
     ] = None,
@@ -109,6 +118,7 @@ def table4(
             starts="drawn" if starts == "drawn" else "paper",
             progress=progress.advance,
             world=factory,
+            out=out,
         )
     if picture is not None:
         draw_table4(result, picture)

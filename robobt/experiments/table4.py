@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
+from pathlib import Path
 from statistics import fmean, stdev
+
+from pydantic import ConfigDict
 
 from robobt.experiments.table4_rows import (
     PAPER,
@@ -26,6 +31,7 @@ from robobt.experiments.table4_starts import (
     table4_scenario,
 )
 from robobt.match.loop import Match, WorldFactory
+from robobt.match.results.file import TrialsFile
 from robobt.match.results.results import Rate
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
@@ -66,21 +72,26 @@ class Attempt:
     """One run.
 
     Attributes:
+        trial: its number, from 0.
         approach: start until robot and ball are 0.2 m apart, between two frames by their straight line [s].
         to_ball: start until the ball first lies in the mouth, as the paper counts [s].
         shoot: from then until the kick [s].
         goal: whether it went in.
-        minimum: the shortest possible times from this start; None where the start was not seen.
+        minimum: the shortest possible times from this start, as a :class:`Minimum`'s; None where the start
+            was not seen.
         trace: hash over all that happened; equal for runs that repeat each other.
 
     Times are None for what never happened.
     """
 
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    trial: int
     approach: float | None
     to_ball: float | None
     shoot: float | None
     goal: bool
-    minimum: Minimum | None
+    minimum: dict[str, float] | None
     trace: str
 
     @property
@@ -92,6 +103,10 @@ class Attempt:
     def total(self) -> float | None:
         """Start to kick [s]."""
         return None if self.to_ball is None or self.shoot is None else self.to_ball + self.shoot
+
+    def to_json(self) -> dict[str, object]:
+        """Return plain data; the keys are the attributes' names."""
+        return asdict(self)
 
 
 def table4(
@@ -106,6 +121,7 @@ def table4(
     trials: Sequence[str] = TRIALS,
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
+    out: Path | None = None,
 ) -> Table4:
     """Play both trials with every combination.
 
@@ -123,9 +139,11 @@ def table4(
         trials: some of :data:`TRIALS`.
         progress: called after every run.
         world: where it is played.
+        out: folder that keeps the runs as they finish; those that it holds are not played again.
 
     Raises:
         KeyError: no such preset, realism level, combination or limits.
+        ResultsFileError: the folder holds runs of other settings.
         ScenarioError: a play cannot be made, as where a model is missing.
     """
     found: dict[str, dict[str, Trial]] = {}
@@ -138,10 +156,8 @@ def table4(
                 scenario = table4_scenario(trial, COMBINATIONS[combination], preset, realism, LIMITS[name])
                 first = scenario.seed if seed is None else seed
                 drawn = drawn_starts(scenario) if starts == "drawn" else scenario
-                attempts[combination] = []
-                for run in range(runs):
-                    attempts[combination].append(play_attempt(drawn, trial_seed(first, run), world))
-                    progress()
+                kept = None if out is None else out / _file_name(name, trial, combination)
+                attempts[combination] = _attempts(drawn, first, runs, world, kept, progress)
                 beside = play_attempt(scenario, trial_seed(first, 0), world)
                 progress()
                 rows[combination] = _row_of(attempts[combination], beside)
@@ -149,12 +165,42 @@ def table4(
     return Table4(runs=runs, preset=preset, realism=realism, starts=starts, paper=PAPER, limits=found)
 
 
-def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world) -> Attempt:
+def _file_name(limits: str, trial: str, combination: str) -> str:
+    return re.sub(r"[^\w.]+", "-", f"{limits} {trial} {combination}") + ".jsonl"
+
+
+def _attempts(
+    scenario: Scenario,
+    seed: int,
+    runs: int,
+    world: WorldFactory,
+    kept: Path | None,
+    progress: Callable[[], object],
+) -> list[Attempt]:
+    """Play a combination's runs, except for those that the file ``kept`` holds already."""
+    where = getattr(world, "address", None)
+    attempts = []
+    with TrialsFile(Attempt, kept, scenario, seed, where) if kept is not None else nullcontext() as file:
+        for run in range(runs):
+            attempt = None if file is None else file.done.get(run)
+            if attempt is None:
+                attempt = play_attempt(scenario, trial_seed(seed, run), world, run)
+                if file is not None:
+                    file.add(attempt)
+            attempts.append(attempt)
+            progress()
+    return attempts
+
+
+def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world, trial: int = 0) -> Attempt:
     """Play one run to its end."""
     approach: float | None = None
     with Match(scenario, seed, world) as match:
         before = match.world.truth()
-        minimum = minimum_times(before, settings_from(scenario.simulator)) if before.own else None
+        minimum: dict[str, float] | None = None
+        if before.own:
+            least = minimum_times(before, settings_from(scenario.simulator))
+            minimum = {"to_ball": least["to_ball"], "to_kick": least["to_kick"]}
         while match.tick():
             now = match.world.truth()
             if not (now.own and before.own):
@@ -169,7 +215,7 @@ def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world)
         result = match.result()
     figures = result.robots[SHOOTER]
     goal = result.outcome == _GOAL
-    return Attempt(approach, figures.go_to_ball, figures.shoot, goal, minimum, result.trace)
+    return Attempt(trial, approach, figures.go_to_ball, figures.shoot, goal, minimum, result.trace)
 
 
 def _row_of(attempts: Sequence[Attempt], beside: Attempt) -> Row:
@@ -183,14 +229,14 @@ def _row_of(attempts: Sequence[Attempt], beside: Attempt) -> Row:
         goals=Rate.of([attempt.goal for attempt in attempts], traces),
         reached=Rate.of([attempt.to_ball is not None for attempt in attempts], traces),
         shots=Rate.of([attempt.shoot is not None for attempt in attempts], traces),
-        ball_ratio=_ratio((one.to_ball, one.minimum and one.minimum["to_ball"]) for one in attempts),
-        kick_ratio=_ratio((one.total, one.minimum and one.minimum["to_kick"]) for one in attempts),
+        ball_ratio=_ratio((one.to_ball, one.minimum["to_ball"]) for one in attempts if one.minimum),
+        kick_ratio=_ratio((one.total, one.minimum["to_kick"]) for one in attempts if one.minimum),
         paper_start=PaperStart(to_ball=beside.to_ball, total=beside.total, goal=beside.goal),
     )
 
 
-def _ratio(pairs: Iterable[tuple[float | None, float | None]]) -> float | None:
-    known = [(time, least) for time, least in pairs if time is not None and least is not None]
+def _ratio(pairs: Iterable[tuple[float | None, float]]) -> float | None:
+    known = [(time, least) for time, least in pairs if time is not None]
     return sum(time for time, _ in known) / sum(least for _, least in known) if known else None
 
 

@@ -10,13 +10,14 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.experiments.table4 import COMBINATIONS, play_attempt, table4
+from robobt.experiments.table4 import COMBINATIONS, Attempt, play_attempt, table4
 from robobt.experiments.table4 import LEARNED as LEARNED_ROW
 from robobt.experiments.table4_picture import draw_table4
 from robobt.experiments.table4_rows import PAPER
 from robobt.experiments.table4_starts import LIMITS, drawn_starts, minimum_times, table4_scenario
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import Match, WorldFactory
+from robobt.match.results.file import ResultsFileError
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
 from robobt.models.policy import load_policy
@@ -53,6 +54,31 @@ def test_the_table_holds_every_figure() -> None:
     assert row["paper_start"]["goal"]
     assert found["best_hand_written"] == "geometric, kick"
     assert found["to_ball"] is found["to_kick"] is None
+
+
+def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kinds = {"combinations": QUICK[1:], "limits": ["own"], "trials": ["1"]}
+    whole = table4(3, **kinds)
+    played: list[int] = []
+
+    def killed_at_the_second(scenario: Scenario, seed: int, world: WorldFactory, trial: int = 0) -> Attempt:
+        if trial == 1 and len(played) == 1:
+            raise KeyboardInterrupt
+        played.append(trial)
+        return play_attempt(scenario, seed, world, trial)
+
+    monkeypatch.setattr("robobt.experiments.table4.play_attempt", killed_at_the_second)
+    with pytest.raises(KeyboardInterrupt):
+        table4(3, out=tmp_path, **kinds)
+    (file,) = tmp_path.iterdir()
+    # Cut off in the middle of a line, as a process may be.
+    file.write_text(file.read_text() + '{"trial":1,"appr')
+    played.append(-1)
+    assert table4(3, out=tmp_path, **kinds) == whole
+    # Then the run from the paper's own start, which is not kept.
+    assert played == [0, -1, 1, 2, 0]
+    with pytest.raises(ResultsFileError, match="holds results of seed 1"):
+        table4(3, 2, out=tmp_path, **kinds)
 
 
 def test_runs_that_are_all_the_same_have_no_interval() -> None:

@@ -9,12 +9,14 @@ import hashlib
 import json
 import logging
 from pathlib import Path
-from typing import Self, TextIO
+from typing import Generic, Protocol, Self, TextIO, TypeVar
+
+from pydantic import TypeAdapter
 
 from robobt import __version__
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError, naming
-from robobt.match.results.results import MatchResult
+from robobt.match.results.results import MatchResult, result_from
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import is_play_file
 
@@ -27,13 +29,28 @@ class ResultsFileError(RobobtError, ValueError):
     """A results file cannot be continued; the message is one line that names it."""
 
 
-class ResultsFile:
-    """A results file that is open for appending. A context manager.
+class TrialResult(Protocol):
+    """One trial's result: a dataclass of plain data."""
+
+    @property
+    def trial(self) -> int:
+        """Number of the trial, from 0."""
+
+    def to_json(self) -> dict[str, object]:
+        """Return plain data; the keys are the attributes' names."""
+
+
+R = TypeVar("R", bound=TrialResult)
+
+
+class TrialsFile(Generic[R]):
+    """A file of results of one kind that is open for appending. A context manager.
 
     A file that exists is continued when it holds the same scenario, seed, world, referee and
     version; damaged lines are dropped, and their trials played again.
 
     Args:
+        kind: class of the results.
         path: the file.
         scenario: what is played.
         seed: seed of the run.
@@ -50,6 +67,7 @@ class ResultsFile:
 
     def __init__(
         self,
+        kind: type[R],
         path: str | Path,
         scenario: Scenario,
         seed: int,
@@ -57,7 +75,8 @@ class ResultsFile:
         referee: str | None = None,
     ) -> None:
         self.path = Path(path)
-        self.done: dict[int, MatchResult] = {}
+        self.done: dict[int, R] = {}
+        self._kind = TypeAdapter(kind)
         head: dict[str, object] = {
             "format": FORMAT,
             "scenario": scenario.name,
@@ -96,7 +115,7 @@ class ResultsFile:
         with naming(self.path):
             self._file.close()
 
-    def add(self, result: MatchResult) -> None:
+    def add(self, result: R) -> None:
         """Append a result; it is on disk when this returns."""
         self._write(result.to_json())
 
@@ -125,7 +144,7 @@ class ResultsFile:
                 continue
             else:
                 try:
-                    result = MatchResult.from_json(data)
+                    result = result_from(self._kind, data)
                 except ValueError as error:
                     raise ResultsFileError(f"{self.path}: line {number}: {error}") from error
                 self.done[result.trial] = result
@@ -144,6 +163,20 @@ class ResultsFile:
                 there = found.get(key, {"world": "sim", "referee": "own"}.get(key))
                 what = "another version of the scenario" if key == "digest" else f"{key} {there!r}"
                 raise ResultsFileError(f"{self.path}: holds results of {what}; give another name")
+
+
+class ResultsFile(TrialsFile[MatchResult]):
+    """A file of :class:`MatchResult`; the arguments are those of :class:`TrialsFile` behind the kind."""
+
+    def __init__(
+        self,
+        path: str | Path,
+        scenario: Scenario,
+        seed: int,
+        world: str | None = None,
+        referee: str | None = None,
+    ) -> None:
+        super().__init__(MatchResult, path, scenario, seed, world, referee)
 
 
 def _digest(scenario: Scenario) -> str:

@@ -9,11 +9,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cache
 from statistics import fmean, variance
+from typing import TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from robobt.match.results.teams import TeamResult
 from robobt.statistics import wilson_interval
+
+T = TypeVar("T")
 
 _AS_WRITTEN = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -90,14 +93,23 @@ class MatchResult:
         Raises:
             ValueError: the data is not such a result.
         """
-        try:
-            return _adapter().validate_json(json.dumps(data, allow_nan=False), strict=True)
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            place = ".".join([str(part) for part in first["loc"]])
-            raise ValueError(f"not the result of a trial: {place}: {first['msg']}") from error
-        except (TypeError, ValueError, RecursionError) as error:
-            raise ValueError(f"not the result of a trial: {error}") from error
+        return result_from(_adapter(), data)
+
+
+def result_from(kind: TypeAdapter[T], data: Mapping[str, object]) -> T:
+    """Make one trial's result, a dataclass of that kind, of the plain data of its attributes.
+
+    Raises:
+        ValueError: the data is not such a result.
+    """
+    try:
+        return kind.validate_json(json.dumps(data, allow_nan=False), strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join([str(part) for part in first["loc"]])
+        raise ValueError(f"not the result of a trial: {place}: {first['msg']}") from error
+    except (TypeError, ValueError, RecursionError) as error:
+        raise ValueError(f"not the result of a trial: {error}") from error
 
 
 @cache
