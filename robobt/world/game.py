@@ -156,14 +156,13 @@ class GameState:
         return replace(self, placement=(-self.placement[0], -self.placement[1]))
 
 
-_HALTED = frozenset({RefereeCommand.HALT, RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW})
-STARTED = frozenset(
-    {
-        RefereeCommand.NORMAL_START,
-        RefereeCommand.FORCE_START,
-        RefereeCommand.DIRECT_FREE_BLUE,
-        RefereeCommand.DIRECT_FREE_YELLOW,
-    }
+# Tuples: hashing an enum's member is a Python call, and every robot asks.
+_HALTED = (RefereeCommand.HALT, RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW)
+STARTED = (
+    RefereeCommand.NORMAL_START,
+    RefereeCommand.FORCE_START,
+    RefereeCommand.DIRECT_FREE_BLUE,
+    RefereeCommand.DIRECT_FREE_YELLOW,
 )
 """Commands under which a team may play the ball, and time is counted."""
 _TEAMS = {
