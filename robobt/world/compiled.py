@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import logging
+import multiprocessing
+import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
@@ -9,12 +13,19 @@ from typing import TypeVar, cast
 
 import numpy as np
 from numba import njit
-from numba.core.event import TimingListener, install_listener
+from numba.core.event import Event, TimingListener, install_listener, register
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+_log = logging.getLogger(__name__)
+
 _COMPILING = "numba:compile"
+_TOLD = "ROBOBT_COMPILING_TOLD"
+"""Set in the environment, which workers inherit."""
+
+_PATIENCE = 2.0
+"""Compiling that has taken so long is told [s]."""
 FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -34,6 +45,35 @@ def timing_compilation() -> Iterator[Callable[[], float]]:
     listener = TimingListener()  # type: ignore[no-untyped-call]
     with install_listener(_COMPILING, listener):
         yield lambda: float(listener.duration) if listener.done else 0.0
+
+
+class CompilingTold(TimingListener):
+    """Says once, on a terminal, that a run waits for the compiler; what is quick is not worth a word."""
+
+    def __init__(self, patience: float = _PATIENCE) -> None:
+        super().__init__()  # type: ignore[no-untyped-call]
+        self._patience = patience
+        # The first worker speaks for all of them, unless the process that started it has done so.
+        name = multiprocessing.current_process().name
+        worker = multiprocessing.parent_process() is not None
+        self._told = worker and (_TOLD in os.environ or not name.endswith("-1"))
+
+    def on_start(self, event: Event) -> None:
+        """Note that a function is being compiled, and how long those before it took."""
+        super().on_start(event)  # type: ignore[no-untyped-call]
+        if self._told or not self.done or self.duration < self._patience or not sys.stderr.isatty():
+            return
+        self._told = True
+        os.environ[_TOLD] = "1"
+        _log.warning(
+            "compiling for this machine, as on the first run after an installation or an update: "
+            "a minute or more, once; later runs load what was compiled"
+        )
+
+
+TOLD = CompilingTold()
+# Code that was kept and is only loaded does not count as compiled.
+register(_COMPILING, TOLD)  # type: ignore[no-untyped-call]
 
 
 def compilable(function: Function) -> Function:

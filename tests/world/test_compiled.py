@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from math import inf
 from typing import Any
 
 import numpy as np
+import pytest
 from numba import njit
+from numba.core.event import install_listener, register, unregister
 from pydantic import BaseModel
 
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, timing_compilation
+from robobt.world.compiled import TOLD, CompilingTold, compiled, numbers_dtype, numbers_of, timing_compilation
 
 
 def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
@@ -53,3 +57,39 @@ def test_compiling_is_timed_and_what_is_compiled_already_is_not() -> None:
         first = compiling()
         grown(2.0)
         assert compiling() == first > 0.0
+
+
+@pytest.fixture
+def _by_no_other() -> Iterator[None]:
+    unregister("numba:compile", TOLD)
+    yield
+    register("numba:compile", TOLD)
+
+
+@pytest.mark.usefixtures("_by_no_other")
+@pytest.mark.parametrize(("terminal", "lines"), [(True, 1), (False, 0)])
+def test_a_run_that_waits_for_the_compiler_is_told_so_once_on_a_terminal(
+    terminal: bool, lines: int, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    # Set now, it is put back as it was.
+    monkeypatch.setenv("ROBOBT_COMPILING_TOLD", "")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    functions = [njit(lambda x, by=by: x + by) for by in range(3)]
+    with install_listener("numba:compile", CompilingTold(0.0)):
+        for function in functions:
+            function(1.0)
+    assert [record.name for record in caplog.records] == ["robobt.world.compiled"] * lines
+
+
+@pytest.mark.usefixtures("_by_no_other")
+def test_what_is_compiled_already_or_in_a_moment_is_not_told(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with install_listener("numba:compile", CompilingTold(60.0)):
+        njit(lambda x: x + 2.0)(1.0)
+        njit(lambda x: x + 3.0)(1.0)
+    with install_listener("numba:compile", CompilingTold(0.0)):
+        _read(numbers_of(_Limits()))
+        _read(numbers_of(_Limits()))
+    assert not caplog.records
