@@ -45,6 +45,7 @@ class Plan:
         attacker_since: since when the attacker is the one it is [s].
         ours: whether the ball counts as the own team's.
         ours_since: since when [s].
+        turned: when that last changed [s].
         ahead: whether the ball counts as in the opponents' half.
         support: the places chosen for supporters last, the best first [m].
         support_time: when they were chosen [s].
@@ -66,6 +67,7 @@ class Plan:
     attacker_since: float = -10.0
     ours: bool = False
     ours_since: float = 0.0
+    turned: float = -1.0
     ahead: bool = False
     support: list[Point] = field(default_factory=list)
     support_time: float = -1.0

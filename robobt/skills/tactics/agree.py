@@ -25,7 +25,7 @@ from robobt.world.state import Frame, RobotState
 SWITCH_GAIN = 0.3
 """Another robot goes for the ball when it can have it so much sooner [s]."""
 
-FRESH_FOR, FRESH_GAIN = 0.6, 0.7
+FRESH_FOR, FRESH_GAIN = 1.0, 0.9
 """For so long after it has begun the gain has to be larger [s, s]."""
 
 HELD = 0.3
@@ -40,11 +40,14 @@ KEEP_GAIN = 0.8
 OURS_AFTER = 0.5
 """For how long the ball has to look like the other team's before it counts as theirs, or as ours [s]."""
 
+TURNS_AFTER = 1.0
+"""For how long it counts as theirs or ours at least [s]."""
+
 AHEAD_FROM = 0.6
 """The ball has to be so far beyond the half-way line to count as in the other half [m]."""
 
 _PASS_LASTS = 3.0
-_INTENT_LASTS = 0.5
+_INTENT_LASTS = 1.0
 _REACH = 0.06
 _OWN_REACH = 0.12
 _BEHIND_BALL = 0.3
@@ -107,8 +110,8 @@ def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
         ours = frame.game.restart_team is frame.team
     if ours == plan.ours:
         plan.ours_since = frame.time
-    elif frame.time - plan.ours_since >= OURS_AFTER:
-        plan.ours, plan.ours_since = ours, frame.time
+    elif frame.time - plan.ours_since >= OURS_AFTER and frame.time - plan.turned >= TURNS_AFTER:
+        plan.ours, plan.ours_since, plan.turned = ours, frame.time, frame.time
 
 
 def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> int | None:

@@ -73,7 +73,7 @@ def test_a_pass_that_nobody_means_any_more_is_forgotten() -> None:
     agreement = Agreement()
     plan = agreement.at(0.0)
     plan.next_pass, plan.next_pass_time = Pass(4, (2.0, 1.0), 4.0, 0.5), 0.0
-    plan = agreement.at(1.0)
+    plan = agreement.at(1.2)
     assert Task.RECEIVE not in plan.tasks.values()
 
 
