@@ -81,7 +81,7 @@ def watched() -> Watched:
 
 @pytest.fixture(scope="module", params=[1, 4], ids=["one camera", "four cameras"])
 def measured(request: pytest.FixtureRequest) -> dict[str, Rms]:
-    return bench_filter(load_scenario("six_v_six"), seconds=6.0, seed=2, cameras=request.param)
+    return bench_filter(load_scenario("six_v_six"), seconds=9.0, seed=2, cameras=request.param)
 
 
 @pytest.mark.integration

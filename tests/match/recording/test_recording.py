@@ -3,6 +3,7 @@ import random
 import re
 import signal
 import tracemalloc
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
@@ -653,12 +654,12 @@ class Writes(Leaf[Store]):
 
     writes: ClassVar = ("target",)
 
-    def __init__(self, values: list[object]) -> None:
+    def __init__(self, values: Callable[[], object]) -> None:
         super().__init__()
         self.values = values
 
     def on_running(self) -> Status:
-        self.store.target = self.values.pop(0)  # type: ignore[assignment]
+        self.store.target = self.values()  # type: ignore[assignment]
         return self.succeed()
 
 
@@ -696,7 +697,7 @@ def test_whatever_a_skill_writes_can_be_recorded(path: Path) -> None:
         [1.5, 2.0],
     ]
     store = Store(frame(0), frame(0).own[0])
-    runner = TreeRunner(Writes(list(values)), store)
+    runner = TreeRunner(Writes(iter(values).__next__), store)
     with Recorder(path, header(), {BLUE_1: runner}, {BLUE_1: store}) as recorder:
         for tick in range(len(values)):
             runner.tick()
