@@ -146,8 +146,8 @@ class Leaf(Behaviour, Bound[StoreT]):
 
 
 def _is_finite(value: object) -> bool:
-    """Return whether there is no infinite number and no NaN in a value, or in the sequence that it is."""
-    if isinstance(value, tuple | list):
+    """Return whether a value is no infinite number and no NaN, nor a point or other tuple with one."""
+    if isinstance(value, tuple):
         return all(_is_finite(entry) for entry in value)
     return not isinstance(value, Real) or isinstance(value, int) or isfinite(value)
 
