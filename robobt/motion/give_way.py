@@ -17,7 +17,10 @@ from robobt.world.geometry import FloatArray
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _CLOSING = 1.0
-"""Closing speed at which robots may touch [m/s]."""
+"""Closing speed at which opponents may touch [m/s]."""
+
+_GENTLY = 0.3
+"""The same of mates, who gain nothing by it [m/s]."""
 
 _BRAKING = 2.0
 """How hard to brake for it, less than any robot can [m/s^2]."""
@@ -34,22 +37,22 @@ def give_way(frame: Frame, me: RobotState, order: RobotCommand, *, mates: bool =
     """
     everybody = movers_of(frame)
     if mates:
-        others, skip = everybody, place_of(frame, me)
+        others, skip, own = everybody, place_of(frame, me), len(frame.own)
     else:
-        others, skip = everybody[len(frame.own) :], -1
+        others, skip, own = everybody[len(frame.own) :], -1, 0
     now = np.array((me.x, me.y, me.heading, order.vx, order.vy), dtype=np.float64)
-    changed, vx, vy = _slowed(now, others, skip)
+    changed, vx, vy = _slowed(now, others, skip, own)
     if changed:
         order.vx, order.vy = vx, vy
     return order
 
 
 @compiled
-def _slowed(now: FloatArray, others: FloatArray, skip: int) -> tuple[bool, float, float]:
+def _slowed(now: FloatArray, others: FloatArray, skip: int, own: int) -> tuple[bool, float, float]:
     """Return whether a command's velocity has to change, and the one to drive with [m/s].
 
     ``now`` has place and heading of the robot and the velocity ahead and to the left that it is to have; of
-    ``others``, as of movers, the row ``skip`` is the robot itself.
+    ``others``, as of movers, the first ``own`` rows are mates and the row ``skip`` is the robot itself.
     """
     x, y, ahead, left = now[0], now[1], now[3], now[4]
     c, s = cos(now[2]), sin(now[2])
@@ -69,7 +72,8 @@ def _slowed(now: FloatArray, others: FloatArray, skip: int) -> tuple[bool, float
         if closing <= 0.0 or across * gap > closing * 3.0 * ROBOT_RADIUS:
             continue
         coming = max(0.0, -(nx * ox + ny * oy))
-        most = max(0.0, sqrt(_CLOSING * _CLOSING + 2.0 * _BRAKING * gap) - coming)
+        touching = _GENTLY if i < own else _CLOSING
+        most = max(0.0, sqrt(touching * touching + 2.0 * _BRAKING * gap) - coming)
         towards = nx * vx + ny * vy
         if towards > most:
             vx, vy = vx - (towards - most) * nx, vy - (towards - most) * ny
