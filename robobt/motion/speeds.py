@@ -5,7 +5,6 @@ A robot's state and limits come as arrays: numba would compile anew for every mi
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
@@ -20,14 +19,21 @@ _STRAIGHT = 0.25
 _ACROSS_FIRST = 1.5
 """How much the motion across is preferred; found by trial over random starts."""
 
+_MOST_KNOWN = 256
 _TOP, _FORWARD, _LATERAL, _BRAKING, _LATERAL_BRAKING, _TURN, _TURN_FASTER, _TURN_SLOWER, _REACTION = range(9)
 
 
-@lru_cache(maxsize=256)
+_KNOWN: dict[int, tuple[RobotLimits, FloatArray]] = {}
+"""By the limits' id, which stays theirs as they are kept too: hashing and comparing a model takes longer."""
+
+
 def numbers(limits: RobotLimits) -> FloatArray:
     """Return what compiled code needs of a robot's limits, with the columns above."""
-    return np.array(
-        (
+    known = _KNOWN.get(id(limits))
+    if known is None:
+        if len(_KNOWN) >= _MOST_KNOWN:
+            _KNOWN.clear()
+        row = (
             limits.max_speed,
             limits.acceleration,
             limits.lateral_acceleration,
@@ -37,9 +43,9 @@ def numbers(limits: RobotLimits) -> FloatArray:
             limits.turn_acceleration,
             limits.angular_braking,
             limits.reaction,
-        ),
-        dtype=np.float64,
-    )
+        )
+        known = _KNOWN[id(limits)] = (limits, np.array(row, dtype=np.float64))
+    return known[1]
 
 
 @compiled
