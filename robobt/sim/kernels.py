@@ -36,7 +36,7 @@ from robobt.sim.columns import (
 )
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.motion import drive, friction
-from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick
+from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick, let_in
 from robobt.sim.reports import BoolArray, IntArray, note_touch, report
 from robobt.sim.roller import CONTACTS, SCRATCH, roll
 from robobt.sim.shell import drag, meet
@@ -155,6 +155,8 @@ def control_tick(
                     cooldown[a, i] -= dt
                     continue
                 if command[KICK] > 0.0:
+                    if low and command[ON_CONTACT] > 0.0 and p[GLUE] == 0.0 and p[ROLLER] == 0.0:
+                        let_in(ball, velocity, robot, p, dt)
                     if low and in_mouth(ball, robot, p, p[SENSOR]):
                         kick(velocity, spin, air, robot, command[KICK], command[ANGLE], p)
                         command[KICK] = 0.0

@@ -18,6 +18,7 @@ from robobt.sim.columns import (
     PULL,
     REACH,
     RISE,
+    SENSOR,
     SIDE,
 )
 from robobt.world.compiled import compiled
@@ -41,6 +42,26 @@ def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -
     ahead = c * px + s * py
     aside = c * py - s * px
     return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
+
+
+@compiled
+def let_in(ball: FloatArray, velocity: FloatArray, robot: FloatArray, p: FloatArray, dt: float) -> None:
+    """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
+
+    A fast one would else go past the sensor and bounce off within one step.
+    """
+    px, py = ball[0] - robot[0], ball[1] - robot[1]
+    c, s = cos(robot[2]), sin(robot[2])
+    way = c * px + s * py - p[FACE] - p[BALL_R] - 0.5 * p[SENSOR]
+    vx, vy = velocity[0] - robot[3] + robot[5] * py, velocity[1] - robot[4] - robot[5] * px
+    closing = -(c * vx + s * vy)
+    if way <= 0.0 or way >= closing * dt:
+        return
+    time = way / closing
+    aside = c * py - s * px + (c * vy - s * vx) * time
+    if abs(aside) <= p[HALF_MOUTH]:
+        ball[0] += vx * time
+        ball[1] += vy * time
 
 
 @compiled

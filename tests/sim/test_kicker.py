@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.sim import preset
-from robobt.world import BALL_RADIUS, KickTrigger, RobotCommand
+from robobt.world import BALL_RADIUS, DIVISION_B, KickTrigger, Placement, RobotCommand
 from tests.sim.rig import ME, holding, kick, one_robot
 
 NOW, ON_CONTACT = KickTrigger.NOW, KickTrigger.ON_CONTACT
@@ -92,3 +92,27 @@ def test_a_single_kick_command_fires_once() -> None:
     assert world.kicks == [ME]
     world.act({})
     assert world.kicks == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    speed=st.floats(2.0, 6.0),
+    angle=st.floats(-0.9, 0.9),
+    away=st.floats(0.3, 0.4),
+    drives=st.floats(-0.5, 0.5),
+    kind=st.sampled_from(["default", "sumatra"]),
+)
+def test_a_kick_on_contact_fires_before_the_ball_bounces(
+    speed: float, angle: float, away: float, drives: float, kind: str
+) -> None:
+    # It comes at the middle of the mouth from ``angle`` beside the heading, as the robot sees it.
+    mouth = preset(kind).body.face + BALL_RADIUS
+    ball = (mouth + away * cos(angle), away * sin(angle), drives - speed * cos(angle), -speed * sin(angle))
+    world = one_robot(kind, ball=(4.0, 2.5, 0.0, 0.0), period=1 / 60, field=DIVISION_B)
+    world.reset(Placement({ME: (0, 0, 0)}, ball, {ME: (drives, 0)}), seed=0)
+    while not world.kicks:
+        world.act({ME: RobotCommand(vx=drives, kick_speed=4.0)})
+        assert world.time < 1.5, "it never fires"
+    seen = world.truth().ball
+    assert seen.vx == pytest.approx(4.0, abs=0.1)
+    assert seen.vy == pytest.approx(ball[3], abs=0.12 + 0.1 * abs(ball[3]))
