@@ -6,7 +6,7 @@ The scales were chosen by hand in this simulator; they are no calibrated probabi
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 SHOT_SPEED = 6.3
 """Of a shot [m/s]."""
+
+FASTEST = 6.45
+"""Of a ball that leaves, sideways speed included [m/s]."""
 
 WIDEST = 1.15
 """Largest angle between where a ball comes from and where it is kicked at once [rad]."""
@@ -143,18 +146,24 @@ def redirect_angle(ox: float, oy: float, x: float, y: float, goal_x: float) -> f
 
 
 @compiled
-def aim_of(heading_x: float, heading_y: float, incoming_x: float, incoming_y: float, kick: float) -> float:
+def aim_of(heading_x: float, heading_y: float, incoming_x: float, incoming_y: float) -> float:
     """Return the heading [rad] from which a ball kicked at once leaves along (heading_x, heading_y).
 
-    A kick sends the ball along the heading and leaves its sideways speed as it was: the one that
-    comes in with (incoming_x, incoming_y) [m/s] is aimed that much to the other side.
+    A kick sends the ball along the heading, with :func:`redirect_kick`, and leaves its sideways speed as it
+    was: the one that comes in with (incoming_x, incoming_y) [m/s] is aimed that much to the other side.
     """
     wanted = atan2(heading_y, heading_x)
     heading = wanted
     for _ in range(20):
         sideways = cos(heading) * incoming_y - sin(heading) * incoming_x
-        heading = wanted - atan2(sideways, kick)
+        heading = wanted - atan2(sideways, redirect_kick(sideways))
     return heading
+
+
+@compiled
+def redirect_kick(sideways: float) -> float:
+    """Return the kick speed of a shot with one touch, given the ball's speed across the heading [m/s]."""
+    return min(SHOT_SPEED, sqrt(max(1.0, FASTEST * FASTEST - sideways * sideways)))
 
 
 @compiled

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import cos, hypot, sin, sqrt
+from math import cos, hypot, sin
 
 import numpy as np
 
@@ -15,14 +15,11 @@ from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.skills.tactics.agree import agree, pass_under_way
-from robobt.skills.tactics.chances import aim_of, redirect_angle, shot_chance
+from robobt.skills.tactics.chances import aim_of, redirect_angle, redirect_kick, shot_chance
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.rules import has_ball, in_own_defense_area
-
-_FASTEST = 6.45
-"""Of a ball that leaves, sideways speed included [m/s]."""
 
 _ARMED = 0.7
 """The kicker waits for a ball nearer than this [m]."""
@@ -140,8 +137,7 @@ class ReceivePass(Skill):
         gap = hypot(dx, dy)
         if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
             v = max(0.0, speed - 0.3 * min(time, 0.3))
-            sideways = (cos(me.heading) * uy - sin(me.heading) * ux) * v
-            order.kick_speed = min(6.3, sqrt(max(1.0, _FASTEST * _FASTEST - sideways * sideways)))
+            order.kick_speed = redirect_kick((cos(me.heading) * uy - sin(me.heading) * ux) * v)
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time
         store.command = order
@@ -185,4 +181,4 @@ class ReceivePass(Skill):
         target: Point = (field.half_length, float(self._best[0]))
         store.shot = Shot(target, max(0.01, float(self._best[1])), chance)
         v = max(0.3, speed - 0.5 * time)
-        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v, 6.2)
+        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v)

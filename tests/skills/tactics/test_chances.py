@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
-from robobt.skills.tactics.chances import aim_of, point_worth, redirect_angle, shot_chance
+from robobt.skills.tactics.chances import (
+    FASTEST,
+    aim_of,
+    point_worth,
+    redirect_angle,
+    redirect_kick,
+    shot_chance,
+)
 from robobt.world.geometry import FloatArray, wrap_angle
 from tests.skills.fixed_world import robot
 
@@ -67,10 +74,11 @@ def test_the_angle_of_a_redirect_lies_between_where_it_comes_from_and_the_goal()
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-1.0, 1.0))
 @settings(deadline=None)
 def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, wanted: float) -> None:
-    heading = aim_of(cos(wanted), sin(wanted), vx, vy, 6.0)
+    heading = aim_of(cos(wanted), sin(wanted), vx, vy)
     sideways = cos(heading) * vy - sin(heading) * vx
-    leaves = heading + atan2(sideways, 6.0)
-    assert abs(wrap_angle(leaves - wanted)) < 0.01
+    kick = redirect_kick(sideways)
+    assert abs(wrap_angle(heading + atan2(sideways, kick) - wanted)) < 0.01
+    assert hypot(kick, sideways) < FASTEST + 1e-9
 
 
 def test_the_ball_is_worth_more_near_the_goal_and_away_from_opponents() -> None:
