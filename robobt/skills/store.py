@@ -26,6 +26,7 @@ class TeamStore:
         attacker: who goes for the ball now.
         markers: numbers of the robots that mark opponents.
         marks: which opponent each of them marks.
+        threats: numbers of the opponents without the ball that could score soon, the most dangerous first.
         kicker: who took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
         agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
@@ -40,6 +41,7 @@ class TeamStore:
     attacker: int | None = None
     markers: set[int] = field(default_factory=set)
     marks: dict[int, int] = field(default_factory=dict)
+    threats: list[int] = field(default_factory=list)
     kicker: int | None = None
     restart_pending: bool = False
     agreed_on: Frame | None = None
@@ -62,6 +64,7 @@ class Store:
         shot: the shot selected last, None without one.
         goal_line: how a rater that judges every point of it did so then, None without one.
         pass_: the pass selected last, None without one.
+        candidates: the passes compared last, the best first.
     """
 
     frame: Frame
@@ -72,6 +75,7 @@ class Store:
     shot: Shot | None = None
     goal_line: GoalLine | None = None
     pass_: Pass | None = None
+    candidates: list[Pass] = field(default_factory=list)
 
     @property
     def time(self) -> float:

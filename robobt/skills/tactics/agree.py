@@ -14,7 +14,7 @@ from scipy.optimize import linear_sum_assignment
 from robobt.motion.arrival import arrival_times, meetings, movers, movers_of
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import TeamStore
-from robobt.skills.tactics.defence import mark_places, wall_places
+from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import support_places
 from robobt.skills.team.teamwork import follow_restart
 from robobt.world.game import Restart
@@ -152,6 +152,7 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     """Give everybody but the attacker a task and a place."""
     if abs(frame.ball.x) > AHEAD_FROM:
         plan.ahead = frame.ball.x > 0.0
+    team.threats = []
     tasks: dict[int, Task] = {}
     if team.attacker is not None:
         tasks[team.attacker] = Task.ATTACK
@@ -166,7 +167,9 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
         jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls))]
         left = len(free) - len(jobs)
         if left and not plan.ours:
-            marks = mark_places(frame, left - 1 if plan.ahead else left)
+            dangerous = threats(frame)
+            team.threats = [robot.id for robot in dangerous]
+            marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left])
             jobs += [(Task.MARK, place, number) for number, place in marks]
             left = len(free) - len(jobs)
         if left:
@@ -191,6 +194,7 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
             if task is Task.MARK and what is not None:
                 plan.marks[number] = what
     plan.tasks = tasks
+    team.marks = plan.marks
 
 
 def wall_size(plan: Plan, players: int, free: int) -> int:

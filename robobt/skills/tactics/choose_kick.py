@@ -41,7 +41,7 @@ class ChooseKick(Skill):
     """
 
     reads = ("team",)
-    writes = ("team", "shot", "pass_")
+    writes = ("team", "shot", "pass_", "candidates")
 
     shoot_at: float = 0.55
     pass_at: float = 0.35
@@ -118,6 +118,7 @@ class ChooseKick(Skill):
         enough = min(self.pass_at * share, _BETTER * hold)
         late = self.restart and frame.time - self._since > self.patience + _LATE
         candidates = passes(frame, team, me, old_pass, self.keep, least=0.0 if late else 0.15)
+        self.store.candidates = candidates[:_SHOWN]
         best = candidates[0] if candidates else None
         shot_score = 0.0 if shot is None else shot.score
         pass_score = 0.0 if best is None else best.score
@@ -145,6 +146,9 @@ class ChooseKick(Skill):
         shots = self._rater.rate_all(frame, ball.position, me)
         return shots[0] if shots else None
 
+
+_SHOWN = 5
+"""So many passes are told of."""
 
 _PAUSE = 0.3
 """After so long without it, it begins anew [s]."""

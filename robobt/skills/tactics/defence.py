@@ -48,11 +48,11 @@ def threats(frame: Frame) -> list[RobotState]:
     return sorted(others, key=lambda robot: hypot(robot.x - goal_x, robot.y - goal_y))
 
 
-def mark_places(frame: Frame, most: int) -> list[tuple[int, Point]]:
-    """Return up to ``most`` opponents to mark and where to stand for it: towards ball and own goal."""
+def mark_places(frame: Frame, opponents: list[RobotState]) -> list[tuple[int, Point]]:
+    """Return of each of these opponents its number and where to mark it from: towards ball and own goal."""
     ball, (goal_x, goal_y) = frame.ball, frame.field.our_goal
     places = []
-    for robot in threats(frame)[: max(0, most)]:
+    for robot in opponents:
         bx, by = ball.x - robot.x, ball.y - robot.y
         gx, gy = goal_x - robot.x, goal_y - robot.y
         to_ball, to_goal = max(hypot(bx, by), 1e-6), max(hypot(gx, gy), 1e-6)

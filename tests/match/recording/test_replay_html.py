@@ -1,6 +1,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from math import inf, nan
 from pathlib import Path
@@ -9,12 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robobt.match import Match
 from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
 from robobt.match.recording import replay_html as module
 from robobt.match.recording.replay_html import page_data, replay_html, write_html
+from robobt.match.scenario.scenario import load_scenario
 from robobt.skills import SelectShot, Store
 from robobt.tree import Selector, TreeRunner
 from robobt.world import DIVISION_A, RobotId, Team
+from robobt.worlds import sim_world
 from tests.match.recording.made_recording import BLUE_1, YELLOW_0, Wait, frame, header, record
 from tests.skills import fixed_world
 
@@ -287,3 +291,43 @@ def test_a_goal_line_of_some_other_kind_is_not_drawn(tmp_path: Path, other: Any)
         values["goal_line"] = other
     data = page_data(recording)
     assert data["robots"][0]["goal_line"][3] is None
+
+
+@pytest.fixture(scope="module")
+def team_match(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    path = tmp_path_factory.mktemp("team") / "team.robobt.arrows"
+    with Match(load_scenario("team_v_baseline").lasting(12.0), 3, sim_world, path) as match:
+        while match.tick():
+            pass
+    return load_recording(path)
+
+
+def test_the_page_holds_the_passes_that_a_robot_compares(team_match: Recording) -> None:
+    compared = [
+        passes
+        for robot in page_data(team_match)["robots"]
+        if robot["team"] is Team.BLUE
+        for passes in robot["candidates"][1::2]
+    ]
+    assert max(map(len, compared)) > 1
+    for passes in compared:
+        scores = [score for _, _, score in passes]
+        assert scores == sorted(scores, reverse=True)
+        assert all(abs(x) <= 4.5 and abs(y) <= 3.0 for x, y, _ in passes)
+
+
+def test_the_page_holds_whom_a_team_marks_and_fears(team_match: Recording) -> None:
+    plans = [*zip(*[iter(page_data(team_match)["plans"]["blue"])] * 2, strict=True)]
+    assert any(marks for _, (marks, _) in plans)
+    for _, (marks, threats) in plans:
+        # Markers come off the most dangerous opponents first.
+        assert set(marks.values()) <= set(threats) or not threats
+
+
+@pytest.mark.parametrize("other", ["far", [1, 2], {"3": "x"}, [{"receiver": 3}], [{"target": [0, None]}], 7])
+def test_plans_of_some_other_kind_are_not_drawn(team_match: Recording, other: Any) -> None:
+    written: Any = {"blue": [(0, {"marks": other})], "blue 3": [(5, {"candidates": other})]}
+    recording = replace(team_match, written={key: [] for key in team_match.written} | written)
+    data = page_data(recording)
+    assert data["plans"] == {"blue": [0, [{}, []]], "yellow": []}
+    assert all(changes in ([], [5, []]) for changes in (robot["candidates"] for robot in data["robots"]))
