@@ -21,10 +21,11 @@ from pydantic import JsonValue
 
 from robobt.config.errors import naming
 from robobt.match.recording import Recording, RobotFlag, load_recording
+from robobt.match.recording.compared import CANDIDATES, candidates, plans
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.statistics import recorded_statistics
 from robobt.match.recording.stores import plain
-from robobt.skills.store import GoalLine, Pass
+from robobt.skills.store import GoalLine
 from robobt.world.game import GameState
 from robobt.world.rules import own_side
 
@@ -38,7 +39,6 @@ _ABSENT = -(2**15)
 _SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
 _FEEDBACK_PERIOD = 0.1
 _GOAL_LINE = "goal_line"
-_CANDIDATES = "candidates"
 
 _Written: TypeAlias = Timeline[dict[str, JsonValue]]
 
@@ -109,7 +109,7 @@ def page_data(recording: Recording) -> dict[str, object]:
                 "feedback": _feedback_steps(feedback, texts, frames, stride),
                 "outputs": _steps(_written_texts(written, texts), frames, stride),
                 "goal_line": _steps(_goal_lines(written, texts), frames, stride),
-                "candidates": _steps(_candidates(written), frames, stride),
+                "candidates": _steps(candidates(written), frames, stride),
             }
         )
     ball = recording.truth.ball[::stride]
@@ -129,7 +129,7 @@ def page_data(recording: Recording) -> dict[str, object]:
         "ball": _int16(ball_rows * 1000.0),
         "robots": robots,
         "plans": {
-            team: _steps(_plans(recording.written.get(team, [])), frames, stride)
+            team: _steps(plans(recording.written.get(team, [])), frames, stride)
             for team in ("blue", "yellow")
         },
         "games": _steps(((tick, _game(game)) for tick, game in recording.games), frames, stride),
@@ -234,7 +234,7 @@ def _written_texts(changes: _Written, texts: _Table) -> Iterator[tuple[int, int]
         parts = [
             f"{entry} {_say(value)}"
             for entry, value in written.items()
-            if value is not None and entry not in (_GOAL_LINE, _CANDIDATES)
+            if value is not None and entry not in (_GOAL_LINE, CANDIDATES)
         ]
         yield tick, texts[" · ".join(parts)]
 
@@ -255,39 +255,6 @@ def _goal_lines(changes: _Written, texts: _Table) -> Iterator[tuple[int, tuple[J
             yield tick, None
         else:
             yield tick, found
-
-
-def _candidates(changes: _Written) -> Iterator[tuple[int, list[JsonValue]]]:
-    """Give the passes that a robot compared, the best first: x, y [m] and score of each."""
-    for tick, change in changes:
-        if _CANDIDATES not in change:
-            continue
-        try:
-            found = [Pass(**one) for one in change[_CANDIDATES] or []]  # type: ignore[arg-type, union-attr]
-            rows = [plain([*map(float, one.target), float(one.score)]) for one in found]
-            if any(len(row) != 3 or None in row for row in rows):  # type: ignore[arg-type, operator]
-                raise ValueError("no pass to a place")
-        except (TypeError, ValueError):
-            # Some other skill's idea of it, which the page shows nothing of.
-            rows = []
-        yield tick, rows
-
-
-def _plans(changes: _Written) -> Iterator[tuple[int, list[object]]]:
-    """Give whom a team marks, by the marker's number, and whom it fears, the most dangerous first."""
-    marks: dict[int, int] = {}
-    threats: list[int] = []
-    for tick, change in changes:
-        if "marks" not in change and "threats" not in change:
-            continue
-        try:
-            if "marks" in change:
-                marks = {int(a): int(b) for a, b in dict(change["marks"] or {}).items()}  # type: ignore[arg-type]
-            if "threats" in change:
-                threats = [int(one) for one in change["threats"] or []]  # type: ignore[arg-type, union-attr]
-        except (TypeError, ValueError):
-            marks, threats = {}, []
-        yield tick, [marks, threats]
 
 
 def _say(value: JsonValue) -> str:
