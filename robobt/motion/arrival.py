@@ -50,14 +50,6 @@ def movers_of(frame: Frame) -> FloatArray:
     return made
 
 
-def place_of(frame: Frame, me: RobotState) -> int:
-    """Return which row of :func:`movers_of` is the own robot's, -1 where it is not in the frame."""
-    for place, robot in enumerate(frame.own):
-        if robot.id == me.id:
-            return place
-    return -1
-
-
 @compiled
 def axis_time(gap: float, speed: float, top: float, acceleration: float, braking: float) -> float:
     """Compute the least time to cover ``gap`` [m] along a line and to stop there, from ``speed`` [s].

@@ -79,25 +79,37 @@ def detour(
         The point where the tangents from start and end meet, x and y, the length of the
         path plus a penalty for what else is in it, and the angle turned there.
     """
-    cx, cy, radius = circle[0], circle[1], circle[2]
-    wide = radius + _CLEARANCE
-    to_start, to_end = hypot(x - cx, y - cy), hypot(gx - cx, gy - cy)
-    near, far = min(wide, to_start), min(wide, to_end)
-    turned = (atan2(y - cy, x - cx) - atan2(gy - cy, gx - cx)) * side % (2.0 * pi)
-    to_tangent = acos(near / to_start) if to_start > 0.0 else 0.0
-    arc = max(0.0, turned - to_tangent - (acos(far / to_end) if to_end > 0.0 else 0.0))
-    leg = sqrt(max(0.0, to_start * to_start - near * near))
-    cost = leg + wide * arc + sqrt(max(0.0, to_end * to_end - far * far))
-    tangent = atan2(cy - y, cx - x) + side * (pi / 2.0 - to_tangent)
-    reach = leg + near * tan(min(arc / 2.0, _WIDEST_TURN)) + 0.01
-    corner_x, corner_y = x + reach * cos(tangent), y + reach * sin(tangent)
-    if depth > 0:
-        others = circles[np.flatnonzero((circles[:, 0] != cx) | (circles[:, 1] != cy))]
+    # In a loop, not by calling itself: numba loads functions that do so from its cache broken.
+    costs, reaches, arcs = np.empty(depth + 1), np.empty(depth + 1), np.empty(depth + 1)
+    others = circles
+    n = 0
+    while True:
+        cx, cy, radius = circle[0], circle[1], circle[2]
+        wide = radius + _CLEARANCE
+        to_start, to_end = hypot(x - cx, y - cy), hypot(gx - cx, gy - cy)
+        near, far = min(wide, to_start), min(wide, to_end)
+        turned = (atan2(y - cy, x - cx) - atan2(gy - cy, gx - cx)) * side % (2.0 * pi)
+        to_tangent = acos(near / to_start) if to_start > 0.0 else 0.0
+        arc = max(0.0, turned - to_tangent - (acos(far / to_end) if to_end > 0.0 else 0.0))
+        leg = sqrt(max(0.0, to_start * to_start - near * near))
+        cost = leg + wide * arc + sqrt(max(0.0, to_end * to_end - far * far))
+        tangent = atan2(cy - y, cx - x) + side * (pi / 2.0 - to_tangent)
+        reach = leg + near * tan(min(arc / 2.0, _WIDEST_TURN)) + 0.01
+        corner_x, corner_y = x + reach * cos(tangent), y + reach * sin(tangent)
+        if n == depth:
+            break
+        others = others[np.flatnonzero((others[:, 0] != cx) | (others[:, 1] != cy))]
         blocking, shrunk = first_hit(x, y, corner_x, corner_y, others, False)
-        if blocking >= 0:
-            nearer = np.array((others[blocking, 0], others[blocking, 1], shrunk))
-            px, py, extra, bend = detour(x, y, corner_x, corner_y, nearer, side, others, depth - 1)
-            return px, py, cost + extra - reach + 0.1, arc + bend
-        if first_hit(corner_x, corner_y, gx, gy, others, True)[0] >= 0:
-            cost += 0.2
+        if blocking < 0:
+            if first_hit(corner_x, corner_y, gx, gy, others, True)[0] >= 0:
+                cost += 0.2
+            break
+        # Something is in the way to the corner: round that first.
+        costs[n], reaches[n], arcs[n] = cost, reach, arc
+        n += 1
+        gx, gy = corner_x, corner_y
+        circle = np.array((others[blocking, 0], others[blocking, 1], shrunk))
+    for k in range(n - 1, -1, -1):
+        cost = costs[k] + cost - reaches[k] + 0.1
+        arc = arcs[k] + arc
     return corner_x, corner_y, cost, arc

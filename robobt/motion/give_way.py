@@ -1,4 +1,4 @@
-"""Not running into opponents while the ball is not in play.
+"""Not running into others, compiled: opponents while the ball is not in play, and mates.
 
 Source of the limit: RoboCup SSL rules, chapter "Crashing": the relative velocity along the line of centres,
 1.5 m/s, of which the slower robot is free.
@@ -8,13 +8,10 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-import numpy as np
-
-from robobt.motion.arrival import VX, VY, X, Y, movers_of, place_of
-from robobt.world.command import RobotCommand
+from robobt.motion.arrival import VX, VY, X, Y
 from robobt.world.compiled import compiled
-from robobt.world.geometry import FloatArray
-from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.state import ROBOT_RADIUS
 
 _CLOSING = 1.0
 """Closing speed at which opponents may touch [m/s]."""
@@ -29,30 +26,18 @@ _LOOK = 1.5
 """Opponents with a wider gap are left out [m]."""
 
 
-def give_way(frame: Frame, me: RobotState, order: RobotCommand, *, mates: bool = False) -> RobotCommand:
-    """Return the command, slowed down towards every opponent that it would run into.
+@compiled
+def slowed_towards(now: FloatArray, others: FloatArray, skip: int, mates: int) -> Point:
+    """Return the velocity ahead and to the left, slowed down towards every robot that it would run into.
 
     Of two robots that drive at each other each lets the other be the faster one: neither drives on
     faster than leaves room to brake, and an oncoming robot uses that room up.
-    """
-    everybody = movers_of(frame)
-    if mates:
-        others, skip, own = everybody, place_of(frame, me), len(frame.own)
-    else:
-        others, skip, own = everybody[len(frame.own) :], -1, 0
-    now = np.array((me.x, me.y, me.heading, order.vx, order.vy), dtype=np.float64)
-    changed, vx, vy = _slowed(now, others, skip, own)
-    if changed:
-        order.vx, order.vy = vx, vy
-    return order
 
-
-@compiled
-def _slowed(now: FloatArray, others: FloatArray, skip: int, own: int) -> tuple[bool, float, float]:
-    """Return whether a command's velocity has to change, and the one to drive with [m/s].
-
-    ``now`` has place and heading of the robot and the velocity ahead and to the left that it is to have; of
-    ``others``, as of movers, the first ``own`` rows are mates and the row ``skip`` is the robot itself.
+    Args:
+        now: place and heading of the robot, and the velocity ahead and to the left that it is to have.
+        others: the robots, as of :func:`~robobt.motion.arrival.movers`.
+        skip: the row among them of the robot itself, -1 for none.
+        mates: how many of them, the first ones, are of its own team.
     """
     x, y, ahead, left = now[0], now[1], now[3], now[4]
     c, s = cos(now[2]), sin(now[2])
@@ -72,10 +57,10 @@ def _slowed(now: FloatArray, others: FloatArray, skip: int, own: int) -> tuple[b
         if closing <= 0.0 or across * gap > closing * 3.0 * ROBOT_RADIUS:
             continue
         coming = max(0.0, -(nx * ox + ny * oy))
-        touching = _GENTLY if i < own else _CLOSING
+        touching = _GENTLY if i < mates else _CLOSING
         most = max(0.0, sqrt(touching * touching + 2.0 * _BRAKING * gap) - coming)
         towards = nx * vx + ny * vy
         if towards > most:
             vx, vy = vx - (towards - most) * nx, vy - (towards - most) * ny
             changed = True
-    return changed, c * vx + s * vy, c * vy - s * vx
+    return (c * vx + s * vy, c * vy - s * vx) if changed else (ahead, left)

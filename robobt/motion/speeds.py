@@ -20,7 +20,7 @@ _ACROSS_FIRST = 1.5
 """How much the motion across is preferred; found by trial over random starts."""
 
 _MOST_KNOWN = 256
-_TOP, _FORWARD, _LATERAL, _BRAKING, _LATERAL_BRAKING, _TURN, _TURN_FASTER, _TURN_SLOWER, _REACTION = range(9)
+TOP, FORWARD, LATERAL, BRAKING, LATERAL_BRAKING, TURN, TURN_FASTER, TURN_SLOWER, REACTION = range(9)
 
 
 _KNOWN: dict[int, tuple[RobotLimits, FloatArray]] = {}
@@ -67,19 +67,19 @@ def drive_numbers(
     dx, dy = x - px, y - py
     distance = hypot(dx, dy)
     vx = vy = 0.0
-    stands = period + 2.0 * own[_REACTION]
+    stands = period + 2.0 * own[REACTION]
     if distance > 0.0:
         ux, uy = dx / distance, dy / distance
         bearing = atan2(uy, ux) - turned
-        acceleration = along(given[_FORWARD], given[_LATERAL], bearing)
-        braking = along(given[_BRAKING], given[_LATERAL_BRAKING], bearing)
+        acceleration = along(given[FORWARD], given[LATERAL], bearing)
+        braking = along(given[BRAKING], given[LATERAL_BRAKING], bearing)
         ahead, across = ux * svx + uy * svy, ux * svy - uy * svx
         distance += final_speed * final_speed / (2.0 * braking)
         if abs(across) < _STRAIGHT * braking * stands:
-            ahead = approach_speed(distance, ahead, given[_TOP], acceleration, braking, stands)
+            ahead = approach_speed(distance, ahead, given[TOP], acceleration, braking, stands)
             across = 0.0
         else:
-            sideways = along(given[_BRAKING], given[_LATERAL_BRAKING], bearing + 0.5 * pi)
+            sideways = along(given[BRAKING], given[LATERAL_BRAKING], bearing + 0.5 * pi)
             ahead, across = _turning_in(
                 distance, ahead, across, given, acceleration, braking, sideways, stands
             )
@@ -101,8 +101,8 @@ def command_numbers(
 ) -> tuple[float, float, float]:
     """Do what :func:`robobt.motion.pilot.command` does; the rest is as for :func:`drive_numbers`."""
     squared = vx * vx + vy * vy
-    if squared > given[_TOP] * given[_TOP]:
-        scale = given[_TOP] / sqrt(squared)
+    if squared > given[TOP] * given[TOP]:
+        scale = given[TOP] / sqrt(squared)
         vx, vy = vx * scale, vy * scale
     if gentle:
         vx, vy = _gentle(state[2], state[3], state[4], vx, vy, own, given, period)
@@ -119,12 +119,12 @@ def turn_rate_numbers(
     omega = state[5]
     error = wrap_angle(heading - state[2])
     side = 1.0 if error >= 0.0 else -1.0
-    stands = period + 2.0 * own[_REACTION]
+    stands = period + 2.0 * own[REACTION]
     rate = side * approach_speed(
-        side * error, side * omega, given[_TURN], given[_TURN_FASTER], given[_TURN_SLOWER], stands
+        side * error, side * omega, given[TURN], given[TURN_FASTER], given[TURN_SLOWER], stands
     )
-    if given[_TURN_FASTER] < own[_TURN_FASTER]:
-        step = given[_TURN_FASTER] * (period + own[_REACTION])
+    if given[TURN_FASTER] < own[TURN_FASTER]:
+        step = given[TURN_FASTER] * (period + own[REACTION])
         rate = min(omega + step, max(omega - step, rate))
     return rate
 
@@ -199,15 +199,15 @@ def _turning_in(
     Commanding the target speed ahead regardless would leave nothing to stop the
     motion across, and the robot would circle its target for ever.
     """
-    time_ahead = max(1e-6, stop_time(distance, ahead, given[_FORWARD], given[_BRAKING], given[_TOP]))
+    time_ahead = max(1e-6, stop_time(distance, ahead, given[FORWARD], given[BRAKING], given[TOP]))
     drift = abs(across)
     back = 0.5 * drift * drift / sideways
-    time_across = drift / sideways + stop_time(back, 0.0, given[_FORWARD], given[_BRAKING], given[_TOP])
+    time_across = drift / sideways + stop_time(back, 0.0, given[FORWARD], given[BRAKING], given[TOP])
     ratio = _ACROSS_FIRST * time_across / time_ahead
     share_ahead = 1.0 / sqrt(1.0 + ratio * ratio)
     share_across = ratio * share_ahead
     target = approach_speed(
-        distance, ahead, given[_TOP], acceleration * share_ahead, braking * share_ahead, period
+        distance, ahead, given[TOP], acceleration * share_ahead, braking * share_ahead, period
     )
     change = target - ahead
     rate = acceleration if change > 0.0 and ahead >= 0.0 else braking
@@ -237,14 +237,14 @@ def _gentle(
     if change == 0.0:
         return (vx, vy)
     bearing = atan2(dy, dx) - turned
-    rate = along(given[_FORWARD], given[_LATERAL], bearing)
-    lead = own[_REACTION]
-    if rate >= along(own[_FORWARD], own[_LATERAL], bearing):
+    rate = along(given[FORWARD], given[LATERAL], bearing)
+    lead = own[REACTION]
+    if rate >= along(own[FORWARD], own[LATERAL], bearing):
         lead *= 2.0
         if lead == 0.0:
             rate = inf
     if vx * vx + vy * vy < svx * svx + svy * svy:
-        rate = max(rate, along(given[_BRAKING], given[_LATERAL_BRAKING], bearing))
+        rate = max(rate, along(given[BRAKING], given[LATERAL_BRAKING], bearing))
     most = rate * (period + lead)
     if change <= most:
         return (vx, vy)

@@ -70,6 +70,7 @@ class Skill(Leaf[Store]):
         avoid_ball: bool = False,
         goalkeeper: bool = False,
         thereabouts: bool = False,
+        spare_mates: bool = False,
     ) -> None:
         """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.
 
@@ -91,6 +92,7 @@ class Skill(Leaf[Store]):
             avoid_ball=avoid_ball or self.has_kicked,
             ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
             goalkeeper=goalkeeper,
+            spare_mates=spare_mates,
         )
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from math import hypot
 
+import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.give_way import give_way
+from robobt.motion.arrival import movers
+from robobt.motion.give_way import slowed_towards
 from robobt.motion.path_planner import travel
 from robobt.world import RobotCommand, RobotState
 from robobt.world.game import Team
@@ -18,8 +20,9 @@ FULL = RobotCommand(3.0, 0.0, 0.0)
 speed = st.floats(-3.0, 3.0)
 
 
-def order(me: RobotState, *others: RobotState) -> RobotCommand:
-    return give_way(frame(me, opponents=others), me, RobotCommand(3.0, 0.0, 0.0))
+def order(me: RobotState, *others: RobotState, ahead: float = 3.0, left: float = 0.0) -> RobotCommand:
+    now = np.array((me.x, me.y, me.heading, ahead, left), dtype=np.float64)
+    return RobotCommand(*slowed_towards(now, movers(others), -1, 0))
 
 
 def test_a_robot_brakes_before_one_that_stands_in_its_way() -> None:
@@ -48,7 +51,7 @@ def test_nobody_is_made_to_go_faster(
     x: float, y: float, vx: float, vy: float, asked: float, across: float
 ) -> None:
     me, other = robot(number=1), robot(x, y, velocity=(vx, vy, 0.0))
-    given_way = give_way(frame(me, opponents=(other,)), me, RobotCommand(asked, across, 0.0))
+    given_way = order(me, other, ahead=asked, left=across)
     assert hypot(given_way.vx, given_way.vy) <= hypot(asked, across) + 1e-9
 
 

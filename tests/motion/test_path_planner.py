@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion import detour, give_way, path_planner, pilot, speeds
-from robobt.motion.path_planner import allowed_target, next_waypoint, slowed, travel
+from robobt.motion import detour, path_planner, scene, speeds, way
+from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.world import (
     DIVISION_A,
     DIVISION_B,
@@ -20,7 +20,6 @@ from robobt.world import (
     GameState,
     RefereeCommand,
     Restart,
-    RobotLimits,
     RobotState,
     Team,
 )
@@ -230,13 +229,6 @@ def test_any_world_gives_a_finite_command_within_the_speed(
     assert hypot(order.vx, order.vy) <= me.limits.max_speed + 1e-9
 
 
-def test_slowed_never_speeds_up() -> None:
-    limits = RobotLimits(max_speed=2.0)
-    assert slowed(limits, 3.0) is limits
-    assert slowed(limits, 1.0).max_speed == 1.0
-    assert slowed(limits, 1.0).acceleration == limits.acceleration
-
-
 @pytest.mark.parametrize("target", [(4.0, 0.0), (-4.0, 0.5)], ids=["theirs", "own"])
 def test_whoever_places_the_ball_may_enter_both_defence_areas(target: Point) -> None:
     me = robot(0.0, 2.0)
@@ -247,15 +239,23 @@ def test_whoever_places_the_ball_may_enter_both_defence_areas(target: Point) -> 
 
 
 COMPILED = (
-    (path_planner, "_blocked"),
-    (path_planner, "first_hit"),
-    (path_planner, "detour"),
     (detour, "first_hit"),
     (detour, "detour"),
-    (give_way, "_slowed"),
-    (pilot, "drive_numbers"),
+    (path_planner, "travel_numbers"),
+    (scene, "_away_from_ball"),
+    (scene, "_expelled"),
     (speeds, "command_numbers"),
     (speeds, "turn_rate_numbers"),
+    (way, "_obstacles"),
+    (way, "allowed_numbers"),
+    (way, "around_area"),
+    (way, "detour"),
+    (way, "drive_numbers"),
+    (way, "first_hit"),
+    (way, "is_open"),
+    (way, "row_of"),
+    (way, "slowed_towards"),
+    (way, "waypoint_numbers"),
 )
 
 
@@ -270,8 +270,8 @@ def orders(seed: int) -> list[float]:
         ]
         me = robot(numbers.uniform(-3, 3), numbers.uniform(-3, 3), velocity=(numbers.gauss(0, 1), 0.3, 0.0))
         seen = frame(me, (0.3, 0.2), mates=tuple(others[:5]), opponents=tuple(others[5:]), game=STOPPED)
-        order = travel(seen, me, (numbers.uniform(-3, 3), 0.0), 0.0, me.limits, avoid_ball=True)
-        order = give_way.give_way(seen, me, order, mates=True)
+        target = (numbers.uniform(-3, 3), 0.0)
+        order = travel(seen, me, target, 0.0, me.limits, avoid_ball=True, spare_mates=True)
         found += [order.vx, order.vy, order.omega]
     return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from robobt.motion.give_way import give_way
 from robobt.skills.base import Skill, skill
 from robobt.skills.tactics.agree import agree
 from robobt.tree import Status
@@ -21,6 +20,5 @@ class TakePlace(Skill):
         place = agree(frame, self.store.team).places.get(self.me.id)
         if place is None:
             return self.fail("no place")
-        self.drive_to(place, frame.ball.position, avoid_ball=True, thereabouts=True)
-        self.store.command = give_way(frame, self.me, self.store.command, mates=True)
+        self.drive_to(place, frame.ball.position, avoid_ball=True, thereabouts=True, spare_mates=True)
         return self.run(f"to ({place[0]:.1f}, {place[1]:.1f})")
