@@ -71,6 +71,7 @@ def run_tasks(
     ahead: int = 1,
     setup: Callable[[], object] | None = None,
     on_report: Callable[[ReportT], None] | None = None,
+    lost: Callable[[TaskT, str], ResultT] | None = None,
 ) -> Generator[ResultT, None, None]:
     """Yield the result of every task, in the order in which they finish.
 
@@ -81,16 +82,18 @@ def run_tasks(
     Args:
         work: what is done with each task.
         tasks: asked for the next one whenever a worker has room, so that it may end once enough is done.
-        workers: number of processes; 0 or 1 is this process itself.
+        workers: number of processes; 0 is this process itself, and so is 1 unless ``lost`` is given.
         ahead: tasks a worker holds at a time; more than one keeps it busy when tasks are short.
         setup: called in each worker before ``work`` is unpickled, to import what that needs.
         on_report: called in this process with what tasks report.
+        lost: makes the result of a task whose worker died, of the task and what happened; another worker
+            takes the dead one's place. Without it the death is an error.
 
     Raises:
         Exception: as ``work`` says; a note holds the worker's traceback.
     """
     report = on_report or _ignore
-    if workers <= 1:
+    if workers < (2 if lost is None else 1):
         for task in tasks:
             yield work.attempt(task, report)
         return
@@ -115,7 +118,18 @@ def run_tasks(
                 except (EOFError, OSError):
                     worker.process.join()
                     died = f"its worker process died (exit code {worker.process.exitcode})"
-                    raise work.error(f"{work.noun} {worker.held[0]}: {died}") from None
+                    if lost is None:
+                        raise work.error(f"{work.noun} {worker.held[0]}: {died}") from None
+                    crew.remove(worker)
+                    del busy[ready]
+                    ready.close()
+                    given_up = worker.held.popleft()
+                    if left := [*worker.held, *islice(waiting, 1)]:
+                        with _ignoring_interrupts(), uninterrupted:
+                            crew.append(_Worker(packed, setup, left))
+                        busy[crew[-1].connection] = crew[-1]
+                    yield lost(given_up, died)
+                    continue
                 if kind == "report":
                     report(content)
                 elif kind == "result":

@@ -47,6 +47,17 @@ def test_a_task_that_raises_is_named(workers: int):
         list(run_tasks(SQUARES, [-1, -1], workers))
 
 
+def test_a_task_whose_worker_dies_can_have_a_result_and_the_others_are_done_all_the_same():
+    def lost(task: int, why: str) -> int:
+        assert why == "its worker process died (exit code 7)"
+        return -task
+
+    tasks = [1, 99, 2, 99, 3, 4]
+    for workers in (1, 2):
+        found = sorted(run_tasks(SQUARES, tasks, workers, ahead=2, lost=lost))
+        assert found == [-99, -99, 1, 4, 9, 16]
+
+
 def test_an_error_of_robobt_says_what_is_wrong_without_its_class():
     def refuse(_: int, __: Callable[[str], None]) -> int:
         raise RobobtError("there is no such file")

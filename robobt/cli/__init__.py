@@ -21,6 +21,7 @@ from robobt.signals import leave_after_signal
 _COMMANDS = {
     "match": "match:match",
     "compare": "compare:compare",
+    "tournament": "tournament.tournament:tournament",
     "replay": "replay:replay",
     "scenarios": "scenarios:scenarios",
     "plays": "lists:plays",

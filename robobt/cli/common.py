@@ -147,10 +147,9 @@ def _error_text(error: Exception) -> str:
 def import_files(paths: Iterable[Path] | None) -> None:
     """Run the user's Python files, so that what they register is there."""
     if paths:
-        from robobt.plays.python_files import import_file
+        from robobt.plays import python_files
 
-        for path in paths:
-            import_file(path)
+        python_files.import_files(paths)
 
 
 _PATIENCE = 0.6

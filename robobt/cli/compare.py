@@ -126,12 +126,17 @@ def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
 
     for team, text in ((Team.BLUE, blue), (Team.YELLOW, yellow)):
         if text:
-            play, _, given = text.partition(":")
-            # A comma inside a value is not followed by NAME=.
-            parts = re.split(r",(?=\s*\w+=)", given) if given else []
-            params = parse_assignments([part.strip() for part in parts], f"--{team.value}")
+            play, params = parse_play(text, f"--{team.value}")
             scenario = with_team(scenario, team, play or None, params)
     return scenario
+
+
+def parse_play(text: str, option: str) -> tuple[str, dict[str, object]]:
+    """Return the play and its parameters in ``PLAY[:NAME=VALUE,...]``; the option is named in errors."""
+    play, _, given = text.partition(":")
+    # A comma inside a value is not followed by NAME=.
+    parts = re.split(r",(?=\s*\w+=)", given) if given else []
+    return play, parse_assignments([part.strip() for part in parts], option)
 
 
 def _variants(

@@ -18,7 +18,7 @@ from robobt.match.results.results import MatchResult, Summary, summarise
 from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
-from robobt.plays.python_files import import_file, imported_files
+from robobt.plays.python_files import import_files, imported_files
 from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 
@@ -117,7 +117,7 @@ def run_trials(
             work: Work[int, object, MatchResult] = Work(
                 job.play, f"{scenario.source}: trial", RunError, (ScenarioError, OSError)
             )
-            setup = partial(_import_files, imported_files())
+            setup = partial(import_files, imported_files())
             for result in run_tasks(work, todo, min(workers, len(todo)), setup=setup):
                 results[result.trial] = result
                 if file is not None:
@@ -149,8 +149,3 @@ class _Job:
         seed = trial_seed(self.seed, trial)
         record = self.record.get(trial)
         return play_match(self.scenario, seed, self.world_factory, record, trial, self.referee)
-
-
-def _import_files(paths: tuple[Path, ...]) -> None:
-    for path in paths:
-        import_file(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Iterable
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
@@ -46,6 +47,12 @@ def import_file(path: str | Path) -> ModuleType:
     module = _run(path, source, shown)
     _imported[path] = module
     return module
+
+
+def import_files(paths: Iterable[str | Path]) -> None:
+    """Run several files; see :func:`import_file`."""
+    for path in paths:
+        import_file(path)
 
 
 def imported_files() -> tuple[Path, ...]:

@@ -80,7 +80,7 @@ class TrialsFile(Generic[R]):
         head: dict[str, object] = {
             "format": FORMAT,
             "scenario": scenario.name,
-            "digest": _digest(scenario),
+            "digest": scenario_digest(scenario),
             "seed": seed,
             "robobt": __version__,
         }
@@ -179,7 +179,7 @@ class ResultsFile(TrialsFile[MatchResult]):
         super().__init__(MatchResult, path, scenario, seed, world, referee)
 
 
-def _digest(scenario: Scenario) -> str:
+def scenario_digest(scenario: Scenario) -> str:
     """Hash what decides a match; trials and seed are not part of it."""
     text = scenario.model_dump_json(exclude={"trials", "seed", "description", "on_error"})
     digest = hashlib.blake2b(text.encode(), digest_size=16)

@@ -1,0 +1,1 @@
+"""Teams against each other: play tournaments, look at their results."""

@@ -1,0 +1,69 @@
+"""What a tournament says, as tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.markup import escape
+
+from robobt.cli.common import console, table, warn
+from robobt.cli.team_figures import team_figures
+
+if TYPE_CHECKING:
+    from robobt.tournament.standings import Standings
+
+
+def print_standings(found: Standings) -> None:
+    """Print ratings, encounters and the entrants' figures."""
+    if found.distinct < found.matches:
+        warn(
+            f"only {found.distinct} of {found.matches} matches differ; vary the starts or add noise, "
+            "as with --set simulator.realism=friendly"
+        )
+    names = list(found.standings)
+    ratings = table("", "entrant", "Elo", "95 %", "matches", "won", "drawn", "lost", "goals")
+    for number, (name, one) in enumerate(found.standings.items(), start=1):
+        rating = one.rating
+        goals = f"{one.goals_for} : {one.goals_against}"
+        counts = [str(count) for count in (one.matches, one.won, one.drawn, one.lost)]
+        interval = f"{round(rating.low):+d} to {round(rating.high):+d}"
+        ratings.add_row(str(number), escape(name), f"{round(rating.elo):+d}", interval, *counts, goals)
+    console.print(ratings)
+    if len(names) > 2:
+        console.print("\nwon-drawn-lost of the row against the column:")
+        _print_cross_table(found, names)
+    console.print()
+    columns = ("won-drawn-lost", "goals", "lead a match", "95 %", "rounds ahead", "p", "Holm's p")
+    met = table("encounter", *columns)
+    for pair in found.encounters:
+        interval = "-" if pair.low is None else f"{pair.low:+.2f} to {pair.high:+.2f}"
+        met.add_row(
+            escape(f"{pair.first} v {pair.second}"),
+            f"{pair.won}-{pair.drawn}-{pair.lost}",
+            f"{pair.goals_for} : {pair.goals_against}",
+            "-" if pair.lead is None else f"{pair.lead:+.2f}",
+            interval,
+            f"{pair.rounds_won} : {pair.rounds_lost}",
+            f"{pair.p:.2g}",
+            f"{pair.holm:.2g}",
+        )
+    console.print(met)
+    console.print()
+    console.print(team_figures({name: one.figures for name, one in found.standings.items()}, "a match"))
+    for name, one in found.standings.items():
+        if one.forfeits:
+            warn(f"{name}: lost {one.forfeits} matches by rule: its play crashed or hung; {one.first_error}")
+        if one.errors:
+            warn(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+
+
+def _print_cross_table(found: Standings, names: list[str]) -> None:
+    cells = {}
+    for one in found.encounters:
+        cells[one.first, one.second] = f"{one.won}-{one.drawn}-{one.lost}"
+        cells[one.second, one.first] = f"{one.lost}-{one.drawn}-{one.won}"
+    crossed = table("", *[str(number) for number in range(1, len(names) + 1)])
+    for number, name in enumerate(names, start=1):
+        row = ["" if name == other else cells.get((name, other), "-") for other in names]
+        crossed.add_row(escape(f"{number} {name}"), *row)
+    console.print(crossed)

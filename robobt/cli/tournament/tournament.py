@@ -1,0 +1,266 @@
+"""``robobt tournament``: teams against each other, and who is better."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import asdict
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import (
+    Imports,
+    Json,
+    Progress,
+    Seed,
+    console,
+    cores,
+    import_files,
+    parse_assignments,
+    print_json,
+    say,
+    warn,
+)
+from robobt.cli.compare import Set, parse_play
+from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
+from robobt.cli.tournament.tables import print_standings
+
+if TYPE_CHECKING:
+    from robobt.tournament.entrants import Entrant
+    from robobt.tournament.plan import Plan
+    from robobt.tournament.play import Played
+    from robobt.tournament.recordings import Recordings
+    from robobt.tournament.sequential import RunningTest
+
+ENTRANT = "ENTRANT"
+
+_EXITS = ("better", "not better", "undecided")
+"""What a sequential test says, by the exit code."""
+
+_ROUNDS, _MOST_ROUNDS = 10, 5000
+"""Rounds by default: of a tournament, and of a sequential test."""
+
+
+class KeepOption(StrEnum):
+    """Which recordings are kept."""
+
+    WORST = "worst"
+    LOST = "lost"
+    ALL = "all"
+
+
+def tournament(
+    entrants: Annotated[
+        list[str],
+        typer.Argument(
+            metavar=f"{ENTRANT}...",
+            help="A play with parameters (team_player:shoot_at=0.4), an entrant's file (.yaml), or a "
+            "scenario's side (team_v_baseline:yellow).",
+        ),
+    ],
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar=ENTRANT, help="Let all meet this one only; by default everybody meets everybody."
+        ),
+    ] = None,
+    scenario: Annotated[
+        str, typer.Option(help="A scenario file, or the name of a bundled one, for field, starts and rules.")
+    ] = "six_v_six",
+    rounds: Annotated[
+        int | None,
+        typer.Option(
+            "--rounds",
+            "-n",
+            min=1,
+            max=100_000,
+            help="How often each pairing meets, each time from either side with the same seed: two matches. "
+            f"By default {_ROUNDS}; with --sprt {_MOST_ROUNDS} at most.",
+        ),
+    ] = None,
+    sprt: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="ELO0 ELO1",
+            help="Play until it is clear whether the entrant is stronger than --against: not better is by "
+            "ELO0 points or less, better by ELO1 or more.",
+        ),
+    ] = None,
+    alpha: Annotated[
+        float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")
+    ] = 0.05,
+    beta: Annotated[
+        float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")
+    ] = 0.05,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            help="Keep every match in this file (SQLite); the same command goes on with what it lacks, also "
+            "while another one does.",
+        ),
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option("--html", help="Write the report, one page, to this file.")
+    ] = None,
+    record: Annotated[
+        KeepOption | None,
+        typer.Option(
+            "--record",
+            help="Keep recordings beside --out: the match in which the first entrant does worst against each "
+            "other, those it loses, or all.",
+        ),
+    ] = None,
+    seed: Seed = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers",
+            "-w",
+            min=0,
+            max=256,
+            help="Worker processes; by default one a core. 0 plays in the command's own process.",
+        ),
+    ] = None,
+    settings: Set = None,
+    imports: Imports = None,
+    referee: RefereeOption = None,
+    game_controller: ControllerOption = None,
+    stages: StagesOption = None,
+    as_json: Json = False,
+) -> None:
+    """Let teams play each other, each pairing from either side with the same seeds, and rate them.
+
+    Ratings are Bradley and Terry's on the Elo scale (400 points are odds of ten to one), 0 being --against,
+    or else the mean. Whose play ends the process or hangs for five minutes has lost that match.
+
+    With --sprt the exit code is 0 for better, 1 for not better, 2 for undecided after the last round.
+
+    Keys of --json: scenario, seed, referee, rounds, matches, distinct (matches that differ from each other);
+    standings by entrant, the best first: matches, won, drawn, lost, forfeits (lost because its play crashed
+    or hung), goals_for, goals_against, rating (elo, low and high: 95 %), figures (means a match), errors
+    (ticks in which a tree failed), first_error; encounters: first, second, matches, won, drawn, lost,
+    goals_for, goals_against, lead (goals a match), low and high (95 %), rounds_won, rounds_lost, p (exact
+    test on the rounds), holm (p corrected for the number of encounters); failed: what kept matches from
+    being played, by match; interrupted; sprt, null without: elo0, elo1, alpha, beta, verdict, rounds,
+    ratio (log-likelihood), bounds.
+    """
+    from robobt.match import load_scenario
+    from robobt.match.scenario.changes import changed
+    from robobt.tournament.plan import Plan
+    from robobt.tournament.play import play
+    from robobt.tournament.standings import standings
+
+    import_files(imports)
+    _check_sprt(entrants, against, sprt)
+    if record is not None and out is None:
+        raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
+    base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    if referee is Who.NONE:
+        raise typer.BadParameter("must be own or official", param_hint="--referee")
+    base, referees = refereed(base, referee, game_controller, stages)
+    texts = [*entrants, *([against] if against is not None and against not in entrants else [])]
+    teams = tuple([_entrant(text) for text in texts])
+    plan = Plan(
+        base,
+        teams,
+        rounds or (_ROUNDS if sprt is None else _MOST_ROUNDS),
+        base.seed if seed is None else seed,
+        None if against is None else teams[texts.index(against)].name,
+        referees,
+    )
+    test = None if sprt is None else _running_test(plan, sprt, alpha, beta)
+    recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
+    count = len(plan.fixtures())
+    with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
+        path = Path(folder) / "tournament.sqlite" if out is None else out
+        with plan.open_store(path) as store, Progress("tournament", count) as progress:
+            played = play(
+                plan,
+                store,
+                min(cores(), count) if workers is None else workers,
+                recordings=recordings,
+                on_match=lambda _: progress.advance(),
+                enough=None if test is None else test.enough,
+            )
+    for fixture, problem in played.failed.items():
+        warn(f"{fixture} could not be played: {problem}")
+    if played.interrupted:
+        kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
+        warn(f"stopped after {len(played.matches)} of {count} matches; {kept}")
+    if not played.matches:
+        raise typer.Exit(130 if played.interrupted else 1)
+    found = standings(played.matches, plan.names, plan.against)
+    said = {
+        "scenario": base.name,
+        "seed": plan.seed,
+        "referee": getattr(referees, "name", "own"),
+        "rounds": plan.rounds,
+    }
+    if html is not None:
+        from robobt.tournament.report import write_report
+
+        write_report(html, said, found, played.matches, recordings, None if test is None else test.line())
+    if as_json:
+        failed = {str(fixture): problem for fixture, problem in played.failed.items()}
+        ended = {"failed": failed, "interrupted": played.interrupted}
+        print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
+    else:
+        _tell_code(played)
+        console.print(
+            f"[bold]{escape(base.name)}[/bold]: {found.matches} matches, seed {plan.seed}, "
+            f"{said['referee']} referee"
+        )
+        print_standings(found)
+        if test is not None:
+            say(f"\n{test.line()}")
+        if html is not None:
+            say(f"Report: {html}")
+    if played.interrupted:
+        raise typer.Exit(130)
+    if test is not None:
+        raise typer.Exit(_EXITS.index(test.verdict.value))
+    if played.failed:
+        raise typer.Exit(1)
+
+
+def _check_sprt(entrants: list[str], against: str | None, sprt: tuple[float, float] | None) -> None:
+    if sprt is None:
+        return
+    if against is None or len([text for text in entrants if text != against]) != 1:
+        raise typer.BadParameter("needs one entrant, and --against for the other", param_hint="--sprt")
+    if not sprt[0] < sprt[1]:
+        raise typer.BadParameter(f"ELO0 must be below ELO1, not {sprt[0]:g} {sprt[1]:g}", param_hint="--sprt")
+
+
+def _running_test(plan: Plan, sprt: tuple[float, float], alpha: float, beta: float) -> RunningTest:
+    from robobt.tournament.sequential import RunningTest, SequentialTest
+
+    return RunningTest(SequentialTest(*sprt, alpha, beta), *plan.pairings[0])
+
+
+def _entrant(text: str) -> Entrant:
+    from robobt.tournament.entrants import read_entrant
+
+    if "=" not in text:
+        return read_entrant(text)
+    play, params = parse_play(text, ENTRANT)
+    return read_entrant(play, params, text)
+
+
+def _recordings(out: Path, keep: KeepOption, first: str) -> Recordings:
+    from robobt.tournament.recordings import Keep, Recordings
+
+    return Recordings(out.with_suffix(".recordings"), Keep(keep.value), first)
+
+
+def _tell_code(played: Played) -> None:
+    versions = {match.code for match in played.matches}
+    if len(versions) > 1:
+        warn(
+            f"the matches were played by {len(versions)} states of the code; for a fair comparison play "
+            "them all anew, with another --out"
+        )

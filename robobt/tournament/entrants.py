@@ -1,0 +1,200 @@
+"""Who takes part in a tournament: what a side's robots play, whichever side and scenario it is."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import Field, ValidationError, field_validator
+
+from robobt.config.errors import ConfigError
+from robobt.config.resources import bundled_scenarios
+from robobt.config.validation import Settings, first_problem
+from robobt.config.yaml import read_yaml
+from robobt.match.scenario.robots import RobotSetup
+from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.plays import PLAYS
+from robobt.plays.files import is_play_file
+from robobt.plays.python_files import import_file
+from robobt.world.game import Team
+
+_MARK = "entrant"
+"""The field that tells an entrant's file from a file of a play."""
+
+
+class EntrantError(ConfigError):
+    """An entrant that cannot take part; the message is one line that names its file or text."""
+
+
+class Part(Settings):
+    """What one robot plays."""
+
+    play: str = Field(max_length=400, description="a play's name, or a tree file beside the entrant's file")
+    params: dict[str, object] = Field(default_factory=dict, description="parameters of the play")
+
+
+class EntrantFile(Settings):
+    """The YAML file of an entrant."""
+
+    entrant: str = Field(min_length=1, max_length=80, description="what it is called")
+    players: tuple[Part, ...] = Field(
+        min_length=1,
+        max_length=11,
+        strict=False,
+        description="the field players in the scenario's order; the last one is also all that follow",
+    )
+    goalkeeper: Part | None = Field(None, description="the goalkeeper; by default the scenario's")
+    imports: tuple[str, ...] = Field(
+        (), strict=False, description="Python files beside this one, for the plays and skills they register"
+    )
+
+    @field_validator("entrant")
+    @classmethod
+    def _printable(cls, name: str) -> str:
+        if not name.isprintable() or name != name.strip():
+            raise ValueError("a name has to be printable, on one line, without blanks around it")
+        return name
+
+
+@dataclass(slots=True, frozen=True)
+class Entrant:
+    """A team that can play either side of any scenario.
+
+    Attributes:
+        name: what it is called in tables.
+        source: the file or text it comes from.
+        players: what the field players play, in the scenario's order; the last is also all that follow.
+        goalkeeper: what the goalkeeper plays; None for what blue's plays in the scenario.
+        imports: Python files that its plays and skills come from.
+    """
+
+    name: str
+    source: str
+    players: tuple[Part, ...]
+    goalkeeper: Part | None = None
+    imports: tuple[Path, ...] = ()
+
+    def error(self, problem: str, field: str = "") -> EntrantError:
+        """Make an error about this entrant."""
+        return EntrantError(self.source, problem, field)
+
+    def digest(self) -> str:
+        """Hash what it plays, files by their contents: an edited tree is another team."""
+        parts = [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
+        says = [None if part is None else part.model_dump() for part in (*self.players, self.goalkeeper)]
+        digest = hashlib.blake2b(json.dumps(says, sort_keys=True).encode(), digest_size=16)
+        trees = [Path(part.play) for part in parts if is_play_file(part.play)]
+        for path in (*trees, *self.imports):
+            digest.update(path.read_bytes())
+        return digest.hexdigest()
+
+
+def read_entrant(text: str, params: Mapping[str, object] | None = None, name: str | None = None) -> Entrant:
+    """Return the entrant that a text names.
+
+    Args:
+        text: a play's name, a file of a play, an entrant's file (YAML with the field ``entrant``),
+            or a scenario's side as in ``six_v_six:blue``.
+        params: parameters of the play; for plays only.
+        name: what the entrant is called; by default the text, or as its file says.
+
+    Raises:
+        EntrantError: there is none, or its file is wrong.
+        ScenarioError: the scenario of a side cannot be read.
+    """
+    given = dict(params or {})
+    scenario, colon, side = text.rpartition(":")
+    if colon and side in list(Team):
+        if given:
+            raise EntrantError(text, "a scenario's side takes no parameters; write an entrant's file")
+        return _from_side(name or text, text, load_scenario(scenario), Team(side))
+    if text.endswith((".yaml", ".yml")):
+        data = read_yaml(Path(text), EntrantError)
+        if _MARK in data:
+            if given:
+                raise EntrantError(text, "an entrant's file has its parameters inside")
+            return _from_file(Path(text), data)
+        if "robots" in data:
+            raise EntrantError(text, f"is a scenario; name its side, as in {text}:blue")
+    elif not is_play_file(text) and text not in PLAYS:
+        raise EntrantError(text, _unknown(text))
+    return Entrant(name or text, text, (Part(play=text, params=given),))
+
+
+def meeting(scenario: Scenario, blue: Entrant, yellow: Entrant) -> Scenario:
+    """Return the scenario with its sides played by two entrants; starts, limits and numbers stay.
+
+    Raises:
+        ScenarioError: what an entrant plays does not fit the scenario.
+        EntrantError: a side has no robot.
+    """
+    met = scenario
+    default = next((robot for robot in scenario.robots.blue if robot.goalkeeper), None)
+    for team, entrant in ((Team.BLUE, blue), (Team.YELLOW, yellow)):
+        robots = scenario.robots.of(team)
+        if not robots:
+            raise entrant.error(f"cannot play in {scenario.source}, where {team.value} has no robot")
+        players = [robot.number for robot in robots if not robot.goalkeeper]
+        for robot in robots:
+            if not robot.goalkeeper:
+                part = entrant.players[min(players.index(robot.number), len(entrant.players) - 1)]
+            elif not players:
+                part = entrant.goalkeeper or entrant.players[0]
+            else:
+                part = entrant.goalkeeper or _part(default or robot)
+            name = f"{team.value} {robot.number}"
+            met = met.with_robot(name, play=part.play, params=part.params, substitute={})
+    return met
+
+
+def _from_file(path: Path, data: dict[str, object]) -> Entrant:
+    try:
+        read = EntrantFile.model_validate(data)
+    except ValidationError as error:
+        field, problem = first_problem(error, EntrantFile, data)
+        raise EntrantError(str(path), problem, field) from error
+    imports = []
+    for number, name in enumerate(read.imports):
+        if not (path.parent / name).is_file():
+            raise EntrantError(str(path), f"there is no file {path.parent / name}", f"imports.{number}")
+        import_file(path.parent / name)
+        imports.append(path.parent / name)
+
+    def beside(part: Part, field: str) -> Part:
+        if is_play_file(part.play):
+            return part.model_copy(update={"play": str(path.parent / part.play)})
+        if part.play not in PLAYS:
+            raise EntrantError(str(path), _unknown(part.play), f"{field}.play")
+        return part
+
+    players = tuple([beside(part, f"players.{number}") for number, part in enumerate(read.players)])
+    goalkeeper = None if read.goalkeeper is None else beside(read.goalkeeper, "goalkeeper")
+    return Entrant(read.entrant, str(path), players, goalkeeper, tuple(imports))
+
+
+def _from_side(name: str, text: str, scenario: Scenario, team: Team) -> Entrant:
+    robots = scenario.robots.of(team)
+    for robot in robots:
+        if robot.limits is not None or robot.substitute:
+            what = "limits" if robot.limits is not None else "substitute"
+            raise EntrantError(text, f"{team.value} {robot.number} has {what}, which an entrant cannot bring")
+    goalkeepers = [_part(robot) for robot in robots if robot.goalkeeper]
+    players = [_part(robot) for robot in robots if not robot.goalkeeper]
+    if not robots:
+        raise EntrantError(text, f"{team.value} has no robot there")
+    return Entrant(name, text, tuple(players or goalkeepers), goalkeepers[0] if goalkeepers else None)
+
+
+def _part(robot: RobotSetup) -> Part:
+    return Part(play=robot.play, params=robot.params)
+
+
+def _unknown(name: str) -> str:
+    bundled = ", ".join(bundled_scenarios())
+    return PLAYS.problem_with(name) or (
+        f"no play is called {name!r}; there are {', '.join(PLAYS)}. An entrant is a play, a file (.yaml), "
+        f"or a scenario's side, as in six_v_six:blue ({bundled})"
+    )

@@ -1,0 +1,122 @@
+"""One match of a tournament, played by a worker process."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import robobt
+from robobt.config.errors import one_line
+from robobt.match.loop import Match
+from robobt.match.runner import trial_seed
+from robobt.plays import PLAYS
+from robobt.plays.base import Play
+from robobt.plays.python_files import import_files, imported_files
+from robobt.tournament.entrants import Part, meeting
+from robobt.tournament.fixtures import Fixture
+from robobt.tournament.guard import guarded, noted
+from robobt.tournament.plan import Plan
+from robobt.tournament.played import FORFEITS, PlayedMatch, SideResult
+from robobt.tournament.recordings import Recordings
+from robobt.world.game import Team
+
+
+def code_digest() -> str:
+    """Hash robobt's code and the files that were imported: what else than settings decides a match."""
+    digest = hashlib.blake2b(digest_size=8)
+    root = Path(robobt.__file__).parent
+    for path in (*sorted(root.rglob("*.py")), *imported_files()):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@dataclass(slots=True, frozen=True)
+class Failure:
+    """A match that could not be played."""
+
+    fixture: Fixture
+    problem: str
+
+
+@dataclass(slots=True, frozen=True)
+class Job:
+    """What a worker needs to play any of the matches.
+
+    The registered plays are there because they are sent by name: a worker that receives them has imported
+    the modules that register them.
+    """
+
+    plan: Plan
+    notes: Path
+    recordings: Recordings | None
+    plays: tuple[Play, ...]
+    code: str
+
+    @classmethod
+    def of(cls, plan: Plan, notes: Path, recordings: Recordings | None) -> Job:
+        """Return the job of a plan; notes on who is deciding are left in a folder."""
+        plays = tuple({PLAYS[part.play] for part in _parts(plan) if part.play in PLAYS})
+        return cls(plan, notes, recordings, plays, code_digest())
+
+    def play(self, fixture: Fixture, _report: object) -> PlayedMatch | Failure:
+        """Play a match."""
+        plan, sides = self.plan, {entrant.name: entrant for entrant in self.plan.entrants}
+        record = None if self.recordings is None else self.recordings.path(fixture)
+        try:
+            scenario = meeting(plan.scenario, sides[fixture.blue], sides[fixture.yellow])
+            seed = trial_seed(plan.seed, fixture.round)
+            match = Match(scenario, seed, plan.world, record, fixture.round, plan.referee)
+            with guarded(match, self._note(fixture), plan.silence):
+                result = match.play()
+        except OSError:
+            raise
+        except Exception as error:
+            return Failure(fixture, one_line(f"{type(error).__name__}: {error}"))
+        return PlayedMatch.of_result(fixture, result, self.code, _now())
+
+    def lost(self, fixture: Fixture, problem: str) -> PlayedMatch | Failure:
+        """Return the result of a match whose process has died."""
+        culprit = noted(self._note(fixture))
+        if culprit is None:
+            return Failure(fixture, problem)
+        said = f"{fixture.blue if culprit is Team.BLUE else fixture.yellow}: {problem}"
+        return PlayedMatch(
+            *fixture,
+            seed=trial_seed(self.plan.seed, fixture.round),
+            outcome=FORFEITS[culprit],
+            time=0.0,
+            blue_score=0,
+            yellow_score=0,
+            in_play=0.0,
+            ticks=0,
+            trace="",
+            code=self.code,
+            finished=_now(),
+            sides={team.value: SideResult(first_error=said if team is culprit else None) for team in Team},
+        )
+
+    def _note(self, fixture: Fixture) -> Path:
+        return self.notes / hashlib.blake2b(repr(fixture).encode(), digest_size=8).hexdigest()
+
+
+def _parts(plan: Plan) -> Iterator[Part]:
+    for entrant in plan.entrants:
+        yield from entrant.players
+        if entrant.goalkeeper is not None:
+            yield entrant.goalkeeper
+
+
+def set_up(files: tuple[Path, ...]) -> None:
+    """Get a worker ready: what plays print is nobody's, and must not end up among the figures."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+    import_files(files)
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -1,0 +1,102 @@
+"""What a tournament plays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from robobt import __version__
+from robobt.config.errors import ConfigError, RobobtError
+from robobt.match.loop import WorldFactory
+from robobt.match.refereeing import RefereeFactory, own_referee
+from robobt.match.results.file import scenario_digest
+from robobt.match.scenario.scenario import Scenario
+from robobt.tournament.entrants import Entrant, meeting
+from robobt.tournament.fixtures import Fixture, fixtures, pairings
+from robobt.tournament.guard import SILENCE
+from robobt.tournament.store import Store
+from robobt.worlds import scenario_settings, sim_world
+
+
+class TournamentError(RobobtError, ValueError):
+    """A tournament that cannot be played; the message is one line."""
+
+
+@dataclass(slots=True, frozen=True)
+class Plan:
+    """What is played.
+
+    Attributes:
+        scenario: the field, the starts, the rules and the ends of every match.
+        entrants: who takes part.
+        rounds: how often each pairing meets with a new seed, each time once from either side.
+        seed: what the rounds' seeds follow from.
+        against: the name of the one that all others meet; None for everybody against everybody.
+        referee: makes the referee of a match.
+        silence: how long a match may stand still before it is given up [s].
+        world: makes the world of a match.
+
+    Raises:
+        TournamentError: two entrants have one name, there is none to meet, or nobody by the name.
+        ScenarioError: an entrant does not fit the scenario.
+    """
+
+    scenario: Scenario
+    entrants: tuple[Entrant, ...]
+    rounds: int
+    seed: int
+    against: str | None = None
+    referee: RefereeFactory = own_referee
+    silence: float = SILENCE
+    world: WorldFactory = sim_world
+
+    def __post_init__(self) -> None:
+        names = self.names
+        for name in names:
+            if names.count(name) > 1:
+                raise TournamentError(f"two entrants are called {name!r}; give one another name")
+        if self.against is not None and self.against not in names:
+            raise TournamentError(f"there is no entrant {self.against!r} to play against")
+        if len(names) < 2:
+            raise TournamentError("a tournament needs two entrants")
+        scenario_settings(self.scenario)
+        for entrant in self.entrants:
+            try:
+                meeting(self.scenario, entrant, entrant)
+            except ConfigError as error:
+                raise entrant.error(str(error)) from error
+
+    @property
+    def names(self) -> list[str]:
+        """Return the entrants' names."""
+        return [entrant.name for entrant in self.entrants]
+
+    @property
+    def pairings(self) -> list[tuple[str, str]]:
+        """Return who meets whom."""
+        return pairings(self.names, self.against)
+
+    def fixtures(self) -> list[Fixture]:
+        """Return all matches, round by round."""
+        return list(fixtures(self.pairings, self.rounds))
+
+    def open_store(self, path: Path) -> Store:
+        """Open its store, or make it, with the entrants entered.
+
+        Raises:
+            StoreError: the file is another tournament's, or not a store.
+        """
+        played = {
+            "scenario": self.scenario.name,
+            "digest": scenario_digest(self.scenario),
+            "seed": self.seed,
+            "referee": getattr(self.referee, "name", "own"),
+            "robobt": __version__,
+        }
+        store = Store(path, played)
+        try:
+            store.enter(self.entrants)
+        except BaseException:
+            store.close()
+            raise
+        return store

@@ -1,0 +1,160 @@
+"""Plays a tournament: what is missing in the store, on worker processes, whatever the entrants do."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import closing
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+from robobt.plays.python_files import imported_files
+from robobt.signals import uninterrupted
+from robobt.tournament.claims import Claims
+from robobt.tournament.fixtures import Fixture
+from robobt.tournament.job import Failure, Job, set_up
+from robobt.tournament.plan import Plan, TournamentError
+from robobt.tournament.played import PlayedMatch
+from robobt.tournament.recordings import Recordings
+from robobt.tournament.store import Store
+from robobt.workers import Work, run_tasks
+
+Enough = Callable[[Collection[PlayedMatch], Collection[Fixture]], bool]
+
+_POLL = 1.0
+"""How often it is looked whether another program has finished what it has claimed [s]."""
+
+
+@dataclass(slots=True)
+class Played:
+    """What became of a tournament.
+
+    Attributes:
+        matches: those that the store holds of the plan, in the order of rounds and names.
+        failed: what kept a match from being played, by match; it is tried again the next time.
+        interrupted: whether it was stopped (Ctrl-C).
+    """
+
+    matches: list[PlayedMatch]
+    failed: dict[Fixture, str] = field(default_factory=dict)
+    interrupted: bool = False
+
+
+def play(
+    plan: Plan,
+    store: Store,
+    workers: int = 0,
+    *,
+    recordings: Recordings | None = None,
+    on_match: Callable[[PlayedMatch], object] | None = None,
+    enough: Enough | None = None,
+) -> Played:
+    """Play what is missing in the store.
+
+    A match that cannot be played, because of a fault of nobody's plays, is left out; one whose process a
+    play ends, or holds up for ever, is lost by the side whose play it was. Several programs may do this
+    at once with one store: each match is played by one of them.
+
+    Args:
+        plan: what is played.
+        store: opened for this plan.
+        workers: processes; 0 is this process itself, which an entrant that crashes takes with it.
+        recordings: which matches are recorded; none by default.
+        on_match: called with each match as it is there, first with those that the store holds already.
+        enough: called after each match with all that are there and those that could not be played; once
+            it says True no further match begins, and those in progress are not waited for.
+
+    Raises:
+        StoreError: the store cannot be written.
+        OSError: a recording cannot be written.
+    """
+    driver = _Driver(plan, store, recordings, on_match, enough)
+    interrupted = False
+    with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
+        job = Job.of(plan, Path(notes), recordings)
+        try:
+            while missing := driver.missing():
+                tasks = run_tasks(
+                    Work(job.play, "match", TournamentError, (OSError,)),
+                    driver.claimed(missing, claims),
+                    min(workers, len(missing)),
+                    setup=partial(set_up, imported_files()),
+                    lost=job.lost if workers else None,
+                )
+                waits = True
+                with closing(tasks) as results:
+                    for result in results:
+                        waits = False
+                        driver.take(result)
+                        claims.release(result.fixture)
+                        if driver.stop:
+                            break
+                if waits and driver.missing():
+                    time.sleep(_POLL)
+        except KeyboardInterrupt:
+            interrupted = True
+    return Played([driver.done[one] for one in sorted(driver.done, key=_order)], driver.failed, interrupted)
+
+
+class _Driver:
+    """What has been played so far, and what follows from each match."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        store: Store,
+        recordings: Recordings | None,
+        on_match: Callable[[PlayedMatch], object] | None,
+        enough: Enough | None,
+    ) -> None:
+        self._store, self._recordings, self._on_match, self._enough = store, recordings, on_match, enough
+        self._wanted = plan.fixtures()
+        self.done: dict[Fixture, PlayedMatch] = {}
+        self.failed: dict[Fixture, str] = {}
+        self.stop = False
+        held = {match.fixture: match for match in store.matches(plan.names)}
+        for fixture in self._wanted:
+            if fixture in held:
+                self._finished(held[fixture])
+
+    def missing(self) -> list[Fixture]:
+        """Return what is still to be played, nothing once it is enough."""
+        return [] if self.stop else [f for f in self._wanted if f not in self.done and f not in self.failed]
+
+    def claimed(self, missing: Iterable[Fixture], claims: Claims) -> Iterator[Fixture]:
+        """Yield what nobody else is playing; what another program has finished meanwhile counts as played."""
+        for fixture in missing:
+            if self.stop:
+                return
+            if not claims.take(fixture):
+                continue
+            theirs = self._store.match(fixture)
+            if theirs is None:
+                yield fixture
+            else:
+                claims.release(fixture)
+                self._finished(theirs)
+
+    def take(self, result: PlayedMatch | Failure) -> None:
+        """Take in a match that has just been played."""
+        if isinstance(result, Failure):
+            self.failed[result.fixture] = result.problem
+            return
+        with uninterrupted:
+            self._store.add(result)
+        self._finished(result)
+        if self._recordings is not None:
+            self._recordings.sort_out(self.done.values())
+
+    def _finished(self, match: PlayedMatch) -> None:
+        self.done[match.fixture] = match
+        if self._on_match is not None:
+            self._on_match(match)
+        if self._enough is not None and self._enough(self.done.values(), self.failed):
+            self.stop = True
+
+
+def _order(fixture: Fixture) -> tuple[int, str, str]:
+    return fixture.round, fixture.blue, fixture.yellow

@@ -1,0 +1,181 @@
+"""The sequential test of pairs of matches: stop as soon as the evidence for better or not better is enough.
+
+Two matches with one seed, either entrant once on either side, are one pair; its score is 0 to 1 in
+quarters, five outcomes (hence pentanomial). What both matches owe to the seed cancels inside the pair.
+
+Source: Wald, "Sequential tests of statistical hypotheses", 1945, for the test; Van den Bergh, "A practical
+introduction to the GSPRT", 2020, for the likelihood ratio of the mean of a distribution that is not known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from itertools import count
+from math import log
+from statistics import fmean
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robobt.tournament.fixtures import Fixture
+from robobt.tournament.played import PlayedMatch
+from robobt.tournament.ratings import expected_score
+from robobt.tournament.standings import rounds_of
+
+SCORES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+"""What a pair of matches can score."""
+
+_UNSEEN = 1e-3
+"""Pairs that an outcome counts for before any was seen, so that none is thought impossible."""
+
+_BISECTIONS = 60
+
+
+class Verdict(StrEnum):
+    """What a sequential test says."""
+
+    BETTER = "better"
+    NOT_BETTER = "not better"
+    UNDECIDED = "undecided"
+
+
+@dataclass(slots=True, frozen=True)
+class SequentialTest:
+    """Whether one is at least ``elo1`` points stronger than another, or at most ``elo0``.
+
+    Attributes:
+        elo0: of who is not better, in Elo points of single matches.
+        elo1: of who is better; above ``elo0``.
+        alpha: how often at most "better" may be said of a difference of ``elo0`` or less.
+        beta: how often at most "not better" may be said of a difference of ``elo1`` or more.
+    """
+
+    elo0: float
+    elo1: float
+    alpha: float = 0.05
+    beta: float = 0.05
+
+    def __post_init__(self) -> None:
+        if not self.elo0 < self.elo1:
+            raise ValueError(f"elo0 must be below elo1, not {self.elo0:g} and {self.elo1:g}")
+        for name in ("alpha", "beta"):
+            if not 0.0 < getattr(self, name) < 0.5:
+                raise ValueError(f"{name} must lie between 0 and 0.5, not {getattr(self, name):g}")
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The log-likelihood ratios at which it says "not better" and "better"."""
+        return log(self.beta / (1.0 - self.alpha)), log((1.0 - self.beta) / self.alpha)
+
+    def ratio(self, counts: ArrayLike) -> NDArray[np.float64]:
+        """Return the log-likelihood ratio of "better" over "not better".
+
+        ``counts`` (..., 5) are pairs by their score, worst first.
+        """
+        seen = np.asarray(counts, dtype=np.float64)
+        total = seen.sum(-1)
+        shares = (seen + _UNSEEN) / (seen + _UNSEEN).sum(-1, keepdims=True)
+        likely = [_tilted(shares, expected_score(elo)) for elo in (self.elo0, self.elo1)]
+        found: NDArray[np.float64] = total * (shares * np.log(likely[1] / likely[0])).sum(-1)
+        return found
+
+    def judge(self, pairs: Sequence[float]) -> tuple[Verdict, int, float]:
+        """Judge pairs in their order, until the evidence is enough.
+
+        Args:
+            pairs: their scores, 0 to 1 in quarters.
+
+        Returns:
+            the verdict, the number of pairs it took, and the log-likelihood ratio there.
+        """
+        steps = np.zeros((len(pairs), len(SCORES)))
+        steps[np.arange(len(pairs)), np.rint(np.asarray(pairs) * 4.0).astype(int)] = 1.0
+        ratios = self.ratio(np.cumsum(steps, axis=0))
+        low, high = self.bounds
+        over = np.flatnonzero((ratios <= low) | (ratios >= high))
+        if not len(over):
+            return Verdict.UNDECIDED, len(pairs), float(ratios[-1]) if len(pairs) else 0.0
+        at = int(over[0])
+        verdict = Verdict.BETTER if ratios[at] >= high else Verdict.NOT_BETTER
+        return verdict, at + 1, float(ratios[at])
+
+
+class RunningTest:
+    """A sequential test that goes on while its matches are played.
+
+    Only rounds before the first that is still being played count, so that the verdict does not
+    depend on which match ends first. A round with a match that could not be played is left out,
+    and so is one that repeats another move for move.
+
+    Args:
+        test: what is asked.
+        first: who may be better.
+        second: better than whom.
+
+    Attributes:
+        verdict: what it says so far.
+        rounds: how many rounds it took.
+        ratio: the log-likelihood ratio there.
+    """
+
+    def __init__(self, test: SequentialTest, first: str, second: str) -> None:
+        self.verdict, self.rounds, self.ratio = Verdict.UNDECIDED, 0, 0.0
+        self._test, self._first, self._second = test, first, second
+
+    def enough(self, matches: Iterable[PlayedMatch], failed: Collection[Fixture] = ()) -> bool:
+        """Return whether the evidence is enough.
+
+        Args:
+            matches: what was played so far.
+            failed: what could not be played.
+        """
+        pairs = rounds_of(matches, self._first, self._second)
+        left_out = {fixture.round for fixture in failed}
+        scores: dict[tuple[object, ...], float] = {}
+        for number in count():
+            if number in pairs:
+                pair = pairs[number]
+                traces = tuple([match.trace or match.round for match in pair])
+                scores.setdefault(traces, fmean(match.score(self._first) for match in pair))
+            elif number not in left_out:
+                break
+        self.verdict, self.rounds, self.ratio = self._test.judge(list(scores.values()))
+        return self.verdict is not Verdict.UNDECIDED
+
+    def line(self) -> str:
+        """Return what it says, with its bounds."""
+        test, (low, high) = self._test, self._test.bounds
+        said = {
+            Verdict.BETTER: f"{self._first} is better than {self._second}",
+            Verdict.NOT_BETTER: f"{self._first} is not better than {self._second}",
+            Verdict.UNDECIDED: f"undecided between {self._first} and {self._second}",
+        }[self.verdict]
+        return (
+            f"Sequential test: {said} after {self.rounds} rounds. Log-likelihood ratio {self.ratio:+.2f} of "
+            f"{test.elo1:+g} to {test.elo0:+g} Elo, bounds {low:.2f} (beta {test.beta:g}) and {high:.2f} "
+            f"(alpha {test.alpha:g})."
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """Return plain data."""
+        found = {"verdict": self.verdict.value, "rounds": self.rounds, "ratio": self.ratio}
+        return {**asdict(self._test), **found, "bounds": self._test.bounds}
+
+
+def _tilted(shares: NDArray[np.float64], mean: float) -> NDArray[np.float64]:
+    """Return the distributions with this mean that make pairs with these shares (..., 5) most likely.
+
+    They are shares / (1 + t (score - mean)), with the t for which the mean is right: it
+    is the root of a falling function between the poles.
+    """
+    gap = SCORES - mean
+    low = np.full(shares.shape[:-1], -1.0 / gap[-1])
+    high = np.full(shares.shape[:-1], -1.0 / gap[0])
+    for _ in range(_BISECTIONS):
+        tilt = 0.5 * (low + high)
+        rest = (shares * gap / (1.0 + tilt[..., None] * gap)).sum(-1)
+        low, high = np.where(rest > 0.0, tilt, low), np.where(rest > 0.0, high, tilt)
+    found: NDArray[np.float64] = shares / (1.0 + (0.5 * (low + high))[..., None] * gap)
+    return found

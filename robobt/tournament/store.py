@@ -1,0 +1,234 @@
+"""The store of a tournament: one SQLite file, one row a match, that several programs may write at once.
+
+Tables: ``tournament`` (what is played: field, value), ``entrants`` (name, digest, source) and ``matches``,
+one row a match by ``blue``, ``yellow`` and ``round``. Its other columns are the fields of
+:class:`~robobt.tournament.played.PlayedMatch` and, behind ``blue_`` and ``yellow_``, those of its
+sides. Rows are only ever
+added: triggers refuse whatever else. Two stores of one tournament hold the same rows but for ``wall_time``
+and ``finished``, in whichever order they were played.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import fields
+from pathlib import Path
+from typing import Self
+
+from robobt.config.errors import RobobtError, one_line, short_repr
+from robobt.tournament.entrants import Entrant
+from robobt.tournament.fixtures import Fixture
+from robobt.tournament.played import COLUMNS, PLAIN, PlayedMatch, SideResult
+
+FORMAT = "robobt-tournament 1"
+
+_PATIENCE = 60.0
+"""How long another writer is waited for [s]."""
+
+
+class StoreError(RobobtError, ValueError):
+    """A store cannot be used; the message is one line that names the file and the field."""
+
+    def __init__(self, path: Path, problem: str, field: str = "") -> None:
+        super().__init__(": ".join([one_line(part) for part in (str(path), field, problem) if part]))
+
+
+_KINDS = {"int": "INTEGER NOT NULL", "float": "REAL NOT NULL", "str": "TEXT NOT NULL", "str | None": "TEXT"}
+
+
+def _kinds() -> Iterator[str]:
+    kinds = {part.name: str(part.type) for part in (*fields(PlayedMatch), *fields(SideResult))}
+    for name in COLUMNS:
+        plain = name if name in PLAIN else name.partition("_")[2]
+        yield f"{name} {_KINDS[kinds[plain]]}"
+
+
+_SCHEMA = f"""
+CREATE TABLE tournament (field TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE entrants (name TEXT PRIMARY KEY, digest TEXT NOT NULL, source TEXT NOT NULL);
+CREATE TABLE matches ({", ".join(_kinds())}, PRIMARY KEY (blue, yellow, round));
+""" + "".join(
+    f"CREATE TRIGGER no_{verb}_of_{table} BEFORE {verb} ON {table}\n"
+    "BEGIN SELECT RAISE(ABORT, 'rows of a tournament are only ever added'); END;\n"
+    for table in ("tournament", "entrants", "matches")
+    for verb in ("update", "delete")
+)
+
+
+class Store:
+    """An open store. A context manager.
+
+    Args:
+        path: the file; made where there is none, unless nothing is said of what is played.
+        played: what is played, by field; None opens a store that exists, whatever it holds.
+
+    Attributes:
+        played: what is played, by field.
+
+    Raises:
+        StoreError: the file is no store, or one of another tournament.
+        OSError: it cannot be read.
+    """
+
+    def __init__(self, path: str | Path, played: Mapping[str, object] | None = None) -> None:
+        self.path = Path(path)
+        if self.path.exists() and not self.path.is_file():
+            raise StoreError(self.path, "is not an ordinary file")
+        if played is None and not self.path.exists():
+            raise StoreError(self.path, "there is no such file")
+        if not self.path.parent.is_dir():
+            self.path.parent.mkdir(parents=True)
+        with self._naming():
+            self._connection = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
+            self._connection.row_factory = sqlite3.Row
+        try:
+            with self._naming():
+                self._open(played)
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._connection.close()
+
+    def enter(self, entrants: Iterable[Entrant]) -> None:
+        """Enter who takes part.
+
+        Raises:
+            StoreError: the store knows another team by that name.
+        """
+        with self._writing():
+            for entrant in entrants:
+                self._enter(entrant.name, entrant.digest(), entrant.source)
+
+    def entrants(self) -> dict[str, str]:
+        """Return the entrants' digests by name, in the order in which they were entered."""
+        return {row["name"]: row["digest"] for row in self._all("SELECT * FROM entrants ORDER BY rowid")}
+
+    def add(self, match: PlayedMatch) -> bool:
+        """Add a match, unless it is there already; return whether it was added. It is on disk then."""
+        with self._writing():
+            return self._add([match]) == 1
+
+    def match(self, fixture: Fixture) -> PlayedMatch | None:
+        """Return a match, None where it has not been played."""
+        found = self._all("SELECT * FROM matches WHERE blue = ? AND yellow = ? AND round = ?", fixture)
+        return PlayedMatch.of_row(dict(found[0])) if found else None
+
+    def matches(self, names: Sequence[str] | None = None) -> list[PlayedMatch]:
+        """Return the matches, in the order of rounds and names.
+
+        Args:
+            names: those among whom they were played; by default all.
+        """
+        rows = self._all("SELECT * FROM matches ORDER BY round, blue, yellow")
+        played = [PlayedMatch.of_row(dict(row)) for row in rows]
+        return [match for match in played if names is None or {match.blue, match.yellow} <= {*names}]
+
+    def merge(self, other: Store) -> int:
+        """Take over what another store of the same tournament holds; return how many matches were new.
+
+        Raises:
+            StoreError: the other is of another tournament, knows another team by one of the names,
+                or a match has gone another way there.
+        """
+        self._check(other.played, other.path)
+        known = {match.fixture: match for match in self.matches()}
+        new = []
+        for match in other.matches():
+            here = known.get(match.fixture)
+            if here is None:
+                new.append(match)
+            elif here.trace != match.trace:
+                raise StoreError(
+                    other.path,
+                    f"went another way than in {self.path}; was it played by other code?",
+                    f"matches: {match.fixture}",
+                )
+        with self._writing():
+            for row in other._all("SELECT * FROM entrants ORDER BY rowid"):
+                self._enter(row["name"], row["digest"], row["source"])
+            return self._add(new)
+
+    def _add(self, matches: Sequence[PlayedMatch]) -> int:
+        before = self._connection.total_changes
+        names = ", ".join(COLUMNS)
+        places = ", ".join([f":{name}" for name in COLUMNS])
+        self._connection.executemany(
+            f"INSERT OR IGNORE INTO matches ({names}) VALUES ({places})", [match.row() for match in matches]
+        )
+        return self._connection.total_changes - before
+
+    def _enter(self, name: str, digest: str, source: str) -> None:
+        there = self._connection.execute("SELECT digest FROM entrants WHERE name = ?", [name]).fetchone()
+        if there is None:
+            self._connection.execute("INSERT INTO entrants VALUES (?, ?, ?)", [name, digest, source])
+        elif there[0] != digest:
+            raise StoreError(
+                self.path,
+                "is another team in this store; rename the entrant, or use another file",
+                f"entrants: {short_repr(name)}",
+            )
+
+    def _open(self, played: Mapping[str, object] | None) -> None:
+        # Nothing is lost when this process is killed; a machine that loses power loses the last rows at most.
+        self._connection.execute("PRAGMA synchronous = NORMAL")
+        with self._writing():
+            tables = {row[0] for row in self._connection.execute("SELECT name FROM sqlite_master")}
+            if not tables and played is not None:
+                for statement in filter(str.strip, _SCHEMA.split(";\n")):
+                    self._connection.execute(f"{statement};")
+                says = {"format": FORMAT, **{name: str(value) for name, value in played.items()}}
+                self._connection.executemany("INSERT INTO tournament VALUES (?, ?)", says.items())
+            elif not {"tournament", "entrants", "matches"} <= tables:
+                raise StoreError(self.path, "is no store of a tournament; give another name")
+            held = self._connection.execute("SELECT field, value FROM tournament ORDER BY rowid")
+            self.played = {row[0]: row[1] for row in held}
+        if self.played.get("format") != FORMAT:
+            raise StoreError(self.path, f"is {self.played.get('format')!r}, not {FORMAT!r}", "format")
+        if played is not None:
+            self._check({name: str(value) for name, value in played.items()}, None)
+
+    def _check(self, played: Mapping[str, str], other: Path | None) -> None:
+        for name, value in played.items():
+            held = self.played.get(name)
+            if held != value:
+                what = f"the store holds a tournament of {short_repr(held)}, not of {short_repr(value)}"
+                if name == "digest":
+                    what = "the store holds a tournament of another version of the scenario"
+                raise StoreError(
+                    self.path, f"{what}{f' as {other}' if other else ''}; give another file", name
+                )
+
+    def _all(self, statement: str, values: Sequence[object] = ()) -> list[sqlite3.Row]:
+        with self._naming():
+            return self._connection.execute(statement, values).fetchall()
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Write in one transaction, begun as a writer's: two begun as readers would block each other."""
+        with self._naming():
+            self._connection.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+            except BaseException:
+                with suppress(sqlite3.Error):
+                    self._connection.execute("ROLLBACK")
+                raise
+            self._connection.execute("COMMIT")
+
+    @contextmanager
+    def _naming(self) -> Iterator[None]:
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise StoreError(self.path, f"cannot be used: {error}") from error

@@ -1,0 +1,117 @@
+"""``robobt tournament``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from robobt.cli import app
+
+QUICK = ("--scenario", "striker_vs_goalie", "--set", "ends.time_limit=0.3", "--rounds", "1", "--workers", "0")
+
+
+def invoke(*options: object) -> Result:
+    return CliRunner().invoke(app, ["tournament", *map(str, options)])
+
+
+def plain(shown: Result) -> str:
+    return " ".join(shown.output.replace("│", " ").split())
+
+
+@pytest.mark.integration
+def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
+    store, page = tmp_path / "night.sqlite", tmp_path / "night.html"
+    given = ("take_shot", "attack_main:speed=0.5,rater=open_angle", "attack_nn", *QUICK, "--out", store)
+    shown = invoke(*given, "--html", page, "--record", "worst", "--json")
+    assert shown.exit_code == 0, shown.output
+    said = json.loads(shown.stdout)
+    assert (said["matches"], said["distinct"], said["failed"]) == (6, 6, {})
+    assert set(said["standings"]) == {"take_shot", "attack_main:speed=0.5,rater=open_angle", "attack_nn"}
+    assert [(one["first"], one["matches"]) for one in said["encounters"]] == [
+        ("take_shot", 2),
+        ("take_shot", 2),
+        ("attack_main:speed=0.5,rater=open_angle", 2),
+    ]
+    assert page.read_text().count(".recordings/") == 2
+    again = invoke(*given)
+    assert again.exit_code == 0
+    assert "striker_vs_goalie: 6 matches, seed 1, own referee" in again.output
+    assert "won-drawn-lost of the row against the column" in again.output
+
+
+@pytest.mark.integration
+def test_a_sequential_test_that_stays_undecided_exits_with_2() -> None:
+    shown = invoke("take_shot", "--against", "attack_main", "--sprt", "0", "30", *QUICK)
+    assert shown.exit_code == 2
+    assert "undecided between take_shot and attack_main after 1 rounds" in plain(shown)
+    assert "bounds -2.94 (beta 0.05) and 2.94 (alpha 0.05)" in plain(shown)
+
+
+@pytest.mark.parametrize(("goals", "code"), [((1, 0), 0), ((0, 1), 1)])
+def test_a_sequential_test_exits_with_what_it_found(
+    goals: tuple[int, int], code: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from robobt.tournament.fixtures import Fixture
+    from robobt.tournament.job import Job
+    from tests.tournament.made_up import played
+
+    def decided(_: Job, fixture: Fixture, __: object) -> object:
+        return played(*fixture, goals if fixture.blue == "take_shot" else goals[::-1])
+
+    monkeypatch.setattr(Job, "play", decided)
+    given = ("take_shot", "--against", "attack_main", "--sprt", "0", "100", *QUICK[:-4], "--workers", "0")
+    shown = invoke(*given, "--json")
+    assert shown.exit_code == code
+    said = json.loads(shown.stdout)
+    assert said["sprt"]["verdict"] == ("better", "not better")[code]
+    assert said["matches"] < 100
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (("take_shot",), "a tournament needs two entrants"),
+        (("take_shot", "take_shot"), "two entrants are called 'take_shot'"),
+        (("take_shot", "take_sht"), "no play is called 'take_sht'"),
+        (("take_shot", "attack_main:sped=1"), "no such parameter"),
+        (("take_shot", "attack_main:speed="), "speed"),
+        (("take_shot", "gone.yaml"), "gone.yaml: cannot be read"),
+        (("take_shot", "attack_nn", "--scenario", "gone"), "no such file or bundled scenario"),
+        (("take_shot", "attack_nn", "--scenario", "table4_trial1"), "where yellow has no robot"),
+        (("take_shot", "attack_nn", "--set", "ends.time=3"), "ends.time: there is no such field"),
+        (("take_shot", "attack_nn", "--record", "all"), "needs --out"),
+        (("take_shot", "attack_nn", "--referee", "none"), "must be own or official"),
+        (("take_shot", "attack_nn", "--sprt", "0", "30"), "needs one entrant, and --against"),
+        (("take_shot", "--against", "attack_nn", "--sprt", "30", "0"), "ELO0 must be below ELO1, not 30 0"),
+        (("take_shot", "attack_nn", "--out", __file__), "cannot be used: file is not a database"),
+    ],
+)
+def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem: str) -> None:
+    shown = invoke("--scenario", "striker_vs_goalie", *options)
+    assert shown.exit_code in (1, 2)
+    assert problem in plain(shown)
+    assert "Traceback" not in shown.output
+
+
+def test_a_store_of_another_tournament_is_named_with_the_field(tmp_path: Path) -> None:
+    store = tmp_path / "night.sqlite"
+    given = ("take_shot", "attack_nn", *QUICK[:4], "--workers", "0", "--rounds", "1", "--out", store)
+    assert invoke(*given).exit_code == 0
+    shown = invoke(*given, "--seed", 5)
+    assert shown.exit_code == 1
+    assert f"{store}: seed: the store holds a tournament of '1', not of '5'; give another file" in plain(
+        shown
+    )
+
+
+def test_a_stopped_tournament_says_what_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("robobt.tournament.job.Job.play", stopped)
+    shown = invoke("take_shot", "attack_nn", *QUICK)
+    assert shown.exit_code == 130
+    assert "stopped after 0 of 2 matches; without --out nothing is kept" in plain(shown)

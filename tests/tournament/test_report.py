@@ -1,0 +1,61 @@
+"""The report: one page."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as Xml
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from robobt.tournament.play import play
+from robobt.tournament.recordings import Keep, Recordings
+from robobt.tournament.report import rating_plot, report, write_report
+from robobt.tournament.standings import standings
+from tests.tournament.made_up import plan, played, runner
+
+MATCHES = [played("a", "b & <c>", number, (number, 1)) for number in range(4)]
+FOUND = standings(MATCHES, ["a", "b & <c>"])
+
+
+class Page(HTMLParser):
+    """Links and text of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.words: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.links += [str(value) for name, value in attrs if name in ("href", "src")]
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+
+def test_the_page_has_every_table_and_needs_nothing_else() -> None:
+    page = Page(report({"scenario": "six_v_six"}, FOUND, MATCHES, {}, "a is better"))
+    text = " ".join(page.words)
+    for said in ("six_v_six", "Ratings", "b & <c>", "a v b & <c>", "Holm's p", "a is better", "2-1-1"):
+        assert said in text
+    assert page.links == []
+
+
+def test_the_plot_is_sound_and_has_every_entrant() -> None:
+    plot = Xml.fromstring(rating_plot(FOUND.standings))
+    assert len(plot.findall("circle")) == 2
+    assert {"a", "b & <c>"} <= {(text.text or "") for text in plot.iter("text")}
+
+
+@pytest.mark.integration
+def test_recorded_matches_are_linked(tmp_path: Path) -> None:
+    what = plan(1, entrants=(runner(1.0), runner(2.0)))
+    recordings = Recordings(tmp_path / "night.recordings", Keep.ALL, "at 1")
+    with what.open_store(tmp_path / "night.sqlite") as store:
+        matches = play(what, store, recordings=recordings).matches
+    recordings.path(matches[1].fixture).write_bytes(b"cut off")
+    path = tmp_path / "out" / "night.html"
+    write_report(path, {}, standings(matches, what.names), matches, recordings)
+    (link,) = Page(path.read_text()).links
+    assert "robobt replay" in (path.parent / link).read_text()
