@@ -89,11 +89,13 @@ class EndJudge:
             return placed
         if self._was_out and self._out_ends and goal_by is None:
             return Outcome.OUT
-        if _lasted(self._since_held(truth), self._ends.held_by_goalkeeper, truth.time):
-            return Outcome.SAVED
-        if self._ends.held_by_goalkeeper is not None and any(robot in self._keepers for robot in kicked):
-            return Outcome.SAVED
-        if _lasted(self._since_rest(truth, kicks), self._ends.ball_at_rest, truth.time):
+        held, rest = self._ends.held_by_goalkeeper, self._ends.ball_at_rest
+        if held is not None:
+            if any(robot in self._keepers for robot in kicked):
+                return Outcome.SAVED
+            if _lasted(self._since_held(truth), held, truth.time):
+                return Outcome.SAVED
+        if rest is not None and _lasted(self._since_rest(truth, kicks), rest, truth.time):
             return Outcome.REST
         return Outcome.TIME if truth.time >= self._last else None
 
@@ -137,5 +139,5 @@ class EndJudge:
         return self._rest_since
 
 
-def _lasted(since: float | None, duration: float | None, now: float) -> bool:
-    return since is not None and duration is not None and now - since >= duration - 1e-9
+def _lasted(since: float | None, duration: float, now: float) -> bool:
+    return since is not None and now - since >= duration - 1e-9

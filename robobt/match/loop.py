@@ -163,8 +163,9 @@ class Match:
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
-            frame = self.world.observe()
-            frame.game = self.game
+            if not self.world.shows_truth:
+                frame = self.world.observe()
+                frame.game = self.game
             self._commands = self.decide(frame)
         else:
             self._trace.event(self.outcome)

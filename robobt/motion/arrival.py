@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import cos, hypot, pi, sin, sqrt
+from operator import attrgetter
 
 import numpy as np
 
@@ -25,6 +26,7 @@ X, Y, VX, VY, TOP, ACCELERATION, BRAKING = range(7)
 STEP = 0.1
 """From one place where a ball may be met to the next [s]."""
 
+_motion = attrgetter("x", "y", "vx", "vy")
 _HALVINGS = 7
 _DRIFT = 0.15
 """Sideways speed that does not count [m/s]."""
@@ -36,10 +38,13 @@ _ROLL = DEFAULT_BALL.roll_deceleration
 
 def movers(robots: Iterable[RobotState]) -> FloatArray:
     """Return place, velocity and limits of every robot, (n, 7), for the functions of this module."""
-    rows = [
-        (r.x, r.y, r.vx, r.vy, r.limits.max_speed, r.limits.acceleration, r.limits.braking) for r in robots
-    ]
-    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+    row: list[float] = []
+    for robot in robots:
+        limits = robot.limits
+        row += _motion(robot)
+        row += (limits.max_speed, limits.acceleration, limits.braking)
+    # From one list, for numpy takes twice as long over a list of rows.
+    return np.array(row, dtype=np.float64).reshape(-1, 7)
 
 
 def movers_of(frame: Frame) -> FloatArray:

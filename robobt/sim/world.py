@@ -121,26 +121,26 @@ class SimWorld(World):
         rows = self._commands[0]
         loss = self.settings.realism.command_loss
         lost = self._rng.random(len(self._ids)) < loss if loss > 0.0 else None
-        if lost is None:
-            rows[:] = 0.0
-        else:
-            rows[~lost] = 0.0
-            # A lost command is not sent twice: the robot drives on but does not kick again.
-            rows[lost, KICK] = 0.0
+        sent: list[tuple[float, ...]] = [_NOTHING] * len(self._ids)
         for robot, command in commands.items():
             i = self._index[robot]
             if not command.finite():
                 raise ValueError(f"the command for {robot} is not finite: {command}")
-            if lost is None or not lost[i]:
-                rows[i] = (
-                    command.vx,
-                    command.vy,
-                    command.omega,
-                    command.kick_speed,
-                    command.kick_trigger == KickTrigger.ON_CONTACT,
-                    bool(command.dribbler),
-                    command.kick_angle,
-                )
+            sent[i] = (
+                command.vx,
+                command.vy,
+                command.omega,
+                command.kick_speed,
+                command.kick_trigger == KickTrigger.ON_CONTACT,
+                bool(command.dribbler),
+                command.kick_angle,
+            )
+        if lost is None:
+            rows[:] = np.array(sent).reshape(rows.shape)
+        elif lost.size:
+            # A lost command is not sent twice: the robot drives on but does not kick again.
+            rows[lost, KICK] = 0.0
+            rows[~lost] = np.array(sent)[~lost]
         self._arenas.step(self._commands)
         self._ticks += 1
         kicked = self._arenas.kicked[0]
@@ -214,6 +214,9 @@ class SimWorld(World):
             self.period,
             last_touch=self._ids[touch] if touch >= 0 else None,
         )
+
+
+_NOTHING = (0.0,) * COMMAND
 
 
 def _states(

@@ -12,6 +12,9 @@ class Team(StrEnum):
     BLUE = "blue"
     YELLOW = "yellow"
 
+    # An enum's own is written in Python, and a team is part of every robot's id.
+    __hash__ = str.__hash__
+
     @property
     def other(self) -> Team:
         """The opponent's colour."""

@@ -107,10 +107,12 @@ def shot_chance(
             goes = min(time, 0.3) if delay < 0.15 else 0.0
             px, py = where[j, 0] + goes * opponents[j, 2], where[j, 1] + goes * opponents[j, 3]
             aside = abs((px - x) * uy - (py - y) * ux)
-            # Goalkeepers see a robot aim.
-            sees = _SEES if hypot(goal_x - px, py) < _KEEPS else 0.0
-            free = max(0.0, time - 0.1 + sees)
+            # Goalkeepers see a robot aim; most robots are too far off even so.
+            free = max(0.0, time - 0.1 + _SEES)
             gap = aside - _BODY - 0.5 * opponents[j, 5] * free * free
+            if gap < least and hypot(goal_x - px, py) >= _KEEPS:
+                free = max(0.0, time - 0.1)
+                gap = aside - _BODY - 0.5 * opponents[j, 5] * free * free
             if gap < least:
                 least = gap
                 if least < -0.3:

@@ -75,6 +75,14 @@ def lane_margin(
         when = delay + flight_time(share * length, speed)
         px, py = ox + share * dx, oy + share * dy
         for j in range(len(robots)):
+            # Most robots cannot be there any sooner than the one before, which is seen without taking roots.
+            free = max(0.0, least + when - _REACTION)
+            fastest = abs(robots[j, 2]) + abs(robots[j, 3]) + 0.5 * robots[j, 5] * free
+            reach = _BODY + min(robots[j, 4], fastest) * free
+            aside = px - robots[j, 0] - _REACTION * robots[j, 2]
+            along = py - robots[j, 1] - _REACTION * robots[j, 3]
+            if aside * aside + along * along > reach * reach + 1e-6:
+                continue
             margin = time_to_pass(robots[j], px, py) - when
             if margin < least:
                 least = margin
