@@ -9,6 +9,7 @@ from statistics import fmean
 
 from robobt.match.results.teams import TeamResult
 from robobt.statistics import holm, mcnemar, mean_interval
+from robobt.tournament.fixtures import Fixture
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.ratings import Rating, bradley_terry
 
@@ -129,6 +130,65 @@ def distinct(matches: Iterable[PlayedMatch]) -> list[PlayedMatch]:
     """Return the matches without those that repeat another one of the same sides move for move."""
     found = {(match.blue, match.yellow, match.trace or match.round): match for match in reversed([*matches])}
     return [*reversed(found.values())]
+
+
+@dataclass(slots=True, frozen=True)
+class Paired:
+    """Two entrants by how they did against the same opponents, from the same sides with the same seeds.
+
+    Attributes:
+        first, second: their names.
+        opponents: whom both have met so.
+        rounds: of how many rounds and opponents, those that repeat another one counted once.
+        lead: goals a match by which the first did better than the second; None without a round.
+        low, high: its 95 % interval; None where rounds do not differ.
+        ahead, behind: rounds in which the first made more points than the second, and fewer.
+        p: of the exact test that each is as often ahead, two-sided.
+    """
+
+    first: str
+    second: str
+    opponents: Sequence[str]
+    rounds: int
+    lead: float | None
+    low: float | None
+    high: float | None
+    ahead: int
+    behind: int
+    p: float
+
+
+def paired(matches: Sequence[PlayedMatch], first: str, second: str) -> Paired:
+    """Compare two entrants by their matches against others."""
+    by = {match.fixture: match for match in matches}
+    units: dict[tuple[str, int], list[tuple[PlayedMatch, PlayedMatch]]] = {}
+    for match in matches:
+        if first in (match.blue, match.yellow) and second not in (match.blue, match.yellow):
+            sides = [second if name == first else name for name in (match.blue, match.yellow)]
+            other = by.get(Fixture(sides[0], sides[1], match.round))
+            if other is not None:
+                opponent = match.yellow if match.blue == first else match.blue
+                units.setdefault((opponent, match.round), []).append((match, other))
+    new = {
+        (opponent, *[(a.blue == first, a.trace or number, b.trace or number) for a, b in both]): both
+        for (opponent, number), both in units.items()
+    }
+    points = [sum(a.score(first) - b.score(second) for a, b in both) for both in new.values()]
+    leads = [fmean(a.lead(first) - b.lead(second) for a, b in both) for both in new.values()]
+    interval = mean_interval(leads) if len(set(leads)) > 1 else None
+    test = mcnemar([one > 0.0 for one in points], [one < 0.0 for one in points])
+    return Paired(
+        first,
+        second,
+        sorted({opponent for opponent, _ in units}),
+        len(new),
+        fmean(leads) if leads else None,
+        None if interval is None else interval.low,
+        None if interval is None else interval.high,
+        test.only_first,
+        test.only_second,
+        test.p,
+    )
 
 
 def rounds_of(matches: Iterable[PlayedMatch], first: str, second: str) -> dict[int, list[PlayedMatch]]:

@@ -10,7 +10,9 @@ from robobt.cli.common import console, table, warn
 from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
-    from robobt.tournament.standings import Standings
+    from collections.abc import Sequence
+
+    from robobt.tournament.standings import Encounter, Standings
 
 
 def print_standings(found: Standings) -> None:
@@ -33,21 +35,7 @@ def print_standings(found: Standings) -> None:
         console.print("\nwon-drawn-lost of the row against the column:")
         _print_cross_table(found, names)
     console.print()
-    columns = ("won-drawn-lost", "goals", "lead a match", "95 %", "rounds ahead", "p", "Holm's p")
-    met = table("encounter", *columns)
-    for pair in found.encounters:
-        interval = "-" if pair.low is None else f"{pair.low:+.2f} to {pair.high:+.2f}"
-        met.add_row(
-            escape(f"{pair.first} v {pair.second}"),
-            f"{pair.won}-{pair.drawn}-{pair.lost}",
-            f"{pair.goals_for} : {pair.goals_against}",
-            "-" if pair.lead is None else f"{pair.lead:+.2f}",
-            interval,
-            f"{pair.rounds_won} : {pair.rounds_lost}",
-            f"{pair.p:.2g}",
-            f"{pair.holm:.2g}",
-        )
-    console.print(met)
+    print_encounters(found.encounters)
     console.print()
     console.print(team_figures({name: one.figures for name, one in found.standings.items()}, "a match"))
     for name, one in found.standings.items():
@@ -55,6 +43,30 @@ def print_standings(found: Standings) -> None:
             warn(f"{name}: lost {one.forfeits} matches by rule: its play crashed or hung; {one.first_error}")
         if one.errors:
             warn(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+
+
+def print_encounters(found: Sequence[Encounter]) -> None:
+    """Print two against each other, a line each."""
+    columns = ("w-d-l", "goals", "lead a match (95 %)", "rounds", "p", "Holm's p")
+    met = table("encounter", *columns)
+    for pair in found:
+        met.add_row(
+            escape(f"{pair.first} v {pair.second}"),
+            f"{pair.won}-{pair.drawn}-{pair.lost}",
+            f"{pair.goals_for} : {pair.goals_against}",
+            lead_text(pair.lead, pair.low, pair.high),
+            f"{pair.rounds_won} : {pair.rounds_lost}",
+            f"{pair.p:.2g}",
+            f"{pair.holm:.2g}",
+        )
+    console.print(met)
+
+
+def lead_text(lead: float | None, low: float | None, high: float | None) -> str:
+    """Return a lead and its interval for a table."""
+    if lead is None:
+        return "-"
+    return f"{lead:+.2f}" if low is None or high is None else f"{lead:+.2f} ({low:+.2f} to {high:+.2f})"
 
 
 def _print_cross_table(found: Standings, names: list[str]) -> None:

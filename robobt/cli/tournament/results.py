@@ -1,0 +1,147 @@
+"""``robobt results``: what a tournament's store holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import Json, console, print_json, say, table
+from robobt.cli.tournament.tables import lead_text, print_encounters, print_standings
+
+if TYPE_CHECKING:
+    from robobt.tournament.played import PlayedMatch
+    from robobt.tournament.standings import Encounter, Paired
+
+_NAME = "NAME"
+
+
+def results(
+    store: Annotated[Path, typer.Argument(help="A tournament's store (SQLite).")],
+    entrant: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--entrant", metavar=_NAME, help="Only matches of this one; given twice or more, among these."
+        ),
+    ] = None,
+    outcome: Annotated[
+        str | None, typer.Option(help="Only matches that ended so, as full_time or forfeit_blue.")
+    ] = None,
+    lost_by: Annotated[
+        str | None, typer.Option("--lost-by", metavar=_NAME, help="Only matches that this one lost.")
+    ] = None,
+    matches: Annotated[
+        bool, typer.Option("--matches", help="List the matches instead of summing them up.")
+    ] = False,
+    compare: Annotated[
+        tuple[str, str] | None,
+        typer.Option(
+            metavar=f"{_NAME} {_NAME}",
+            help="Compare two entrants: against each other, and against the opponents that both have met.",
+        ),
+    ] = None,
+    merge: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--merge",
+            metavar="FILE",
+            help="First take over what another store of the same tournament holds, as from another machine; "
+            "may be given often.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Sum up, list, compare and merge what tournaments have stored.
+
+    Keys of --json: played (what was played, by field), merged (matches that were new); then either matches,
+    each with the columns of the table; or compare: met (as an encounter of 'robobt tournament'; null if they
+    have not), and others: opponents, rounds, lead (goals a match by which the first did better), low and high
+    (95 %), ahead and behind (rounds in which the first made more and fewer points), p (exact); or the keys
+    of 'robobt tournament': matches, distinct, standings, encounters.
+    """
+    from robobt.tournament.standings import paired, standings
+    from robobt.tournament.store import Store
+
+    with Store(store) as held:
+        merged = 0
+        for path in merge or ():
+            with Store(path) as other:
+                merged += held.merge(other)
+        known, played, found = list(held.entrants()), held.played, held.matches()
+    for name in [*(entrant or []), *(compare or ()), *([lost_by] if lost_by else [])]:
+        if name not in known:
+            raise typer.BadParameter(f"no entrant is called {name!r}; there are {', '.join(known)}")
+    found = [match for match in found if _wanted(match, entrant or [], outcome, lost_by)]
+    said = {"played": played, "merged": merged}
+    if merge and not as_json:
+        say(f"Matches taken over: {merged}")
+    if matches or outcome or lost_by:
+        if as_json:
+            print_json({**said, "matches": [match.row() for match in found]})
+        else:
+            _list(found)
+        return
+    if not found:
+        raise typer.BadParameter(f"{store}: no match is left, or none was played yet")
+    names = [name for name in dict.fromkeys([*(compare or ()), *known]) if _in(name, found)]
+    summed = standings(found, names)
+    if compare is not None:
+        met = [one for one in summed.encounters if {one.first, one.second} == {*compare}]
+        others = paired(found, *compare)
+        if as_json:
+            print_json({**said, "compare": {"met": met[0] if met else None, "others": others}})
+        else:
+            _print_compared(met, others)
+    elif as_json:
+        print_json({**said, **asdict(summed)})
+    else:
+        told = [f"{name} {value}" for name, value in played.items() if name not in ("format", "digest")]
+        console.print(f"[bold]{escape(str(store))}[/bold]: {escape(', '.join(told))}; {len(found)} matches")
+        print_standings(summed)
+
+
+def _wanted(match: PlayedMatch, entrants: list[str], outcome: str | None, lost_by: str | None) -> bool:
+    sides = {match.blue, match.yellow}
+    if entrants and not (sides <= {*entrants} if len(entrants) > 1 else sides & {*entrants}):
+        return False
+    if lost_by is not None and (lost_by not in sides or match.score(lost_by) > 0.0):
+        return False
+    return outcome is None or match.outcome == outcome
+
+
+def _in(name: str, matches: Sequence[PlayedMatch]) -> bool:
+    return any(name in (match.blue, match.yellow) for match in matches)
+
+
+def _list(matches: Sequence[PlayedMatch]) -> None:
+    listed = table("round", "blue", "yellow", "goals", "end", "time, s", "trace")
+    for match in matches:
+        listed.add_row(
+            str(match.round),
+            escape(match.blue),
+            escape(match.yellow),
+            f"{match.blue_score} : {match.yellow_score}",
+            match.outcome.replace("_", " "),
+            f"{match.time:.1f}",
+            match.trace[:8],
+        )
+    console.print(listed)
+
+
+def _print_compared(met: list[Encounter], others: Paired) -> None:
+    if met:
+        print_encounters(met)
+    else:
+        say(f"{others.first} and {others.second} have not met.")
+    if not others.rounds:
+        say("They have no opponent in common from the same side with the same seed.")
+        return
+    console.print(f"\nagainst the same opponents ({escape(', '.join(others.opponents))}):")
+    listed = table("rounds", "better by, goals a match (95 %)", "ahead", "p")
+    text = lead_text(others.lead, others.low, others.high)
+    listed.add_row(str(others.rounds), text, f"{others.ahead} : {others.behind}", f"{others.p:.2g}")
+    console.print(listed)
