@@ -89,9 +89,10 @@ class ExpectedGoal(ShotRater):
         ahead = [robot for robot in frame.others(me.id) if robot.x >= me.x]
         if ahead:
             centres = np.array([robot.position for robot in ahead])
-            in_way = lane_clearances(origin, points, centres).min(axis=1) < ROBOT_RADIUS + BALL_RADIUS
-            chances = chances * self._predicted(origin, me, points, ahead)
-            chances[in_way] = 0.0
+            clear = lane_clearances(origin, points, centres).min(axis=1) >= ROBOT_RADIUS + BALL_RADIUS
+            chances[~clear] = 0.0
+            if clear.any():
+                chances[clear] *= self._predicted(origin, me, points[clear], ahead)
         result: FloatArray = chances
         return result
 
