@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import cos, hypot, pi, sin, sqrt
-from operator import attrgetter
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robobt.motion.ball_model import DEFAULT_BALL, way_in
 from robobt.world.compiled import compiled
@@ -26,7 +26,6 @@ X, Y, VX, VY, TOP, ACCELERATION, BRAKING = range(7)
 STEP = 0.1
 """From one place where a ball may be met to the next [s]."""
 
-_motion = attrgetter("x", "y", "vx", "vy")
 _HALVINGS = 7
 _DRIFT = 0.15
 """Sideways speed that does not count [m/s]."""
@@ -41,7 +40,7 @@ def movers(robots: Iterable[RobotState]) -> FloatArray:
     row: list[float] = []
     for robot in robots:
         limits = robot.limits
-        row += _motion(robot)
+        row += (robot.x, robot.y, robot.vx, robot.vy)
         row += (limits.max_speed, limits.acceleration, limits.braking)
     # From one list, for numpy takes twice as long over a list of rows.
     return np.array(row, dtype=np.float64).reshape(-1, 7)
@@ -114,12 +113,12 @@ def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
 
 
 @compiled
-def arrival_times(robots: FloatArray, places: FloatArray) -> FloatArray:
-    """Compute when every robot, a row of :func:`movers`, can stand at every place (m, 2): (n, m) [s]."""
-    out = np.empty((len(robots), len(places)))
-    for i in range(len(robots)):
+def arrival_times(robots: FloatArray, rows: NDArray[np.int64], places: FloatArray) -> FloatArray:
+    """Compute when the robots of these rows of :func:`movers` can stand at every place (m, 2): (n, m) [s]."""
+    out = np.empty((len(rows), len(places)))
+    for i in range(len(rows)):
         for j in range(len(places)):
-            out[i, j] = arrival_time(robots[i], places[j, 0], places[j, 1], 0.0)
+            out[i, j] = arrival_time(robots[rows[i]], places[j, 0], places[j, 1], 0.0)
     return out
 
 

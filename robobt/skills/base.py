@@ -76,21 +76,24 @@ class Skill(Leaf[Store]):
 
         With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball.
         """
-        me = self.me
-        heading = direction(me.position, facing)
+        store = self.store
+        frame, me = store.frame, store.me
+        here = me.position
+        heading = direction(here, facing)
         if thereabouts:
             # What is close passes by quickly, and the robot itself covers more of the view.
-            slack = _FACING + atan2(ROBOT_RADIUS, distance(me.position, facing))
+            slack = _FACING + atan2(ROBOT_RADIUS, distance(here, facing))
             heading = roughly(me.heading, heading, slack)
-        self.store.command = travel(
-            self.frame,
+        has_kicked = self.has_kicked
+        store.command = travel(
+            frame,
             me,
             target,
             heading,
             self.drive_limits,
             avoid_robots=avoid_robots,
-            avoid_ball=avoid_ball or self.has_kicked,
-            ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
+            avoid_ball=avoid_ball or has_kicked,
+            ball_gap=KICKER_GAP if has_kicked else BALL_GAP,
             goalkeeper=goalkeeper,
             spare_mates=spare_mates,
         )

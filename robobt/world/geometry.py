@@ -36,11 +36,13 @@ def direction(origin: Point, target: Point) -> float:
     return atan2(target[1] - origin[1], target[0] - origin[0])
 
 
+@compilable
 def distance(a: Point, b: Point) -> float:
     """Return the Euclidean distance [m]."""
     return hypot(b[0] - a[0], b[1] - a[1])
 
 
+@compilable
 def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
     """Return the point of the segment nearest to ``point``; ``start`` for a segment of no length."""
     dx, dy = end[0] - start[0], end[1] - start[1]
@@ -52,6 +54,7 @@ def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
     return (start[0] + share * dx, start[1] + share * dy)
 
 
+@compilable
 def segment_distance(point: Point, start: Point, end: Point) -> float:
     """Return the distance of ``point`` from the segment [m]."""
     return distance(point, closest_point_on_segment(point, start, end))

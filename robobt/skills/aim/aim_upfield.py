@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, radians, sin
+from math import atan2, cos, inf, radians, sin
 
+import numpy as np
+
+from robobt.motion.arrival import X, Y, movers_of
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
-from robobt.world.geometry import Point, segment_distance, wrap_angle
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray, Point, segment_distance, wrap_angle
 from robobt.world.rules import has_ball
 
 _TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
@@ -38,22 +42,37 @@ class AimUpfield(Skill):
         x, y = frame.ball.position
         goal_x, goal_y = frame.field.their_goal
         ahead = atan2(goal_y - y, goal_x - x)
-        opponents = [
-            robot.position
-            for robot in frame.opponents
-            if hypot(robot.x - x, robot.y - y) < self.reach + _ENOUGH
-        ]
+        rooms = _rooms(x, y, ahead, self.reach, movers_of(frame)[len(frame.own) :]).tolist()
         held = has_ball(self.me, frame.ball)
         best: Point = (goal_x, goal_y)
         most = -inf
-        for turn in _TURNS:
+        for turn, room in zip(_TURNS, rooms, strict=True):
             end = (x + self.reach * cos(ahead + turn), y + self.reach * sin(ahead + turn))
-            room = min((segment_distance(other, (x, y), end) for other in opponents), default=_ENOUGH)
             outside = max(0.0, abs(end[0]) - frame.field.half_length, abs(end[1]) - frame.field.half_width)
-            value = min(room, _ENOUGH) - 0.1 * abs(turn) - outside
+            value = room - 0.1 * abs(turn) - outside
             if held:
                 value -= 0.1 * abs(wrap_angle(ahead + turn - self.me.heading))
             if value > most:
                 best, most = end, value
         self.store.shot = Shot(best, _TOLERANCE, 0.0)
         return self.succeed("upfield")
+
+
+@compiled
+def _rooms(x: float, y: float, ahead: float, reach: float, opponents: FloatArray) -> FloatArray:
+    """Return how far the nearest opponent is from the lane at each turn, at most ``_ENOUGH`` [m].
+
+    Args:
+        x: of the ball [m].
+        y: of the ball [m].
+        ahead: from where the turns count [rad].
+        reach: length of the lanes [m].
+        opponents: as of :func:`~robobt.motion.arrival.movers`.
+    """
+    rooms = np.full(len(_TURNS), _ENOUGH)
+    for k, turn in enumerate(_TURNS):
+        end = (x + reach * cos(ahead + turn), y + reach * sin(ahead + turn))
+        for j in range(len(opponents)):
+            room = segment_distance((opponents[j, X], opponents[j, Y]), (x, y), end)
+            rooms[k] = min(rooms[k], room)
+    return rooms

@@ -11,7 +11,7 @@ from math import hypot, inf
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from robobt.motion.arrival import arrival_times, meetings, movers, movers_of
+from robobt.motion.arrival import arrival_times, meetings, movers_of
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
@@ -177,7 +177,9 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     old_marks, old_tasks = plan.marks, plan.tasks
     plan.marks = {}
     if jobs and free:
-        times = arrival_times(movers(free), np.array([place for _, place, _ in jobs]))
+        waiting = {robot.id for robot in free}
+        rows = np.array([row for row, robot in enumerate(frame.own) if robot.id in waiting])
+        times = arrival_times(plan.own_movers, rows, np.array([place for _, place, _ in jobs]))
         for i, robot in enumerate(free):
             old = old_tasks.get(robot.id)
             for j, (task, _, what) in enumerate(jobs):

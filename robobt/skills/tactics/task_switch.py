@@ -64,7 +64,7 @@ class TaskSwitch(Switch, Bound[Store]):
         task = agree(frame, team).tasks.get(number, Task.SUPPORT)
         game = frame.game
         if game.in_play and game.penalty is None:
-            return task.value
+            return task._value_
         if game.halted:
             return Part.HALT.value
         ours = game.restart_team is frame.team

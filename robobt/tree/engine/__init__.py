@@ -15,6 +15,9 @@ What differs: the attribute ``iterator`` of a node is not renewed, and nothing
 is logged at debug level.
 """
 
+from robobt.tree.engine.closures import FAILURE as FAILURE
+from robobt.tree.engine.closures import INVALID as INVALID
+from robobt.tree.engine.closures import RUNNING as RUNNING
 from robobt.tree.engine.closures import BringsClosures as BringsClosures
 from robobt.tree.engine.closures import Marks as Marks
 from robobt.tree.engine.closures import Stop as Stop

@@ -11,6 +11,9 @@ from py_trees.common import Status
 from py_trees.composites import Composite
 
 from robobt.tree.engine import (
+    FAILURE,
+    INVALID,
+    RUNNING,
     Plan,
     Stop,
     Tick,
@@ -104,24 +107,24 @@ class Switch(Composite):
             nonlocal before
             if self.children != children:
                 replan(self, visit, children, plan)
-            if initialise is not None and self.status is not Status.RUNNING:
+            if initialise is not None and self.status is not RUNNING:
                 initialise()
             chosen = self._choose()
             if marks is not None and (chosen, self.feedback_message) != before:
                 before = (chosen, self.feedback_message)
                 marks.changed = True
             for place, step in enumerate(plan):
-                if place != chosen and step.child.status is not Status.INVALID:
-                    step.stop(Status.INVALID)
+                if place != chosen and step.child.status is not INVALID:
+                    step.stop(INVALID)
             if chosen is None:
                 self.current_child = None
-                status = Status.FAILURE
+                status = FAILURE
                 stop(status)
             else:
                 step = plan[chosen]
                 self.current_child = step.child
                 status = step.tick()
-                if status is Status.RUNNING:
+                if status is RUNNING:
                     self.status = status
                 else:
                     stop(status)
