@@ -113,6 +113,23 @@ def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
 
 
 @compiled
+def out_of_reach(robot: FloatArray, x: float, y: float, fastest: float, time: float) -> bool:
+    """Return whether a robot can surely not meet a ball at (x, y) by ``time`` [s].
+
+    It never drives faster than ``fastest`` [m/s], nor gets there before one that need not mind its drift;
+    but for one that is too fast now, and covers the more ground the later it brakes.
+    """
+    dx, dy = x - robot[X], y - robot[Y]
+    gap = hypot(dx, dy)
+    if gap - _BODY >= fastest * time + 1e-6:
+        return True
+    if gap <= _BODY or fastest > robot[TOP]:
+        return False
+    along = (dx * robot[VX] + dy * robot[VY]) / gap
+    return bool(axis_time(gap - _BODY, along, robot[TOP], robot[ACCELERATION], robot[BRAKING]) > time + 1e-6)
+
+
+@compiled
 def arrival_times(robots: FloatArray, rows: NDArray[np.int64], places: FloatArray) -> FloatArray:
     """Compute when the robots of these rows of :func:`movers` can stand at every place (m, 2): (n, m) [s]."""
     out = np.empty((len(rows), len(places)))
@@ -163,7 +180,7 @@ def meetings(
         while True:
             time, x, y = path[k, 0], path[k, 1], path[k, 2]
             # Most steps are out of its reach, which is seen without computing when it would be there.
-            if k == last or hypot(x - robot[X], y - robot[Y]) - _BODY < fastest * time + 1e-6:
+            if k == last or not out_of_reach(robot, x, y, fastest, time):
                 late = arrival_time(robot, x, y, _BODY) - time
                 if k == last or late <= 0.0:
                     break

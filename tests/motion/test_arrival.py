@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import arrival_time, axis_time, meetings, movers
+from robobt.motion.arrival import arrival_time, axis_time, meetings, movers, out_of_reach
 from robobt.motion.pilot import drive, travel_time
 from robobt.world import RobotLimits, RobotState
 from tests.skills.fixed_world import moved, robot
@@ -84,3 +84,15 @@ def test_a_ball_that_leaves_the_field_first_is_met_outside() -> None:
     time, x, _ = meet(robot(-4.0, 2.5), 3.0, -2.0, 6.0, 0.0)
     assert x > 4.5
     assert time > 1.0
+
+
+@given(places, places, speeds, speeds, st.floats(0.0, 3.0))
+@settings(deadline=None)
+def test_what_is_out_of_reach_by_a_time_is_reached_later(
+    x: float, y: float, vx: float, vy: float, time: float
+) -> None:
+    one = movers([robot(velocity=(vx, vy, 0.0))])[0]
+    fastest = max(LIMITS.max_speed, hypot(vx, vy))
+    if out_of_reach(one, x, y, fastest, time):
+        assert arrival_time(one, x, y, 0.1115) > time
+    assert out_of_reach(one, 12.0, 0.0, fastest, time)

@@ -13,6 +13,7 @@ import numpy as np
 from robobt.skills.tactics.lanes import (
     RECEIVE_SPEED,
     arrive_chance,
+    cannot_pass_by,
     flight_time,
     kick_speed,
     sigmoid,
@@ -193,9 +194,11 @@ def point_worth(
         shot = shot_chance(x, y, delay + turn, opponents, goal_x, half_goal, best)
         if angle > WIDEST:
             shot *= 0.7
-    first = 10.0
+    # Whoever comes later than this counts as little as nobody.
+    first = min(10.0, delay + 0.5 * _FREE + 1e-9)
     for j in range(len(opponents)):
-        first = min(first, time_to_pass(opponents[j], x, y))
+        if not cannot_pass_by(opponents[j], x, y, first):
+            first = min(first, time_to_pass(opponents[j], x, y))
     free = min(1.0, max(0.05, 0.5 + (first - delay) / _FREE))
     later = free * (0.04 + 0.10 * max(0.0, 1.0 - to_goal / (2.0 * goal_x)))
     return shot + (1.0 - shot) * later

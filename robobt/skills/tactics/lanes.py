@@ -60,6 +60,16 @@ def time_to_pass(robot: FloatArray, x: float, y: float) -> float:
 
 
 @compiled
+def cannot_pass_by(robot: FloatArray, x: float, y: float, time: float) -> bool:
+    """Return whether :func:`time_to_pass` is surely above ``time`` [s], told without taking roots."""
+    free = max(0.0, time - _REACTION)
+    fastest = abs(robot[2]) + abs(robot[3]) + 0.5 * robot[5] * free
+    reach = _BODY + min(robot[4], fastest) * free
+    dx, dy = x - robot[0] - _REACTION * robot[2], y - robot[1] - _REACTION * robot[3]
+    return bool(dx * dx + dy * dy > reach * reach + 1e-6)
+
+
+@compiled
 def lane_margin(
     ox: float, oy: float, x: float, y: float, speed: float, delay: float, robots: FloatArray
 ) -> float:
@@ -75,13 +85,7 @@ def lane_margin(
         when = delay + flight_time(share * length, speed)
         px, py = ox + share * dx, oy + share * dy
         for j in range(len(robots)):
-            # Most robots cannot be there any sooner than the one before, which is seen without taking roots.
-            free = max(0.0, least + when - _REACTION)
-            fastest = abs(robots[j, 2]) + abs(robots[j, 3]) + 0.5 * robots[j, 5] * free
-            reach = _BODY + min(robots[j, 4], fastest) * free
-            aside = px - robots[j, 0] - _REACTION * robots[j, 2]
-            along = py - robots[j, 1] - _REACTION * robots[j, 3]
-            if aside * aside + along * along > reach * reach + 1e-6:
+            if cannot_pass_by(robots[j], px, py, least + when):
                 continue
             margin = time_to_pass(robots[j], px, py) - when
             if margin < least:

@@ -7,7 +7,15 @@ from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
 from robobt.motion.ball_model import DEFAULT_BALL
-from robobt.skills.tactics.lanes import PASS_SPEEDS, arrive_chance, flight_time, kick_speed, lane_margin
+from robobt.skills.tactics.lanes import (
+    PASS_SPEEDS,
+    arrive_chance,
+    cannot_pass_by,
+    flight_time,
+    kick_speed,
+    lane_margin,
+    time_to_pass,
+)
 from tests.skills.fixed_world import robot
 
 NOBODY = np.empty((0, 7))
@@ -56,3 +64,18 @@ def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
 def test_both_sides_of_a_lane_are_alike(x: float, y: float) -> None:
     left, right = (lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)])) for side in (y, -y))
     assert left == pytest.approx(right)
+
+
+place, speed_along = st.floats(-4.0, 4.0), st.floats(-3.0, 3.0)
+
+
+@given(place, place, speed_along, speed_along, st.floats(0.0, 3.0))
+@settings(deadline=None)
+def test_whoever_cannot_pass_by_a_time_passes_later(
+    x: float, y: float, vx: float, vy: float, time: float
+) -> None:
+    one = movers([robot(0.0, 0.0, velocity=(vx, vy, 0.0))])[0]
+    if cannot_pass_by(one, x, y, time):
+        assert time_to_pass(one, x, y) > time
+    # Far enough off nobody can, so that it tells something.
+    assert cannot_pass_by(one, 40.0, 0.0, time)
