@@ -73,6 +73,8 @@ _GROUPS = {
             "match": "bench.match:bench_match",
             "shots": "bench.shots:bench_shots",
             "sprt": "bench.sprt:bench_sprt",
+            "engines": "bench.engines:bench_engines",
+            "tournament": "bench.tournament:bench_tournament",
             "train": "bench.train:bench_train",
             "filter": "bench.league:bench_filter",
             "chips": "bench.chips:bench_chips",
@@ -99,8 +101,24 @@ def _version(show: bool) -> None:
         raise typer.Exit
 
 
+def _run_on(context: typer.Context, address: str) -> None:
+    """Run what the command does in several processes on a cluster."""
+    from robobt.engines.cluster import RayEngine
+    from robobt.engines.run import running_on
+
+    context.with_resource(running_on(context.with_resource(RayEngine(address))))
+
+
 @app.callback()
 def _main(
+    context: typer.Context,
+    engine: Annotated[
+        str,
+        typer.Option(
+            help="Where commands with --workers run them: local (processes of this machine), ray, or "
+            "ray://HOST:PORT.",
+        ),
+    ] = "local",
     debug: Annotated[bool, typer.Option("--debug", hidden=True, help="Show tracebacks.")] = False,
     _shown: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
@@ -111,6 +129,8 @@ def _main(
         # A terminal or file that lacks a sign is shown a question mark for it.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
+    if engine != "local":
+        one_line_errors(_run_on)(context, engine)
 
 
 def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:

@@ -205,7 +205,12 @@ def parse_assignments(texts: Iterable[str], option: str) -> dict[str, object]:
 
 
 def cores() -> int:
-    """Return the number of cores this process may use."""
+    """Return how many tasks are run at a time by default: this process's cores, or those of its engine."""
+    from robobt.engines.run import engine
+
+    elsewhere = engine()
+    if elsewhere is not None:
+        return elsewhere.workers
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

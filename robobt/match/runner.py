@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from robobt.config.errors import RobobtError
+from robobt.engines.run import run_tasks
+from robobt.engines.work import MAX_WORKERS, Work
 from robobt.match.loop import WorldFactory, play_match
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.file import ResultsFile
@@ -19,7 +21,6 @@ from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
 from robobt.plays.python_files import import_files, imported_files
-from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 
 class RunError(RobobtError, RuntimeError):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Self
 
 import robobt
 from robobt.config.errors import one_line
@@ -57,7 +58,7 @@ class Job:
     code: str
 
     @classmethod
-    def of(cls, plan: Plan, notes: Path, recordings: Recordings | None) -> Job:
+    def of(cls, plan: Plan, notes: Path, recordings: Recordings | None) -> Self:
         """Return the job of a plan; notes on who is deciding are left in a folder."""
         plays = tuple({PLAYS[part.play] for part in _parts(plan) if part.play in PLAYS})
         return cls(plan, notes, recordings, plays, code_digest())

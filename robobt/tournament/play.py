@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+from robobt.engines.run import run_tasks
+from robobt.engines.work import Work
 from robobt.plays.python_files import imported_files
 from robobt.signals import uninterrupted
 from robobt.tournament.claims import Claims
@@ -19,7 +21,6 @@ from robobt.tournament.plan import Plan, TournamentError
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Recordings
 from robobt.tournament.store import Store
-from robobt.workers import Work, run_tasks
 
 Enough = Callable[[Collection[PlayedMatch], Collection[Fixture]], bool]
 
@@ -50,6 +51,7 @@ def play(
     recordings: Recordings | None = None,
     on_match: Callable[[PlayedMatch], object] | None = None,
     enough: Enough | None = None,
+    job: type[Job] = Job,
 ) -> Played:
     """Play what is missing in the store.
 
@@ -65,6 +67,7 @@ def play(
         on_match: called with each match as it is there, first with those that the store holds already.
         enough: called after each match with all that are there and those that could not be played; once
             it says True no further match begins, and those in progress are not waited for.
+        job: plays a match.
 
     Raises:
         StoreError: the store cannot be written.
@@ -73,15 +76,15 @@ def play(
     driver = _Driver(plan, store, recordings, on_match, enough)
     interrupted = False
     with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
-        job = Job.of(plan, Path(notes), recordings)
+        works = job.of(plan, Path(notes), recordings)
         try:
             while missing := driver.missing():
                 tasks = run_tasks(
-                    Work(job.play, "match", TournamentError, (OSError,)),
+                    Work(works.play, "match", TournamentError, (OSError,)),
                     driver.claimed(missing, claims),
                     min(workers, len(missing)),
                     setup=partial(set_up, imported_files()),
-                    lost=job.lost if workers else None,
+                    lost=works.lost if workers else None,
                 )
                 waits = True
                 with closing(tasks) as results:

@@ -11,6 +11,7 @@ and ``finished``, in whichever order they were played.
 from __future__ import annotations
 
 import sqlite3
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import fields
@@ -26,6 +27,9 @@ FORMAT = "robobt-tournament 1"
 
 _PATIENCE = 60.0
 """How long another writer is waited for [s]."""
+
+_TRIES = 600
+"""How often it is looked whether another program has let go in that time."""
 
 
 class StoreError(RobobtError, ValueError):
@@ -181,6 +185,16 @@ class Store:
 
     def _open(self, played: Mapping[str, object] | None) -> None:
         # Nothing is lost when this process is killed; a machine that loses power loses the last rows at most.
+        # Waiting for the disk after each row would cost more than the rest of the driver.
+        for tries in range(_TRIES):
+            try:
+                self._connection.execute("PRAGMA journal_mode = WAL")
+                break
+            except sqlite3.OperationalError:
+                # Another program is making the same change, for which SQLite does not wait by itself.
+                if tries == _TRIES - 1:
+                    raise
+                time.sleep(_PATIENCE / _TRIES)
         self._connection.execute("PRAGMA synchronous = NORMAL")
         with self._writing():
             tables = {row[0] for row in self._connection.execute("SELECT name FROM sqlite_master")}

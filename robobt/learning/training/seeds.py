@@ -9,13 +9,14 @@ from pathlib import Path
 
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError
+from robobt.engines.run import run_tasks
+from robobt.engines.work import Work
 from robobt.learning.training.curves import draw_curves
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import TrainResult, summary_of, title_of
 from robobt.learning.training.run_folder import CURVES, RESULT, load_run
 from robobt.learning.training.settings import TrainSettings
 from robobt.learning.training.train import TrainError, train
-from robobt.workers import Work, run_tasks
 
 
 def train_seeds(

@@ -9,12 +9,13 @@ from pathlib import Path
 from time import perf_counter
 
 from robobt.config.errors import RobobtError
+from robobt.engines.run import run_tasks
+from robobt.engines.work import MAX_WORKERS, Work
 from robobt.shots.collect.file import CollectionFile
 from robobt.shots.collect.paper import PARTS, TEST, TRAIN, splits
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.collect.trial import Taken, play_trial
 from robobt.shots.data.schema import Row
-from robobt.workers import MAX_WORKERS, Work, run_tasks
 
 PAPER_COUNT = TRAIN + TEST
 """Shots of the paper's protocol."""

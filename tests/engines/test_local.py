@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from robobt.config.errors import RobobtError
-from robobt.workers import Work, run_tasks
+from robobt.engines.run import run_tasks
+from robobt.engines.work import Work
 
 pytestmark = pytest.mark.integration
 

@@ -1,4 +1,4 @@
-"""Tasks in this process or spread over worker processes."""
+"""Tasks in this process or spread over worker processes of this machine."""
 
 from __future__ import annotations
 
@@ -12,58 +12,20 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from itertools import islice
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from typing import Generic, TypeVar
+from typing import Generic
 
-from robobt.config.errors import RobobtError
 from robobt.config.telling import tell_warnings
+from robobt.engines.work import ReportT, ResultT, TaskT, Work
 from robobt.signals import TERMINATE, ending, let_go, uninterrupted
-
-TaskT = TypeVar("TaskT")
-ReportT = TypeVar("ReportT")
-ResultT = TypeVar("ResultT")
-
-MAX_WORKERS = 256
-"""Most worker processes of a run."""
 
 _REACTION = 0.4
 """How long a worker that is told to end may take to finish its files [s]."""
 
 
-@dataclass(slots=True, frozen=True)
-class Work(Generic[TaskT, ReportT, ResultT]):
-    """What is done with each task, and how a failure is put into words.
-
-    Attributes:
-        do: called with a task and a function that reports on its progress. For several workers it
-            must be a function of a module or another object that can be pickled.
-        noun: what error messages call a task; its number or name follows.
-        error: raised, with a message of one line, when a task raises, its worker dies or the work
-            cannot be sent to a worker.
-        passed: exceptions of a task that are raised as they are.
-    """
-
-    do: Callable[[TaskT, Callable[[ReportT], None]], ResultT]
-    noun: str
-    error: type[Exception]
-    passed: tuple[type[Exception], ...] = ()
-
-    def attempt(self, task: TaskT, report: Callable[[ReportT], None]) -> ResultT:
-        """Do one task in this process."""
-        try:
-            return self.do(task, report)
-        except (self.error, *self.passed):
-            raise
-        except Exception as error:
-            # robobt's own errors are written for users; any other may be a bug.
-            said = str(error) if isinstance(error, RobobtError) else f"{type(error).__name__}: {error}"
-            raise self.error(f"{self.noun} {task}: {said}") from error
-
-
-def run_tasks(
+def run_locally(
     work: Work[TaskT, ReportT, ResultT],
     tasks: Iterable[TaskT],
     workers: int,
@@ -73,34 +35,18 @@ def run_tasks(
     on_report: Callable[[ReportT], None] | None = None,
     lost: Callable[[TaskT, str], ResultT] | None = None,
 ) -> Generator[ResultT, None, None]:
-    """Yield the result of every task, in the order in which they finish.
+    """Yield the result of every task; :func:`robobt.engines.run.run_tasks` says what the arguments are.
 
     Worker processes are spawned, ignore Ctrl-C, use one thread each and end with this
     process, however it ends; a task in progress is ended by an exception, so that it can
-    finish its files. Close the generator to end them earlier.
-
-    Args:
-        work: what is done with each task.
-        tasks: asked for the next one whenever a worker has room, so that it may end once enough is done.
-        workers: number of processes; 0 is this process itself, and so is 1 unless ``lost`` is given.
-        ahead: tasks a worker holds at a time; more than one keeps it busy when tasks are short.
-        setup: called in each worker before ``work`` is unpickled, to import what that needs.
-        on_report: called in this process with what tasks report.
-        lost: makes the result of a task whose worker died, of the task and what happened; another worker
-            takes the dead one's place. Without it the death is an error.
-
-    Raises:
-        Exception: as ``work`` says; a note holds the worker's traceback.
+    finish its files.
     """
     report = on_report or _ignore
     if workers < (2 if lost is None else 1):
         for task in tasks:
             yield work.attempt(task, report)
         return
-    try:
-        packed = pickle.dumps(work)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise work.error(f"{work.noun}s cannot be sent to worker processes: {error}") from error
+    packed = work.packed()
     waiting = iter(tasks)
     crew: list[_Worker[TaskT]] = []
     try:

@@ -1,0 +1,220 @@
+"""Tasks on a Ray cluster: one that is there, or one of this machine's cores."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import shutil
+import tempfile
+import traceback
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Self
+from urllib.parse import parse_qsl
+
+import robobt
+from robobt.config.errors import RobobtError, one_line
+from robobt.config.resources import models_folder, scenarios_folder
+from robobt.config.telling import tell_warnings
+from robobt.engines.work import ReportT, ResultT, TaskT, Work
+
+_ATTEMPTS = 4
+"""How often a task is tried whose worker or node is lost: it may be the task itself that ends it."""
+
+_POLL = 0.5
+"""How long a result is waited for at a time: reports and signals are looked at in between [s]."""
+
+
+class ClusterError(RobobtError, RuntimeError):
+    """A Ray cluster cannot be used; the message is one line."""
+
+
+class RayEngine:
+    """Runs tasks on a Ray cluster. A context manager; the cluster is left at its end.
+
+    A task whose worker or node is lost is done again, elsewhere.
+
+    Args:
+        address: "ray" for the cluster that Ray finds (``RAY_ADDRESS``, or one of this machine), or else a
+            new one of this machine's cores; "ray://HOST:PORT" for the head of one. Options behind "?":
+            ``cpus``, the cores that a task takes (1), and ``ship``, whether robobt is sent to the nodes with
+            its models (by default for ray:// only).
+
+    Attributes:
+        workers: how many tasks the cluster can do at a time.
+
+    Raises:
+        ClusterError: Ray is not installed, the address is wrong, or the cluster cannot be reached.
+    """
+
+    def __init__(self, address: str) -> None:
+        where, cpus, ship = _read(address)
+        # Ray reports its use to its makers unless it is told not to.
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+        try:
+            import ray
+        except ImportError as error:
+            problem = 'is not installed; pip install "robobt[ray]"'
+            raise ClusterError(f"{address}: Ray {problem}") from error
+        self._ray: Any = ray
+        self._cpus = cpus
+        self._folder = tempfile.TemporaryDirectory(prefix="robobt-ray-")
+        self._own = not ray.is_initialized()
+        try:
+            if self._own:
+                self._connect(where, ship)
+            self.workers = max(1, int(ray.cluster_resources().get("CPU", 1.0) / cpus))
+        except Exception as error:
+            self.close()
+            raise ClusterError(f"{address}: {one_line(str(error), 300)}") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Leave the cluster; one that was started for this engine ends."""
+        if self._own:
+            self._ray.shutdown()
+        self._folder.cleanup()
+
+    def run(
+        self,
+        work: Work[TaskT, ReportT, ResultT],
+        tasks: Iterable[TaskT],
+        workers: int,
+        *,
+        setup: Callable[[], object] | None = None,
+        on_report: Callable[[ReportT], None] | None = None,
+        lost: Callable[[TaskT, str], ResultT] | None = None,
+    ) -> Generator[ResultT, None, None]:
+        """Yield the result of every task, in the order in which they finish.
+
+        Arguments and errors are those of :func:`robobt.engines.run.run_tasks`.
+        """
+        ray = self._ray
+        packed = pickle.dumps((setup, work.packed()))
+        key, shared = hashlib.blake2b(packed, digest_size=16).digest(), ray.put(packed)
+        do = ray.remote(_do).options(num_cpus=self._cpus, max_retries=0)
+        reports = None
+        if on_report is not None:
+            from ray.util.queue import Queue
+
+            reports = Queue()
+        waiting = iter(tasks)
+        again: deque[tuple[TaskT, int]] = deque()
+        flying: dict[Any, tuple[TaskT, int]] = {}
+        try:
+            while True:
+                while len(flying) < workers:
+                    held = again.popleft() if again else next(((task, 1) for task in waiting), None)
+                    if held is None:
+                        break
+                    flying[do.remote(key, shared, held[0], reports)] = held
+                if not flying:
+                    break
+                ready, _ = ray.wait(list(flying), num_returns=1, timeout=_POLL)
+                if reports is not None and on_report is not None:
+                    for report in reports.get_nowait_batch(reports.size()):
+                        on_report(report)
+                for reference in ready:
+                    task, attempt = flying.pop(reference)
+                    try:
+                        kind, content = ray.get(reference)
+                    except ray.exceptions.RayError as error:
+                        if attempt < _ATTEMPTS:
+                            again.append((task, attempt + 1))
+                            continue
+                        died = f"lost {attempt} times: {one_line(str(error), 200)}"
+                        if lost is None:
+                            raise work.error(f"{work.noun} {task}: {died}") from error
+                        yield lost(task, died)
+                        continue
+                    if kind == "result":
+                        yield content
+                    elif kind == "raised":
+                        raise content
+                    else:
+                        raise work.error(f"a worker of the cluster cannot begin: {content}")
+        finally:
+            with suppress(Exception):
+                for reference in flying:
+                    ray.cancel(reference, force=True)
+                if reports is not None:
+                    reports.shutdown()
+
+    def _connect(self, where: str | None, ship: bool) -> None:
+        options: dict[str, Any] = {"logging_level": "WARNING"}
+        if where is None:
+            options["include_dashboard"] = False
+        else:
+            options["address"] = where
+        if ship:
+            options["runtime_env"] = {"working_dir": str(_staged(Path(self._folder.name)))}
+        try:
+            self._ray.init(**options)
+        except ValueError:
+            # A cluster that is there already has its own mind about the dashboard.
+            options.pop("include_dashboard", None)
+            self._ray.init(**options)
+
+
+_works: dict[bytes, Work[Any, Any, Any]] = {}
+"""What this worker knows how to do: a worker does many tasks of the same work."""
+
+
+def _do(key: bytes, packed: bytes, task: object, reports: Any) -> tuple[str, object]:
+    """Do one task in a worker of the cluster; exceptions are returned, for Ray would wrap them."""
+    if key not in _works:
+        tell_warnings()
+        try:
+            setup, work = pickle.loads(packed)
+            if setup is not None:
+                setup()
+            _works[key] = pickle.loads(work)
+        except Exception as error:
+            return "unknown", f"{type(error).__name__}: {error}"
+    report = _ignore if reports is None else reports.put
+    try:
+        return "result", _works[key].attempt(task, report)
+    except Exception as error:
+        error.add_note(f"in a worker of the cluster:\n{traceback.format_exc()}")
+        return "raised", error
+
+
+def _ignore(message: object) -> None:
+    """Drop a report that nobody asked for."""
+
+
+def _read(address: str) -> tuple[str | None, float, bool]:
+    """Return where the cluster is, the cores of a task, and whether robobt is shipped."""
+    where, _, text = address.partition("?")
+    if where != "ray" and not where.startswith("ray://"):
+        raise ClusterError(f"{address}: an engine is local, ray, or ray://HOST:PORT")
+    options = dict(parse_qsl(text, keep_blank_values=True))
+    cpus, ship = options.pop("cpus", "1"), options.pop("ship", "yes" if where != "ray" else "no")
+    if options:
+        raise ClusterError(f"{address}: {next(iter(options))}: there is no such option; there are cpus, ship")
+    try:
+        cores = float(cpus)
+    except ValueError:
+        cores = 0.0
+    if not 0.0 < cores <= 1024.0:
+        raise ClusterError(f"{address}: cpus: is a number of cores above 0, not {cpus!r}")
+    if ship not in ("yes", "no"):
+        raise ClusterError(f"{address}: ship: is yes or no, not {ship!r}")
+    return (None if where == "ray" else where), cores, ship == "yes"
+
+
+def _staged(folder: Path) -> Path:
+    """Copy what nodes need, laid out as in a checkout, and return where."""
+    package = Path(robobt.__file__).parent
+    shutil.copytree(package, folder / "robobt", ignore=shutil.ignore_patterns("__pycache__", "_data"))
+    shutil.copytree(models_folder(), folder / "models")
+    shutil.copytree(scenarios_folder(), folder / "examples" / "scenarios")
+    return folder

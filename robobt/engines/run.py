@@ -1,0 +1,85 @@
+"""Runs tasks where the program was told to: in processes of this machine unless it says otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Protocol
+
+from robobt.engines.local import run_locally
+from robobt.engines.work import ReportT, ResultT, TaskT, Work
+
+
+class Engine(Protocol):
+    """Somewhere that tasks can be run.
+
+    Attributes:
+        workers: how many it does at a time.
+    """
+
+    workers: int
+
+    def run(
+        self,
+        work: Work[TaskT, ReportT, ResultT],
+        tasks: Iterable[TaskT],
+        workers: int,
+        *,
+        setup: Callable[[], object] | None = None,
+        on_report: Callable[[ReportT], None] | None = None,
+        lost: Callable[[TaskT, str], ResultT] | None = None,
+    ) -> Generator[ResultT, None, None]:
+        """Yield the result of every task; the arguments are those of :func:`run_tasks`."""
+
+
+_engine: ContextVar[Engine | None] = ContextVar("engine", default=None)
+
+
+@contextmanager
+def running_on(engine: Engine) -> Iterator[None]:
+    """Run what is done in several processes on this engine, inside the block."""
+    token = _engine.set(engine)
+    try:
+        yield
+    finally:
+        _engine.reset(token)
+
+
+def engine() -> Engine | None:
+    """Return where tasks are run, None for processes of this machine."""
+    return _engine.get()
+
+
+def run_tasks(
+    work: Work[TaskT, ReportT, ResultT],
+    tasks: Iterable[TaskT],
+    workers: int,
+    *,
+    ahead: int = 1,
+    setup: Callable[[], object] | None = None,
+    on_report: Callable[[ReportT], None] | None = None,
+    lost: Callable[[TaskT, str], ResultT] | None = None,
+) -> Generator[ResultT, None, None]:
+    """Yield the result of every task, in the order in which they finish.
+
+    A task's result is the same wherever it is done. Close the generator to end earlier.
+
+    Args:
+        work: what is done with each task.
+        tasks: asked for the next one whenever a worker has room, so that it may end once enough is done.
+        workers: how many tasks are done at a time, each in a process of its own; 0 is this process
+            itself, and so is 1 unless ``lost`` is given.
+        ahead: tasks a worker process holds at a time; more than one keeps it busy when tasks are short.
+        setup: called in each worker before ``work`` is unpickled, to import what that needs.
+        on_report: called in this process with what tasks report.
+        lost: makes the result of a task whose worker died, of the task and what happened; another worker
+            takes the dead one's place. Without it the death is an error.
+
+    Raises:
+        Exception: as ``work`` says; a note holds the worker's traceback.
+    """
+    elsewhere = _engine.get()
+    if elsewhere is None or workers < (2 if lost is None else 1):
+        return run_locally(work, tasks, workers, ahead=ahead, setup=setup, on_report=on_report, lost=lost)
+    return elsewhere.run(work, tasks, workers, setup=setup, on_report=on_report, lost=lost)

@@ -1,0 +1,98 @@
+"""Tasks on a Ray cluster; left out where Ray is not installed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from robobt.engines.cluster import ClusterError, RayEngine
+from robobt.engines.run import run_tasks, running_on
+from robobt.engines.work import Work
+
+pytestmark = [pytest.mark.integration, pytest.mark.filterwarnings("ignore")]
+
+
+class SquareError(Exception):
+    pass
+
+
+def _square(task: int, report: Callable[[str], None]) -> int:
+    if task < 0:
+        raise ValueError("negative")
+    if task == 99:
+        os._exit(7)
+    report(f"{task} squared")
+    return task * task
+
+
+SQUARES = Work(_square, "square of", SquareError)
+
+
+@pytest.fixture(scope="module")
+def engine() -> Iterator[RayEngine]:
+    pytest.importorskip("ray", reason="needs Ray: pip install 'robobt[ray]'")
+    with RayEngine("ray") as engine:
+        yield engine
+
+
+def test_every_task_gives_one_result_and_its_reports(engine: RayEngine) -> None:
+    reports: list[str] = []
+    with running_on(engine):
+        found = sorted(run_tasks(SQUARES, range(20), 2, on_report=reports.append))
+    assert found == [task * task for task in range(20)]
+    assert sorted(reports) == sorted(f"{task} squared" for task in range(20))
+
+
+def test_a_task_that_raises_is_named(engine: RayEngine) -> None:
+    with pytest.raises(SquareError, match=r"^square of -1: ValueError: negative") as raised:
+        list(engine.run(SQUARES, [-1], 2))
+    assert "in a worker of the cluster" in raised.value.__notes__[0]
+
+
+def test_a_task_that_ends_its_worker_each_time_is_given_up(engine: RayEngine) -> None:
+    found = engine.run(SQUARES, [1, 99, 2], 2, lost=lambda task, why: -task)
+    assert sorted(found) == [-99, 1, 4]
+    with pytest.raises(SquareError, match="square of 99: lost 4 times"):
+        list(engine.run(SQUARES, [99], 1))
+
+
+def test_tasks_are_asked_for_only_while_there_is_room(engine: RayEngine) -> None:
+    asked: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for task in range(10):
+            asked.append(task)
+            yield task
+
+    results = engine.run(SQUARES, tasks(), 2)
+    next(results)
+    assert len(asked) <= 4
+    results.close()
+
+
+def test_work_that_cannot_be_sent_is_told(engine: RayEngine) -> None:
+    with pytest.raises(SquareError, match=r"square ofs cannot be sent"):
+        list(engine.run(Work(lambda task, _: task, "square of", SquareError), [1], 2))
+
+
+@pytest.mark.parametrize(
+    ("address", "problem"),
+    [
+        ("rays", "an engine is local, ray, or ray://HOST:PORT"),
+        ("ray?cpu=1", "cpu: there is no such option; there are cpus, ship"),
+        ("ray?cpus=0", "cpus: is a number of cores above 0"),
+        ("ray?cpus=many", "cpus: is a number of cores above 0"),
+        ("ray?ship=perhaps", "ship: is yes or no"),
+    ],
+)
+def test_a_wrong_address_is_told(address: str, problem: str) -> None:
+    with pytest.raises(ClusterError, match=problem):
+        RayEngine(address)
+
+
+def test_without_ray_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "ray", None)
+    with pytest.raises(ClusterError, match=r"pip install \"robobt\[ray\]\""):
+        RayEngine("ray")
