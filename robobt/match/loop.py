@@ -163,9 +163,9 @@ class Match:
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
-            if not self.world.shows_truth:
-                frame = self.world.observe()
-                frame.game = self.game
+            # Not the true frame, from before the referee may have placed the ball.
+            frame = self.world.observe()
+            frame.game = self.game
             self._commands = self.decide(frame)
         else:
             self._trace.event(self.outcome)

@@ -67,6 +67,23 @@ def test_each_team_is_shown_the_field_from_its_own_side():
     assert blue.frame.opponents[0].x == yellow.frame.opponents[0].x == 2.0
 
 
+class PlacingReferee:
+    """Puts the ball down at one place at every frame."""
+
+    def update(self, _: Frame) -> Decision:
+        return Decision(GameState(), place_ball=(1.0, 2.0))
+
+    def close(self) -> None:
+        pass
+
+
+def test_robots_see_a_ball_where_the_referee_has_just_put_it():
+    match = Match(scenario(), 1, sim_world, referee=lambda *_: PlacingReferee())
+    with match:
+        match.tick()
+    assert match.players[0].store.frame.ball.position == (1.0, 2.0)
+
+
 def test_team_mates_share_a_store_and_opponents_do_not():
     match = Match(scenario(robots={"blue": [robot(), robot(1, y=1.0)], "yellow": [robot()]}), 1, PlainWorld)
     first, second, other = [player.store.team for player in match.players]
