@@ -26,6 +26,9 @@ from robobt.world.state import Frame, RobotId, RobotState
 _KICKED = 1.0
 """A ball that leaves a robot faster than this was kicked, not lost [m/s]."""
 
+_BOUNCES = 0.1
+"""A ball that leaves a robot so soon, and no faster than it came, has bounced off it [s]."""
+
 _SHOT = 2.0
 """A ball that is faster than this on its way into the goal is a shot [m/s]."""
 
@@ -50,8 +53,9 @@ class TeamResult:
 
     Attributes:
         goals: the score.
-        passes: kicks towards a team-mate that were no shots; ``passes_completed`` of them were next
-            touched by a team-mate, ``passes_intercepted`` by an opponent.
+        passes: kicks towards a team-mate that were no shots (a ball that bounces off was not kicked);
+            ``passes_completed`` of them were next touched by a team-mate, ``passes_intercepted`` by an
+            opponent.
         shots_on_goal: kicks of at least 2 m/s whose line led into the goal.
         expected_goals: sum of the probabilities that a goalkeeper like the real ones lets them in,
             by the rater ``expected_goal``.
@@ -99,7 +103,9 @@ class TeamStatistics:
         self._touches = Touches()
         self._before: Frame | None = None
         self._marked: tuple[float, dict[RobotId, Point]] | None = None
+        self._last: RobotId | None = None
         self._holder: RobotId | None = None
+        self._came = -_BOUNCES, 0.0
         self._flight: _Flight | None = None
         self._placing: Team | None = None
         self._pending: Team | None = None
@@ -129,7 +135,7 @@ class TeamStatistics:
                 self._teams[self._flight.kicker.team].passes += 1
             # The kick that takes a restart is one that leaves its taker once the ball is in play.
             self._holder, self._flight = self._taker, None
-        self._before = frame
+        self._before, self._last = frame, self._touches.last
 
     def result(self) -> dict[str, TeamResult]:
         """Return the figures so far, by the team's name."""
@@ -189,14 +195,22 @@ class TeamStatistics:
             assert toucher is not None
             self._touched(toucher, frame)
             self._holder = toucher
-        elif self._holder is not None:
-            self._left(self._holder, frame)
-            self._holder = None
+        else:
+            last = self._touches.last
+            if last is not None and last != self._last:
+                # With one touch: between two frames it came and went.
+                self._touched(last, frame)
+                self._holder = last
+            if self._holder is not None:
+                self._left(self._holder, frame)
+                self._holder = None
         if self._owner is not None:
             self._owned[self._owner] += 1
 
     def _touched(self, toucher: RobotId, frame: Frame) -> None:
         self._owner = toucher.team
+        if toucher != self._holder and self._before is not None:
+            self._came = frame.time, self._before.ball.speed
         if self._restarted is not None and toucher != self._taker:
             self._teams[self._restarted].restarts_kept += toucher.team is self._restarted
             self._restarted = self._taker = None
@@ -215,6 +229,9 @@ class TeamStatistics:
         """Judge the ball that has just left a robot: lost, shot or passed."""
         before = self._before
         if before is None or frame.ball.speed < _KICKED:
+            return
+        since, speed = self._came
+        if frame.time - since < _BOUNCES and frame.ball.speed <= speed:
             return
         view, seen = before.seen_by(kicker.team), frame.seen_by(kicker.team)
         me = view.robot(kicker.number)

@@ -8,7 +8,7 @@ import pytest
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.results.teams import TeamResult, TeamStatistics
-from robobt.world import DIVISION_B, BallState, Frame, GameState, RefereeCommand, RobotState, Team
+from robobt.world import DIVISION_B, BallState, Frame, GameState, RefereeCommand, RobotId, RobotState, Team
 from robobt.world.game import TeamStatus
 from robobt.world.geometry import Point
 from tests.skills.refereed import OPEN, STOP, free_kick
@@ -24,6 +24,7 @@ class Story:
     def __init__(self, blue: dict[int, Point], yellow: dict[int, Point]) -> None:
         self.blue, self.yellow, self.time = blue, yellow, 0.0
         self.statistics = TeamStatistics()
+        self.touch: RobotId | None = None
 
     def frame(
         self,
@@ -34,7 +35,17 @@ class Story:
     ) -> None:
         own = tuple(RobotState(number, *place) for number, place in self.blue.items())
         theirs = tuple(RobotState(number, *place, 3.14) for number, place in self.yellow.items())
-        seen = Frame(self.time, DIVISION_B, BallState(*ball, *speed), own, theirs, Team.BLUE, PERIOD, game)
+        seen = Frame(
+            self.time,
+            DIVISION_B,
+            BallState(*ball, *speed),
+            own,
+            theirs,
+            Team.BLUE,
+            PERIOD,
+            game,
+            last_touch=self.touch,
+        )
         self.statistics.update(seen, game, events)
         self.time += PERIOD
 
@@ -81,6 +92,26 @@ def test_a_pass_that_leaves_the_field_is_tried_but_neither() -> None:
     story.frame((0.6, 3.2))
     blue = story.of(Team.BLUE)
     assert (blue.passes, blue.passes_completed, blue.passes_intercepted) == (1, 0, 0)
+
+
+def test_a_pass_sent_on_between_two_frames_arrived_and_the_shot_is_the_receivers() -> None:
+    story = match()
+    story.touch = RobotId(Team.BLUE, 1)
+    story.frame((GAP, 0.0))
+    story.kick((GAP, 0.0), (0.02, 1.8))
+    story.touch = RobotId(Team.BLUE, 2)
+    story.kick((0.15, 1.9), (4.4, 0.1), 6.0)
+    blue = story.of(Team.BLUE)
+    assert (blue.passes, blue.passes_completed, blue.shots_on_goal) == (1, 1, 1)
+
+
+def test_a_ball_that_bounces_off_a_robot_towards_a_team_mate_is_no_pass() -> None:
+    story = match()
+    story.kick((1.0, 0.0), (GAP, 0.0), 4.0)
+    story.kick((GAP, 0.0), (0.02, 1.8), 2.0)
+    assert story.of(Team.BLUE).passes == 0
+    story.frame((0.02, 2.0 - GAP))
+    assert story.of(Team.BLUE).passes == 0
 
 
 def test_a_clearance_towards_nobody_is_no_pass() -> None:
