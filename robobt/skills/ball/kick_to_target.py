@@ -185,6 +185,8 @@ class KickToTarget(DrivingSkill):
             return self._with(shot.target, min(most, max(least, 0.5 * shot.tolerance)), SHOT_SPEED, None)
         if pass_ is not None:
             order = self._with(pass_.target, _PASS_TOLERANCE, pass_.speed, pass_)
+            if pass_.chip:
+                order = replace(order, angle=CHIP_ANGLE)
             return order if self.pass_tolerance is None else replace(order, tolerance=self.pass_tolerance)
         return None
 
@@ -220,8 +222,9 @@ class KickToTarget(DrivingSkill):
         at_wall = distance(allowed, behind) > _REACHABLE
         in_line = aside < _ROUND * back and (not near or aside < _IN_MOUTH)
         close = self.take and near and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _AHEAD
-        if not in_line and (has_ball(me, ball) or (at_wall and near) or close):
+        if not in_line and frame.game.in_play and (has_ball(me, ball) or (at_wall and near) or close):
             # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
+            # Not at a restart, where touching it is the kick.
             self.store.command = grab(me, ball, _CREEP, frame.period)
             return
         heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))

@@ -19,11 +19,13 @@ class GoToKickoffPosition(Skill):
 
     Args:
         spread: share of the field's width that the line takes.
+        spare_mates: drive gently where it comes near to team-mates.
     """
 
     reads = ("team",)
 
     spread: float = 0.6
+    spare_mates: bool = False
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
@@ -34,5 +36,5 @@ class GoToKickoffPosition(Skill):
         share = (line.index(me.id) + 0.5) / len(line) - 0.5
         x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)
         target = (x, -share * self.spread * field.width)
-        self.drive_to(target, (0.0, 0.0))
+        self.drive_to(target, (0.0, 0.0), spare_mates=self.spare_mates)
         return self.run("lining up")

@@ -27,19 +27,22 @@ class PrepareRestart(Skill):
 
     Args:
         gap: from the ball to the robot's centre [m].
+        stay: stay there, running, when it may be taken too.
     """
 
     reads = ("shot", "pass_")
     optional = ("shot", "pass_")
 
     gap: float = 0.25
+    stay: bool = False
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
         frame, game = self.frame, self.frame.game
         if game.restart is None or game.restart_team is not frame.team:
             return self.fail("no restart of ours")
-        if game.may_touch and not game.stopped:
+        may_take = game.may_touch and not game.stopped
+        if may_take and not self.stay:
             return self.succeed("it may be taken")
         spot = game.placement or frame.ball.position
         x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
@@ -49,7 +52,7 @@ class PrepareRestart(Skill):
         if game.stopped and not frame.field.contains(x, y):
             x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
         self.drive_to((x, y), spot, avoid_ball=True)
-        return self.run("waiting for the whistle")
+        return self.run("waiting for a chance" if may_take else "waiting for the whistle")
 
     def _aim(self) -> Point:
         store = self.store

@@ -9,11 +9,12 @@ from robobt.skills import KickToTarget
 from robobt.skills.ball.kick_to_target import MAX_CHIP_SPEED, SHOT_SPEED
 from robobt.skills.store import Pass, Shot
 from robobt.tree import Status
-from robobt.world import Frame, KickTrigger
+from robobt.world import Frame, KickTrigger, Team
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import wrap_angle
 from tests.simulation import Trial, blue, eventually, goal_for_us, inside_the_field, never, yellow
 from tests.skills.fixed_world import Alone, frame, held, pass_to, robot, shot_at
+from tests.skills.refereed import OPEN, free_kick
 
 GOAL = (4.5, 0.0)
 
@@ -245,6 +246,13 @@ def test_a_chip_flies_over_a_robot_and_touches_down_at_its_target(
     assert down[-1].last_touch == blue(0)
 
 
+def test_a_chipped_pass_is_kicked_as_fast_as_it_says() -> None:
+    alone, me = Alone(KickToTarget()), robot(contact=True)
+    alone.store.pass_ = Pass(2, (3.0, 0.0), 4.2, 1.0, chip=True)
+    alone.tick(frame(me, held(me)))
+    assert (alone.command.kick_speed, alone.command.kick_angle) == (4.2, CHIP_ANGLE)
+
+
 def test_what_cannot_be_chipped_is_refused() -> None:
     with pytest.raises(ValueError, match="no chip"):
         KickToTarget(style="robobulls", chip=True)
@@ -278,6 +286,16 @@ def test_a_ball_close_before_it_is_taken_rather_than_gone_round() -> None:
         alone.tick(view)
         straight_on = alone.command.vx > 0.3 and abs(alone.command.vy) < 0.1
         assert straight_on is drives_on
+
+
+def test_at_a_restart_it_goes_round_a_ball_before_its_mouth_without_touching_it() -> None:
+    # It kicks to where it stands from the side.
+    me = robot(0.0, -0.125, heading=1.57, number=1)
+    for game, touches in ((OPEN, True), (free_kick(Team.BLUE, (0.0, 0.0)), False)):
+        alone = Alone(KickToTarget(take=True))
+        alone.store.pass_ = pass_to(2, 3.0, 0.0)
+        alone.tick(frame(me, (0.0, 0.0), game=game), 1)
+        assert (alone.command.vx > 0.2) is touches
 
 
 def test_a_pass_with_a_tolerance_of_its_own_is_kicked_and_chipped_as_told() -> None:

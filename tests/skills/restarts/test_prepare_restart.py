@@ -60,6 +60,14 @@ def test_it_is_done_when_the_restart_may_be_taken() -> None:
     assert Alone(PrepareRestart()).tick(view, 1) is Status.SUCCESS
 
 
+def test_it_stays_behind_the_ball_until_the_kick_if_told_so() -> None:
+    spot = (1.0, 2.8)
+    game = free_kick(Team.BLUE, spot)
+    drive = Drive(PrepareRestart(stay=True), robot(0.3, 2.2, number=1), game, spot)
+    assert drive.status is Status.RUNNING
+    assert hypot(drive.end.x - spot[0], drive.end.y - spot[1]) == pytest.approx(0.25, abs=0.03)
+
+
 @pytest.mark.parametrize("game", [OPEN, free_kick(Team.YELLOW, SPOTS[0])], ids=["in play", "theirs"])
 def test_it_fails_without_a_restart_of_ours(game: object) -> None:
     view = frame(robot(number=1), SPOTS[0], game=game)  # type: ignore[arg-type]
