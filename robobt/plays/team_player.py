@@ -17,7 +17,6 @@ from robobt.skills.ball.settle_ball import SettleBall
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
-from robobt.skills.conditions.under_pressure import UnderPressure
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
@@ -37,7 +36,9 @@ PASS_TOLERANCE = 0.06
 
 
 @PLAYS.register("team_player")
-def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: float = 1.5) -> Behaviour:
+def team_player(
+    *, shoot_at: float = 0.55, pass_at: float = 0.35, patience: float = 1.5, chips: bool = True
+) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
 
     Any number of robots may play it, each the same; the goalkeeper plays ``keeper``. Who attacks,
@@ -48,10 +49,11 @@ def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: floa
         shoot_at: chance of a goal for which a shot is taken at once, 0 to 1.
         pass_at: worth for which a pass is played at once, 0 to 1.
         patience: time in which what is demanded of both falls to its floor [s].
+        chips: whether passes may fly over opponents.
     """
 
     def choose() -> ChooseKick:
-        return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience)
+        return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience, chips=chips)
 
     player = TaskSwitch(
         "part",
@@ -64,9 +66,13 @@ def team_player(*, shoot_at: float = 0.55, pass_at: float = 0.35, patience: floa
             ),
             "penalty": GoToPenaltyPosition(),
             "place_ball": PlaceBall(),
-            "take_restart": take_restart(shoot_at, pass_at),
-            "kickoff": GoToKickoffPosition(),
-            "dead_ball": when("ball is dead", KeepDistance(), TakePlace()),
+            "take_restart": take_restart(shoot_at, pass_at, chips),
+            "kickoff": GoToKickoffPosition(spare_mates=True),
+            "dead_ball": first_of(
+                "ball is dead",
+                when("ours", MayTouchBall(), TakePlace()),
+                when("keep away", KeepDistance(), TakePlace()),
+            ),
             "attack": attack(choose),
         },
         otherwise=TakePlace(),
@@ -82,7 +88,6 @@ def attack(choose: Callable[[], ChooseKick]) -> Behaviour:
         ReceivePass(),
         SettleBall(),
         when("kick", choose(), kick()),
-        when("pressed", HasBall(), UnderPressure(), AimUpfield(), KickToTarget(kick_speed=3.0)),
         when(
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),
@@ -96,11 +101,13 @@ def kick() -> KickToTarget:
     return KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)
 
 
-def take_restart(shoot_at: float, pass_at: float) -> Behaviour:
+def take_restart(shoot_at: float, pass_at: float, chips: bool) -> Behaviour:
     """Take an own restart."""
 
     def choose() -> ChooseKick:
-        return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=2.5, floor=0.04, restart=True)
+        return ChooseKick(
+            shoot_at=shoot_at, pass_at=pass_at, patience=2.5, floor=0.04, chips=chips, restart=True
+        )
 
     return first_of(
         "restart",
@@ -109,5 +116,5 @@ def take_restart(shoot_at: float, pass_at: float) -> Behaviour:
             memory=True,
             children=[MayTouchBall(), choose(), KickToTarget(pass_tolerance=PASS_TOLERANCE)],
         ),
-        when("get ready", first_of("where to", choose(), AimUpfield()), PrepareRestart()),
+        when("get ready", first_of("where to", choose(), AimUpfield()), PrepareRestart(stay=True)),
     )

@@ -47,6 +47,7 @@ class Pass:
         speed: of the ball as it is kicked [m/s].
         score: how good it is, 0 to 1.
         wait: how long it must not be kicked yet, for the receiver to be there in time [s].
+        chip: whether it flies over robots first.
     """
 
     receiver: int
@@ -54,3 +55,4 @@ class Pass:
     speed: float
     score: float
     wait: float = 0.0
+    chip: bool = False

@@ -40,6 +40,7 @@ class Plan:
         marks: which opponent each marker marks.
         next_pass: the pass that the attacker is about to play, None without one.
         next_pass_time: when it was chosen last [s].
+        meant: when each player was last the receiver of that pass, and where [s, m].
         own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
         own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`.
         attacker_since: since when the attacker is the one it is [s].
@@ -49,6 +50,7 @@ class Plan:
         ahead: whether the ball counts as in the opponents' half.
         support: the places chosen for supporters last, the best first [m].
         support_time: when they were chosen [s].
+        short: where a team-mate stands close to the ball of an own restart [m], None without one.
         watch: tells whether the ball slides or rolls.
         rolling: the speed from which on it rolls [m/s].
     """
@@ -60,6 +62,7 @@ class Plan:
     marks: dict[int, int] = field(default_factory=dict)
     next_pass: Pass | None = None
     next_pass_time: float = -1.0
+    meant: dict[int, tuple[float, Point]] = field(default_factory=dict)
     own_times: dict[int, float] = field(default_factory=dict)
     their_times: dict[int, float] = field(default_factory=dict)
     own_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
@@ -71,5 +74,6 @@ class Plan:
     ahead: bool = False
     support: list[Point] = field(default_factory=list)
     support_time: float = -1.0
+    short: Point | None = None
     watch: BallWatch = field(default_factory=BallWatch)
     rolling: float = 0.0

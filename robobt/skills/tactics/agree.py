@@ -13,20 +13,26 @@ from scipy.optimize import linear_sum_assignment
 
 from robobt.motion.arrival import arrival_times, meetings, movers_of
 from robobt.skills.plan import Plan, Task
-from robobt.skills.store import TeamStore
+from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
-from robobt.skills.tactics.support import support_places
+from robobt.skills.tactics.support import short_place, support_places
 from robobt.skills.team.teamwork import follow_restart
 from robobt.world.game import Restart
-from robobt.world.geometry import Point
+from robobt.world.geometry import Point, distance
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
 from robobt.world.state import Frame, RobotState
 
 SWITCH_GAIN = 0.3
 """Another robot goes for the ball when it can have it so much sooner [s]."""
 
-FRESH_FOR, FRESH_GAIN = 1.0, 0.9
+FRESH_FOR, FRESH_GAIN = 1.0, 1.3
 """For so long after it has begun the gain has to be larger [s, s]."""
+
+SHOT_FROM = 4.5
+"""A ball that goes faster towards the opponents' goal, and is no pass, was shot at it [m/s]."""
+
+RESTART_GAIN = 1.5
+"""The same before a restart, where there is no hurry [s]."""
 
 HELD = 0.3
 """How much sooner a robot counts that has the ball [s]."""
@@ -34,13 +40,16 @@ HELD = 0.3
 MEANT = 0.4
 """How much sooner a robot counts that a pass is meant for [s]."""
 
+MEANT_FOR = 1.0
+"""A robot that a pass was meant for waits for it so long [s]."""
+
 KEEP_GAIN = 0.8
 """How much sooner a robot counts at the place of the task that it has [s]."""
 
 OURS_AFTER = 0.5
 """For how long the ball has to look like the other team's before it counts as theirs, or as ours [s]."""
 
-TURNS_AFTER = 1.0
+TURNS_AFTER = 1.2
 """For how long it counts as theirs or ours at least [s]."""
 
 AHEAD_FROM = 0.6
@@ -51,6 +60,7 @@ _INTENT_LASTS = 1.0
 _REACH = 0.06
 _OWN_REACH = 0.12
 _BEHIND_BALL = 0.3
+_SAME = 0.4
 
 
 def agree(frame: Frame, team: TeamStore) -> Plan:
@@ -124,6 +134,10 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotStat
         or in_their_defense_area(field, ball.x, ball.y, _REACH)
     ):
         return None
+    shot = ball.vx > SHOT_FROM and not pass_under_way(frame, team)
+    if shot and game.in_play and team.attacker in plan.own_times:
+        # Who gets it depends on what stops it.
+        return team.attacker
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None
     meant = team.receiver if pass_under_way(frame, team) else None
     best, least, present = None, inf, inf
@@ -145,6 +159,8 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotStat
         if time < least:
             best, least = robot.id, time
     gain = SWITCH_GAIN if frame.time - plan.attacker_since > FRESH_FOR else FRESH_GAIN
+    if game.restart is not None:
+        gain = RESTART_GAIN
     return team.attacker if present < least + gain else best
 
 
@@ -157,17 +173,24 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     if team.attacker is not None:
         tasks[team.attacker] = Task.ATTACK
     intended = plan.next_pass
-    if intended is not None and intended.receiver != team.attacker:
-        tasks[intended.receiver] = Task.RECEIVE
-        plan.places[intended.receiver] = intended.target
+    if intended is not None:
+        plan.meant[intended.receiver] = frame.time, intended.target
+    for number, (time, target) in plan.meant.items():
+        # Whoever was meant a moment ago stays, for it may be meant again.
+        if number in plan.players and number != team.attacker and 0.0 <= frame.time - time < MEANT_FOR:
+            tasks[number] = Task.RECEIVE
+            plan.places[number] = target
     free = [robot for robot in players if robot.id not in tasks]
     jobs: list[tuple[Task, Point, int | None]] = []
     if free:
         walls = wall_size(plan, len(players), len(free))
         jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls))]
+        plan.short = short_place(frame, plan.short)
+        if plan.short is not None and len(free) > len(jobs) and not _near(intended, plan.short):
+            jobs.append((Task.SUPPORT, plan.short, None))
         left = len(free) - len(jobs)
         if left and not plan.ours:
-            dangerous = threats(frame)
+            dangerous = threats(frame, set(plan.marks.values()))
             team.threats = [robot.id for robot in dangerous]
             marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left])
             jobs += [(Task.MARK, place, number) for number, place in marks]
@@ -197,6 +220,10 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
                 plan.marks[number] = what
     plan.tasks = tasks
     team.marks = plan.marks
+
+
+def _near(intended: Pass | None, place: Point) -> bool:
+    return intended is not None and distance(intended.target, place) < _SAME
 
 
 def wall_size(plan: Plan, players: int, free: int) -> int:

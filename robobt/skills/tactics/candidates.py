@@ -11,13 +11,25 @@ from numpy.typing import NDArray
 from robobt.motion.arrival import arrival_time
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.chances import WIDEST, point_worth, redirect_angle
-from robobt.skills.tactics.lanes import RECEIVE_SPEED, arrive_chance, flight_time, kick_speed
+from robobt.skills.tactics.lanes import (
+    LONGEST_CHIP,
+    RECEIVE_SPEED,
+    arrive_chance,
+    chip_chance,
+    chip_speed,
+    chip_time,
+    flight_time,
+    kick_speed,
+)
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import Frame, RobotState
 
 SHORTEST = 1.4
 """Of a pass [m]."""
+
+SHORTEST_RESTART = 0.35
+"""Of a pass from an own restart, where no opponent may be so near [m]."""
 
 LONGEST_WAIT = 1.2
 """For a receiver that is not there yet [s]."""
@@ -47,12 +59,13 @@ def passes(
     *,
     least: float = 0.15,
     most: int = 8,
+    chips: bool = True,
 ) -> list[Pass]:
     """Return the best passes from where the ball lies, at most ``most``, the best first.
 
     To every team-mate there are points about it that it can reach before the ball. A pass scores the
     chance to arrive, which is at least ``least``, times what the ball is worth there; ``last`` counts
-    ``keep`` times.
+    ``keep`` times. ``chips`` says whether it may fly over opponents.
     """
     plan, ball, field = team.plan, frame.ball, frame.field
     own, opponents = plan.own_movers, plan.their_movers
@@ -94,18 +107,20 @@ def passes(
                 field.defense_depth,
                 field.defense_width / 2.0,
                 least,
+                1.0 if chips else 0.0,
+                SHORTEST if plan.short is None else SHORTEST_RESTART,
             )
         ),
     )
     found = []
-    for (score, speed, wait), index, point in zip(rated.tolist(), owners, points, strict=True):
+    for (score, speed, wait, chip), index, point in zip(rated.tolist(), owners, points, strict=True):
         if score <= 0.0:
             continue
         number = frame.own[index].id
         if last is not None and last.receiver == number:
             near = hypot(point[0] - last.target[0], point[1] - last.target[1]) < 0.3
             score *= keep if near else 0.5 * (1.0 + keep)
-        found.append(Pass(number, point, speed, score, wait))
+        found.append(Pass(number, point, speed, score, wait, chip > 0.0))
     found.sort(key=lambda one: -one.score)
     return found[:most]
 
@@ -130,9 +145,13 @@ def _rate(
     opponents: FloatArray,
     size: FloatArray,
 ) -> FloatArray:
-    """Rate passes to points (G, 2) of the robots ``owners``: (G, 3), score, kick speed [m/s] and wait [s]."""
-    out = np.zeros((len(points), 3))
+    """Rate passes to points (G, 2) of the robots ``owners``.
+
+    Returns (G, 4): score, kick speed [m/s], wait [s] and whether it is chipped.
+    """
+    out = np.zeros((len(points), 4))
     half_length, half_width, half_goal, depth, half_area = size[0], size[1], size[2], size[3], size[4]
+    least, chips, shortest = size[5], size[6] > 0.0, size[7]
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
@@ -140,36 +159,48 @@ def _rate(
         if abs(x) > half_length - depth - 0.15 and abs(y) < half_area + 0.15:
             continue
         length = hypot(x - ox, y - oy)
-        if length < SHORTEST:
+        if length < shortest:
             continue
         i = owners[g]
         turn = np.arctan2(y - oy, x - ox) - heading
         turn = abs((turn + pi) % (2.0 * pi) - pi)
         delay = 0.1 + turn / _TURN_RATE
         there = arrival_time(own[i], x, y, 0.1)
-        for arrival in (min(RECEIVE_SPEED, 0.8 + 0.4 * length), REDIRECT_SPEED):
+        for kind in range(3):
+            redirect, chip = kind == 1, kind == 2
             ready = there
-            if arrival == REDIRECT_SPEED:
+            if redirect:
                 if length < SHORTEST_REDIRECT or redirect_angle(ox, oy, x, y, half_length) > WIDEST:
                     continue
                 ready += TURNS
-            speed = kick_speed(length, arrival)
-            flight = flight_time(length, speed)
+            if chip:
+                if not chips or not SHORTEST <= length <= LONGEST_CHIP or out[g, 0] > 0.0:
+                    continue
+                speed = chip_speed(length)
+                flight = chip_time(length)
+            else:
+                arrival = REDIRECT_SPEED if redirect else min(RECEIVE_SPEED, 0.8 + 0.4 * length)
+                speed = kick_speed(length, arrival)
+                flight = flight_time(length, speed)
             wait = delay
             if wait + flight < ready:
                 # The ball waits for the robot.
                 wait = ready - flight
                 if wait > LONGEST_WAIT:
                     continue
-            chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i)
-            if chance < size[5]:
+            if chip:
+                chance = chip_chance(ox, oy, x, y, wait, opponents, own, i)
+            else:
+                chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i)
+            if chance < least:
                 continue
             worth = point_worth(ox, oy, x, y, wait + flight, opponents, half_length, half_goal)
-            if arrival == REDIRECT_SPEED and worth < REDIRECT_WORTH:
+            if redirect and worth < REDIRECT_WORTH:
                 continue
             score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
             if score > out[g, 0]:
                 out[g, 0] = score
                 out[g, 1] = speed
                 out[g, 2] = max(0.0, ready - flight)
+                out[g, 3] = 1.0 if chip else 0.0
     return out

@@ -33,6 +33,7 @@ class ChooseKick(Skill):
         every: from one look to the next [s].
         max_distance: no shots from farther than this from the goal [m].
         model: predictor of a shot's scene: a shipped model or a file.
+        chips: whether passes may fly over opponents.
         restart: whether the ball lies for an own restart: the time counts from when it may be taken.
 
     Raises:
@@ -49,6 +50,7 @@ class ChooseKick(Skill):
     floor: float = 0.1
     keep: float = 1.6
     every: float = 0.05
+    chips: bool = True
     restart: bool = False
     max_distance: float = 5.0
     model: str = "shot_expected_strong"
@@ -117,7 +119,8 @@ class ChooseKick(Skill):
         hold = point_worth(ball.x - 1.0, ball.y, ball.x, ball.y, _HOLDS, there, *goal)
         enough = min(self.pass_at * share, _BETTER * hold)
         late = self.restart and frame.time - self._since > self.patience + _LATE
-        candidates = passes(frame, team, me, old_pass, self.keep, least=0.0 if late else 0.15)
+        least = 0.0 if late else _SURE if self.restart else _LEAST
+        candidates = passes(frame, team, me, old_pass, self.keep, least=least, chips=self.chips)
         self.store.candidates = candidates[:_SHOWN]
         best = candidates[0] if candidates else None
         shot_score = 0.0 if shot is None else shot.score
@@ -146,6 +149,9 @@ class ChooseKick(Skill):
         shots = self._rater.rate_all(frame, ball.position, me)
         return shots[0] if shots else None
 
+
+_LEAST, _SURE = 0.15, 0.5
+"""Least chance with which a pass has to arrive, in play and at a restart, where the ball is safe."""
 
 _SHOWN = 5
 """So many passes are told of."""

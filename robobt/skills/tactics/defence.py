@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from math import hypot
 
 from robobt.skills.defence.wall import DefenseEdge
@@ -14,6 +15,9 @@ MARK_GAP = 0.3
 
 MARK_FROM = 0.8
 """Opponents are marked up to this x [m]."""
+
+MARK_STAYS = 0.5
+"""An opponent that is marked counts so much nearer to the goal [m]."""
 
 _AREA_GAP = 0.03
 _MATE_GAP = 0.02
@@ -34,8 +38,11 @@ def wall_places(frame: Frame, size: int) -> list[Point]:
     return [edge.point(middle + (place - 0.5 * (size - 1)) * width) for place in range(size)]
 
 
-def threats(frame: Frame) -> list[RobotState]:
-    """Return the opponents without the ball that could score soon, the most dangerous first."""
+def threats(frame: Frame, marked: Collection[int] = ()) -> list[RobotState]:
+    """Return the opponents without the ball that could score soon, the most dangerous first.
+
+    Those in ``marked`` stay before others that are hardly nearer to the goal.
+    """
     goal_x, goal_y = frame.field.our_goal
     holder = owner(frame)
     others = [
@@ -45,7 +52,10 @@ def threats(frame: Frame) -> list[RobotState]:
         and (holder is None or holder != RobotId(frame.team.other, robot.id))
         and hypot(robot.x - frame.ball.x, robot.y - frame.ball.y) > 0.5
     ]
-    return sorted(others, key=lambda robot: hypot(robot.x - goal_x, robot.y - goal_y))
+    return sorted(
+        others,
+        key=lambda robot: hypot(robot.x - goal_x, robot.y - goal_y) - MARK_STAYS * (robot.id in marked),
+    )
 
 
 def mark_places(frame: Frame, opponents: list[RobotState]) -> list[tuple[int, Point]]:

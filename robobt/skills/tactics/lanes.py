@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, hypot, inf, sqrt
 
 from robobt.motion import ball_model
-from robobt.motion.ball_model import DEFAULT_BALL, time_for
+from robobt.motion.ball_model import DEFAULT_BALL, DEFAULT_CHIP, time_for
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -15,6 +15,28 @@ PASS_SPEEDS = (2.0, 5.8)
 
 RECEIVE_SPEED = 2.2
 """Of the ball at the receiver [m/s]."""
+
+CHIP_TOUCH_DOWNS = 4
+"""A chipped pass has touched down so often when it comes to its receiver: it hardly hops any more."""
+
+LONGEST_CHIP = 6.0
+"""Of a chipped pass [m]: what a chip within the rules' speed reaches."""
+
+_RISES = 0.2
+"""A chipped ball has risen over robots so far from where it was kicked [m]."""
+
+_FALLS = 0.15
+"""From so far before it first touches down on robots can stop it [m]."""
+
+_CHIPPED = 0.9
+"""Chance that a chipped ball is taken that gets there."""
+
+_CHIP_SPEED = DEFAULT_CHIP.kick_speed(1.0, CHIP_TOUCH_DOWNS)
+# Times grow with the root of the distance, ways with the distance: of a chip of 25 m, a share.
+_TOUCH_DOWNS = DEFAULT_CHIP.touch_downs(5.0 * _CHIP_SPEED)
+_LANDS, _LANDS_AT = _TOUCH_DOWNS[0][0] / 5.0, _TOUCH_DOWNS[0][1] / 25.0
+_ROLLS = _TOUCH_DOWNS[CHIP_TOUCH_DOWNS - 1][0] / 5.0
+_CHIP_SAMPLES = 4
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
 _REACTION = 0.15
@@ -136,3 +158,65 @@ def arrive_chance(
             if aside < _BODY + 0.02:
                 chance *= 0.1
     return chance
+
+
+@compiled
+def chip_speed(length: float) -> float:
+    """Return the speed of a chip that rolls after ``length`` [m/s, m]."""
+    return _CHIP_SPEED * sqrt(length)
+
+
+@compiled
+def chip_time(length: float) -> float:
+    """Return how long such a chip takes [s]."""
+    return _ROLLS * sqrt(length)
+
+
+@compiled
+def chip_chance(
+    ox: float,
+    oy: float,
+    x: float,
+    y: float,
+    delay: float,
+    opponents: FloatArray,
+    mates: FloatArray,
+    skip: int,
+) -> float:
+    """Return the chance that a pass chipped after ``delay`` gets from (ox, oy) to (x, y), where it rolls.
+
+    Nobody stops it between rising and falling; ``skip`` is the receiver's row in ``mates``.
+    """
+    dx, dy = x - ox, y - oy
+    length = max(hypot(dx, dy), 1e-6)
+    ux, uy = dx / length, dy / length
+    lands = _LANDS_AT * length
+    root = sqrt(length)
+    least = 10.0
+    for j in range(len(opponents)):
+        if _in_chips_way(opponents[j, 0] - ox, opponents[j, 1] - oy, ux, uy, 0.15):
+            return 0.0
+        for k in range(_CHIP_SAMPLES + 1):
+            share = k / _CHIP_SAMPLES
+            way = lands - _FALLS + share * (length - lands + _FALLS)
+            when = delay + root * (_LANDS + share * (_ROLLS - _LANDS))
+            px, py = ox + way * ux, oy + way * uy
+            if not cannot_pass_by(opponents[j], px, py, least + when):
+                least = min(least, time_to_pass(opponents[j], px, py) - when)
+    chance = _CHIPPED * sigmoid(least / _MARGIN)
+    for i in range(len(mates)):
+        if i == skip:
+            continue
+        mx, my = mates[i, 0] - ox, mates[i, 1] - oy
+        along, aside = mx * ux + my * uy, abs(mx * uy - my * ux)
+        down = lands - _FALLS - _BODY < along < length and aside < _BODY + 0.02
+        if down or _in_chips_way(mx, my, ux, uy, 0.02):
+            chance *= 0.1
+    return chance
+
+
+@compiled
+def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float) -> bool:
+    """Tell whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) has not risen yet."""
+    along = dx * ux + dy * uy
+    return 0.0 < along < _RISES + _BODY + gap and abs(dx * uy - dy * ux) < _BODY + gap

@@ -36,6 +36,9 @@ _FAST = 1.2
 _SOON = 1.5
 """A ball that takes longer is not yet one to send on with one touch [s]."""
 
+_FLIES, _HOPS = 0.05, 0.5
+"""A ball higher than this, or that rises or falls faster, is not sent on with one touch [m, m/s]."""
+
 _AREA = 0.3
 """Nobody gives way to the ball this near to the own defence area [m]."""
 
@@ -167,7 +170,8 @@ class ReceivePass(Skill):
         there = plan.their_movers
         angle = redirect_angle(x - ux, y - uy, x, y, field.half_length)
         first = min(plan.their_times.values(), default=10.0)
-        if speed < _FAST or time > _SOON or first < time:
+        flies = frame.ball.z > _FLIES or abs(frame.ball.vz) > _HOPS
+        if flies or speed < _FAST or time > _SOON or first < time:
             self._redirecting = False
             return None
         if angle > self.widest + (0.1 if self._redirecting else 0.0):

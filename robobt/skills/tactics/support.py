@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import cos, inf, pi, sin
 
 import numpy as np
 
@@ -10,7 +11,8 @@ from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray, Point
+from robobt.world.game import Restart
+from robobt.world.geometry import FloatArray, Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import Frame
 
@@ -22,6 +24,15 @@ APART = 1.6
 
 STAY = 1.25
 """How much better another place has to be than the one before."""
+
+SHORT = 0.45
+"""At an own restart one supporter is so near to the ball that no opponent may come between [m]."""
+
+_SHORT_GAIN = 0.15
+"""It goes to another side of the ball only where opponents are so much farther off [m]."""
+
+_SHORT_ANGLES = 16
+_LINE, _AREA = 0.15, 0.3
 
 _ROLLS = 1.0
 """A pass under way is faster [m/s]."""
@@ -61,6 +72,35 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
         _spread(value, points, place)
     plan.support = chosen
     return chosen
+
+
+def short_place(frame: Frame, last: Point | None) -> Point | None:
+    """Return the place beside the ball of an own restart that opponents are farthest from.
+
+    ``last`` is the one before. None without such a restart, and where no place is in the field and
+    outside the defence areas.
+    """
+    field, game = frame.field, frame.game
+    if game.restart not in (Restart.FREE_KICK, Restart.KICKOFF) or game.restart_team is not frame.team:
+        return None
+    x, y = game.placement or frame.ball.position
+    best, most = None, -inf
+    for k in range(_SHORT_ANGLES):
+        angle = 2.0 * pi * k / _SHORT_ANGLES
+        place = (x + SHORT * cos(angle), y + SHORT * sin(angle))
+        inside = abs(place[0]) < field.half_length - _LINE and abs(place[1]) < field.half_width - _LINE
+        if (
+            not inside
+            or in_own_defense_area(field, *place, 0.3)
+            or in_their_defense_area(field, *place, 0.25)
+        ):
+            continue
+        room = min((distance(robot.position, place) for robot in frame.opponents), default=2.0)
+        if last is not None and distance(place, last) < 0.1:
+            room += _SHORT_GAIN
+        if room > most:
+            best, most = place, room
+    return best
 
 
 def _spread(value: FloatArray, points: FloatArray, place: Point) -> None:

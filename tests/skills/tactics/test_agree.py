@@ -6,8 +6,9 @@ import pytest
 
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Task
-from robobt.world import Team
-from robobt.world.geometry import distance
+from robobt.world import DIVISION_B, Team
+from robobt.world.geometry import Point, distance
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from tests.skills.fixed_world import held, robot
 from tests.skills.refereed import free_kick, penalty, penalty_in_play
 from tests.skills.tactics.teams import SIX, THEIRS, Agreement
@@ -138,3 +139,19 @@ def test_a_penalty_kick_whose_taker_has_left_the_field_is_taken_by_another() -> 
     left = tuple(each for each in SIX if each.id != 3)
     plan = agreement.at(0.1, spot, left, game=penalty_in_play(Team.BLUE))
     assert Task.ATTACK in [plan.tasks[each.id] for each in left[1:]]
+
+
+@pytest.mark.parametrize("spot", [(4.3, 2.8), (1.0, -2.8), (-2.2, 1.4)])
+def test_at_an_own_free_kick_a_mate_stands_so_near_that_nobody_can_come_between(spot: Point) -> None:
+    agreement = Agreement()
+    plan = agreement.at(0.0, spot, game=free_kick(Team.BLUE, spot))
+    attacker = next(number for number, task in plan.tasks.items() if task is Task.ATTACK)
+    near = [
+        place for number, place in plan.places.items() if number != attacker and distance(place, spot) < 0.5
+    ]
+    assert near == [plan.short]
+    assert DIVISION_B.contains(*near[0])
+    assert not in_own_defense_area(DIVISION_B, *near[0])
+    assert not in_their_defense_area(DIVISION_B, *near[0])
+    theirs = agreement.at(0.1, spot, game=free_kick(Team.YELLOW, spot))
+    assert theirs.short is None

@@ -22,13 +22,14 @@ def found(
     places: dict[int, Point] | None = None,
     last: Pass | None = None,
     least: float = 0.15,
+    chips: bool = True,
 ) -> list[Pass]:
     team = TeamStore()
     team.plan.players.update((1, *(mate.id for mate in mates)))
     view = frame(ME, held(ME), mates, theirs, game=OPEN)
     agree(view, team)
     team.plan.places.update(places or {})
-    return passes(view, team, ME, last, 1.5, least=least, most=100)
+    return passes(view, team, ME, last, 1.5, least=least, most=100, chips=chips)
 
 
 def test_there_are_passes_to_points_about_every_mate_the_best_first() -> None:
@@ -67,3 +68,11 @@ def test_the_last_pass_counts_more() -> None:
 def test_a_hopeless_pass_is_left_out_unless_there_has_to_be_one() -> None:
     wall = tuple(robot(-0.6, 0.35 + 0.05 * i, number=i) for i in range(4))
     assert len(found(theirs=wall, least=0.0)) > len(found(theirs=wall))
+
+
+def test_a_pass_flies_over_opponents_where_there_is_no_other_way_and_it_may() -> None:
+    wall = (robot(-0.5, 0.43, number=1),)
+    over = found(theirs=wall)
+    assert any(one.chip and one.target == MATE.position for one in over)
+    assert not any(one.chip for one in found(theirs=wall, chips=False))
+    assert not any(one.chip for one in found())

@@ -63,12 +63,17 @@ def test_far_from_the_goal_it_passes_forward_and_tells_the_team() -> None:
 
 def test_nobody_is_passed_to_through_an_opponent() -> None:
     mate = robot(1.5, 0.0, number=4)
-    chooser = Chooser(ChooseKick(), (mate,))
     me = robot(-1.5, 0.0, number=1, contact=True)
     opponent = robot(-0.5, 0.0, number=3)
-    chooser.at(0.0, me, (KEEPER, opponent))
-    chosen = chooser.alone.store.pass_
-    assert chosen is None or segment_distance(opponent.position, held(me), chosen.target) > 0.13
+    for chips in (False, True):
+        chooser = Chooser(ChooseKick(chips=chips), (mate,))
+        chooser.at(0.0, me, (KEEPER, opponent))
+        chosen = chooser.alone.store.pass_
+        if chosen is None or segment_distance(opponent.position, held(me), chosen.target) > 0.13:
+            continue
+        # But over it.
+        assert chips
+        assert chosen.chip
 
 
 def test_without_the_ball_there_is_nothing_to_choose() -> None:

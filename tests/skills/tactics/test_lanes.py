@@ -6,11 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
-from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.ball_model import DEFAULT_BALL, DEFAULT_CHIP
 from robobt.skills.tactics.lanes import (
+    CHIP_TOUCH_DOWNS,
+    LONGEST_CHIP,
     PASS_SPEEDS,
     arrive_chance,
     cannot_pass_by,
+    chip_chance,
+    chip_speed,
+    chip_time,
     flight_time,
     kick_speed,
     lane_margin,
@@ -79,3 +84,33 @@ def test_whoever_cannot_pass_by_a_time_passes_later(
         assert time_to_pass(one, x, y) > time
     # Far enough off nobody can, so that it tells something.
     assert cannot_pass_by(one, 40.0, 0.0, time)
+
+
+@given(st.floats(1.4, LONGEST_CHIP))
+@settings(deadline=None)
+def test_a_chipped_pass_rolls_at_its_target(length: float) -> None:
+    speed = chip_speed(length)
+    assert speed == pytest.approx(DEFAULT_CHIP.kick_speed(length, CHIP_TOUCH_DOWNS))
+    time, way = DEFAULT_CHIP.touch_downs(speed)[-1]
+    assert way == pytest.approx(length, rel=0.05)
+    assert chip_time(length) == pytest.approx(time, rel=0.1)
+
+
+def chipped(opponent: tuple[float, float]) -> float:
+    return chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, movers([robot(*opponent)]), NOBODY, -1)
+
+
+def test_a_chip_flies_over_whoever_stands_in_the_lane() -> None:
+    assert chance((0.8, 0.0)) < 0.1
+    assert chipped((0.8, 0.0)) > 0.5
+
+
+@pytest.mark.parametrize("opponent", [(0.12, 0.0), (0.25, 0.1), (2.2, 0.0), (3.0, 0.0)])
+def test_a_chip_is_stopped_where_it_rises_and_where_it_comes_down(opponent: tuple[float, float]) -> None:
+    assert chipped(opponent) < 0.1
+
+
+def test_a_mate_where_a_chip_comes_down_blocks_it_unless_it_is_the_receiver() -> None:
+    mates = movers([robot(2.5, 0.0)])
+    blocked = chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, -1)
+    assert blocked < 0.2 < chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, 0)

@@ -25,6 +25,16 @@ def test_with_the_ball_it_is_done() -> None:
     assert Alone(ReceivePass()).tick(frame(me, held(me), game=OPEN)) is Status.FAILURE
 
 
+def test_a_ball_in_the_air_is_not_sent_on_with_one_touch() -> None:
+    # It comes from the wing; the goal is empty.
+    ball = (4.2, 1.4, -1.9, -1.9)
+    for height, hint in ((0.0, "sending it on"), (0.2, "taking the ball")):
+        alone = Alone(ReceivePass())
+        view = frame(robot(2.9, 0.1, heading=0.8), (*ball, height), game=OPEN)
+        assert alone.tick(view) is Status.RUNNING
+        assert alone.tree.feedback_message == hint
+
+
 @pytest.mark.parametrize("y", [-0.2, 0.0, 0.3])
 def test_a_ball_that_comes_from_the_front_is_taken(y: float) -> None:
     # It comes out of the direction of the own goal: too far round for a shot with one touch.
