@@ -7,10 +7,12 @@ import os
 import pickle
 import shutil
 import tempfile
+import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import Any, Self
 from urllib.parse import parse_qsl
@@ -23,6 +25,9 @@ from robobt.engines.work import ReportT, ResultT, TaskT, Work
 
 _ATTEMPTS = 4
 """How often a task is tried whose worker or node is lost: it may be the task itself that ends it."""
+
+_LONG, _MOST = 1.0, 32
+"""Short tasks are sent together: for so long, as far as is known [s], and no more than so many."""
 
 _POLL = 0.5
 """How long a result is waited for at a time: reports and signals are looked at in between [s]."""
@@ -108,14 +113,19 @@ class RayEngine:
             reports = Queue()
         waiting = iter(tasks)
         again: deque[tuple[TaskT, int]] = deque()
-        flying: dict[Any, tuple[TaskT, int]] = {}
+        flying: dict[Any, tuple[list[TaskT], int]] = {}
+        size = 1
         try:
             while True:
                 while len(flying) < workers:
-                    held = again.popleft() if again else next(((task, 1) for task in waiting), None)
-                    if held is None:
+                    if again:
+                        task, attempt = again.popleft()
+                        batch = [task]
+                    else:
+                        batch, attempt = list(islice(waiting, size)), 1
+                    if not batch:
                         break
-                    flying[do.remote(key, shared, held[0], reports)] = held
+                    flying[do.remote(key, shared, batch, reports)] = batch, attempt
                 if not flying:
                     break
                 ready, _ = ray.wait(list(flying), num_returns=1, timeout=_POLL)
@@ -123,24 +133,27 @@ class RayEngine:
                     for report in reports.get_nowait_batch(reports.size()):
                         on_report(report)
                 for reference in ready:
-                    task, attempt = flying.pop(reference)
+                    batch, attempt = flying.pop(reference)
                     try:
-                        kind, content = ray.get(reference)
+                        answers, seconds = ray.get(reference)
                     except ray.exceptions.RayError as error:
-                        if attempt < _ATTEMPTS:
-                            again.append((task, attempt + 1))
+                        if len(batch) > 1 or attempt < _ATTEMPTS:
+                            # One by one, so that a task that ends its worker harms no other.
+                            again.extend([(task, attempt + (len(batch) == 1)) for task in batch])
                             continue
                         died = f"lost {attempt} times: {one_line(str(error), 200)}"
                         if lost is None:
-                            raise work.error(f"{work.noun} {task}: {died}") from error
-                        yield lost(task, died)
+                            raise work.error(f"{work.noun} {batch[0]}: {died}") from error
+                        yield lost(batch[0], died)
                         continue
-                    if kind == "result":
-                        yield content
-                    elif kind == "raised":
-                        raise content
-                    else:
-                        raise work.error(f"a worker of the cluster cannot begin: {content}")
+                    size = max(1, min(_MOST, int(_LONG * len(batch) / max(seconds, 1e-6))))
+                    for kind, content in answers:
+                        if kind == "result":
+                            yield content
+                        elif kind == "raised":
+                            raise content
+                        else:
+                            raise work.error(f"a worker of the cluster cannot begin: {content}")
         finally:
             with suppress(Exception):
                 for reference in flying:
@@ -168,8 +181,13 @@ _works: dict[bytes, Work[Any, Any, Any]] = {}
 """What this worker knows how to do: a worker does many tasks of the same work."""
 
 
-def _do(key: bytes, packed: bytes, task: object, reports: Any) -> tuple[str, object]:
-    """Do one task in a worker of the cluster; exceptions are returned, for Ray would wrap them."""
+def _do(
+    key: bytes, packed: bytes, tasks: list[object], reports: Any
+) -> tuple[list[tuple[str, object]], float]:
+    """Do tasks in a worker of the cluster, and tell how long they took [s].
+
+    Exceptions are returned, for Ray would wrap them; one ends the batch.
+    """
     if key not in _works:
         tell_warnings()
         try:
@@ -178,13 +196,17 @@ def _do(key: bytes, packed: bytes, task: object, reports: Any) -> tuple[str, obj
                 setup()
             _works[key] = pickle.loads(work)
         except Exception as error:
-            return "unknown", f"{type(error).__name__}: {error}"
+            return [("unknown", f"{type(error).__name__}: {error}")], 0.0
     report = _ignore if reports is None else reports.put
-    try:
-        return "result", _works[key].attempt(task, report)
-    except Exception as error:
-        error.add_note(f"in a worker of the cluster:\n{traceback.format_exc()}")
-        return "raised", error
+    begun, answers = time.perf_counter(), []
+    for task in tasks:
+        try:
+            answers.append(("result", _works[key].attempt(task, report)))
+        except Exception as error:
+            error.add_note(f"in a worker of the cluster:\n{traceback.format_exc()}")
+            answers.append(("raised", error))
+            break
+    return answers, time.perf_counter() - begun
 
 
 def _ignore(message: object) -> None:

@@ -16,6 +16,7 @@ from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball
 from robobt.plays.goalkeeper import fitted_goalkeeper as fitted_goalkeeper
 from robobt.plays.goalkeeper import goalkeeper as goalkeeper
 from robobt.plays.penalty_kick import penalty_kick as penalty_kick
+from robobt.plays.stand_still import stand_still as stand_still
 from robobt.plays.take_shot import take_shot as take_shot
 from robobt.plays.team import defender as defender
 from robobt.plays.team import field_player as field_player

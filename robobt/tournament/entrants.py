@@ -7,13 +7,15 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError
+from robobt.config.errors import ConfigError, FieldError
 from robobt.config.resources import bundled_scenarios
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
+from robobt.league.programs.world import Program
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.plays import PLAYS
@@ -41,12 +43,15 @@ class EntrantFile(Settings):
 
     entrant: str = Field(min_length=1, max_length=80, description="what it is called")
     players: tuple[Part, ...] = Field(
-        min_length=1,
+        (),
         max_length=11,
         strict=False,
         description="the field players in the scenario's order; the last one is also all that follow",
     )
     goalkeeper: Part | None = Field(None, description="the goalkeeper; by default the scenario's")
+    program: Program | None = Field(
+        None, description="instead of players: a program that commands the robots over the league's protocols"
+    )
     imports: tuple[str, ...] = Field(
         (), strict=False, description="Python files beside this one, for the plays and skills they register"
     )
@@ -57,6 +62,14 @@ class EntrantFile(Settings):
         if not name.isprintable() or name != name.strip():
             raise ValueError("a name has to be printable, on one line, without blanks around it")
         return name
+
+    @model_validator(mode="after")
+    def _plays(self) -> Self:
+        if self.program is None and not self.players:
+            raise FieldError("players", "is missing, and there is no program either")
+        if self.program is not None and (self.players or self.goalkeeper):
+            raise FieldError("program", "plays all robots: leave players and goalkeeper out")
+        return self
 
 
 @dataclass(slots=True, frozen=True)
@@ -69,6 +82,7 @@ class Entrant:
         players: what the field players play, in the scenario's order; the last is also all that follow.
         goalkeeper: what the goalkeeper plays; None for what blue's plays in the scenario.
         imports: Python files that its plays and skills come from.
+        program: the program that commands its robots; None where they play trees.
     """
 
     name: str
@@ -76,6 +90,7 @@ class Entrant:
     players: tuple[Part, ...]
     goalkeeper: Part | None = None
     imports: tuple[Path, ...] = ()
+    program: Program | None = None
 
     def error(self, problem: str, field: str = "") -> EntrantError:
         """Make an error about this entrant."""
@@ -84,7 +99,7 @@ class Entrant:
     def digest(self) -> str:
         """Hash what it plays, files by their contents: an edited tree is another team."""
         parts = [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
-        says = [None if part is None else part.model_dump() for part in (*self.players, self.goalkeeper)]
+        says = [part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)]
         digest = hashlib.blake2b(json.dumps(says, sort_keys=True).encode(), digest_size=16)
         trees = [Path(part.play) for part in parts if is_play_file(part.play)]
         for path in (*trees, *self.imports):
@@ -172,6 +187,9 @@ def _from_file(path: Path, data: dict[str, object]) -> Entrant:
 
     players = tuple([beside(part, f"players.{number}") for number, part in enumerate(read.players)])
     goalkeeper = None if read.goalkeeper is None else beside(read.goalkeeper, "goalkeeper")
+    if read.program is not None:
+        still = Part(play="stand_still")
+        return Entrant(read.entrant, str(path), (still,), still, tuple(imports), read.program)
     return Entrant(read.entrant, str(path), players, goalkeeper, tuple(imports))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,17 +13,18 @@ from typing import Self
 
 import robobt
 from robobt.config.errors import one_line
+from robobt.league.programs.world import ForfeitError, ProgramWorld
 from robobt.match.loop import Match
 from robobt.match.runner import trial_seed
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
 from robobt.plays.python_files import import_files, imported_files
-from robobt.tournament.entrants import Part, meeting
+from robobt.tournament.entrants import Entrant, Part, meeting
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.guard import guarded, noted
 from robobt.tournament.plan import Plan
 from robobt.tournament.played import FORFEITS, PlayedMatch, SideResult
-from robobt.tournament.recordings import Recordings
+from robobt.tournament.recordings import Recordings, file_name
 from robobt.world.game import Team
 
 
@@ -53,28 +55,48 @@ class Job:
 
     plan: Plan
     notes: Path
+    outputs: Path
     recordings: Recordings | None
     plays: tuple[Play, ...]
     code: str
 
     @classmethod
-    def of(cls, plan: Plan, notes: Path, recordings: Recordings | None) -> Self:
-        """Return the job of a plan; notes on who is deciding are left in a folder."""
+    def of(cls, plan: Plan, notes: Path, outputs: Path, recordings: Recordings | None) -> Self:
+        """Return the job of a plan.
+
+        Args:
+            plan: what is played.
+            notes: folder for notes on who is deciding.
+            outputs: folder for what programs print.
+            recordings: which matches are recorded.
+        """
         plays = tuple({PLAYS[part.play] for part in _parts(plan) if part.play in PLAYS})
-        return cls(plan, notes, recordings, plays, code_digest())
+        return cls(plan, notes, outputs, recordings, plays, code_digest())
 
     def play(self, fixture: Fixture, _report: object) -> PlayedMatch | Failure:
         """Play a match."""
-        plan, sides = self.plan, {entrant.name: entrant for entrant in self.plan.entrants}
+        plan, sides = self.plan, self._sides(fixture)
         record = None if self.recordings is None else self.recordings.path(fixture)
+        programs = {team: one.program for team, one in sides.items() if one.program is not None}
         try:
-            scenario = meeting(plan.scenario, sides[fixture.blue], sides[fixture.yellow])
+            scenario = meeting(plan.scenario, sides[Team.BLUE], sides[Team.YELLOW])
             seed = trial_seed(plan.seed, fixture.round)
-            match = Match(scenario, seed, plan.world, record, fixture.round, plan.referee)
-            with guarded(match, self._note(fixture), plan.silence):
-                result = match.play()
+            with ExitStack() as opened:
+                world = plan.world(scenario)
+                if programs:
+                    folder = self.outputs / file_name(fixture)
+                    folder.mkdir(parents=True, exist_ok=True)
+                    places = {team: Path(sides[team].source).parent for team in programs}
+                    world = opened.enter_context(
+                        ProgramWorld(world, scenario, programs, places, folder, plan.speed)
+                    )
+                match = Match(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
+                with guarded(match, self._note(fixture), plan.silence):
+                    result = match.play()
         except OSError:
             raise
+        except ForfeitError as error:
+            return self._forfeit(fixture, error.team, str(error))
         except Exception as error:
             return Failure(fixture, one_line(f"{type(error).__name__}: {error}"))
         return PlayedMatch.of_result(fixture, result, self.code, _now())
@@ -84,11 +106,19 @@ class Job:
         culprit = noted(self._note(fixture))
         if culprit is None:
             return Failure(fixture, problem)
-        said = f"{fixture.blue if culprit is Team.BLUE else fixture.yellow}: {problem}"
+        return self._forfeit(fixture, culprit, problem)
+
+    def _sides(self, fixture: Fixture) -> dict[Team, Entrant]:
+        by_name = {entrant.name: entrant for entrant in self.plan.entrants}
+        return {Team.BLUE: by_name[fixture.blue], Team.YELLOW: by_name[fixture.yellow]}
+
+    def _forfeit(self, fixture: Fixture, loser: Team, problem: str) -> PlayedMatch:
+        """Return a match that a team has lost by rule."""
+        said = f"{fixture.blue if loser is Team.BLUE else fixture.yellow}: {problem}"
         return PlayedMatch(
             *fixture,
             seed=trial_seed(self.plan.seed, fixture.round),
-            outcome=FORFEITS[culprit],
+            outcome=FORFEITS[loser],
             time=0.0,
             blue_score=0,
             yellow_score=0,
@@ -97,7 +127,7 @@ class Job:
             trace="",
             code=self.code,
             finished=_now(),
-            sides={team.value: SideResult(first_error=said if team is culprit else None) for team in Team},
+            sides={team.value: SideResult(first_error=said if team is loser else None) for team in Team},
         )
 
     def _note(self, fixture: Fixture) -> Path:

@@ -35,6 +35,7 @@ class Plan:
         referee: makes the referee of a match.
         silence: how long a match may stand still before it is given up [s].
         world: makes the world of a match.
+        speed: simulated time over real time, for matches with programs; others are as fast as they are.
 
     Raises:
         TournamentError: two entrants have one name, there is none to meet, or nobody by the name.
@@ -49,6 +50,7 @@ class Plan:
     referee: RefereeFactory = own_referee
     silence: float = SILENCE
     world: WorldFactory = sim_world
+    speed: float = 1.0
 
     def __post_init__(self) -> None:
         names = self.names

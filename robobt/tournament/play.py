@@ -76,7 +76,7 @@ def play(
     driver = _Driver(plan, store, recordings, on_match, enough)
     interrupted = False
     with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
-        works = job.of(plan, Path(notes), recordings)
+        works = job.of(plan, Path(notes), store.path.with_suffix(".output"), recordings)
         try:
             while missing := driver.missing():
                 tasks = run_tasks(

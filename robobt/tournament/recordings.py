@@ -41,11 +41,11 @@ class Recordings:
 
     def path(self, fixture: Fixture) -> Path:
         """Return where a match is recorded."""
-        return self.folder / f"{_name(fixture)}{ENDING}"
+        return self.folder / f"{file_name(fixture)}{ENDING}"
 
     def page(self, fixture: Fixture) -> Path:
         """Return where the page of a recorded match is."""
-        return self.folder / f"{_name(fixture)}.html"
+        return self.folder / f"{file_name(fixture)}.html"
 
     def there(self, fixture: Fixture) -> bool:
         """Return whether there is a recording of a match."""
@@ -73,7 +73,7 @@ class Recordings:
         return match.score(self.first), match.lead(self.first), match.round, match.blue != self.first
 
 
-def _name(fixture: Fixture) -> str:
+def file_name(fixture: Fixture) -> str:
     """Return a name of printable characters, not too long for a folder, that no other match has."""
     digest = hashlib.blake2b(repr(fixture).encode(), digest_size=4).hexdigest()
     sides = [re.sub(r"[^A-Za-z0-9.-]+", "_", name)[:50].strip("_.") for name in fixture[:2]]

@@ -41,14 +41,14 @@ def played(
     )
 
 
-def drill(**changes: Any) -> Scenario:
+def drill(seconds: float = 3.0, **changes: Any) -> Scenario:
     """Two robots run to a ball somewhere in the middle and kick it."""
     robot = {"number": 0, "play": "scripted", "start": {"position": [-2.0, 0.0], "heading": 0.0}}
     return scenario_from(
         data(
             robots={"blue": [robot], "yellow": [robot]},
             ball={"position": {"center": [0.0, 0.0], "radius": 1.0}},
-            ends={"time_limit": 3.0},
+            ends={"time_limit": seconds},
             **changes,
         ),
         "drill.yaml",

@@ -40,7 +40,7 @@ def print_standings(found: Standings) -> None:
     console.print(team_figures({name: one.figures for name, one in found.standings.items()}, "a match"))
     for name, one in found.standings.items():
         if one.forfeits:
-            warn(f"{name}: lost {one.forfeits} matches by rule: its play crashed or hung; {one.first_error}")
+            warn(f"{name}: lost {one.forfeits} matches by rule; the first: {one.first_error}")
         if one.errors:
             warn(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
 

@@ -125,6 +125,10 @@ def tournament(
             help="Worker processes; by default one a core. 0 plays in the command's own process.",
         ),
     ] = None,
+    speed: Annotated[
+        float,
+        typer.Option(min=0.05, max=20.0, help="Simulated time over real time in matches with programs."),
+    ] = 1.0,
     settings: Set = None,
     imports: Imports = None,
     referee: RefereeOption = None,
@@ -171,6 +175,7 @@ def tournament(
         base.seed if seed is None else seed,
         None if against is None else teams[texts.index(against)].name,
         referees,
+        speed=speed,
     )
     test = None if sprt is None else _running_test(plan, sprt, alpha, beta)
     recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
@@ -181,7 +186,7 @@ def tournament(
             played = play(
                 plan,
                 store,
-                min(cores(), count) if workers is None else workers,
+                _workers(plan) if workers is None else workers,
                 recordings=recordings,
                 on_match=lambda _: progress.advance(),
                 enough=None if test is None else test.enough,
@@ -225,6 +230,15 @@ def tournament(
         raise typer.Exit(_EXITS.index(test.verdict.value))
     if played.failed:
         raise typer.Exit(1)
+
+
+def _workers(plan: Plan) -> int:
+    """Return how many matches are played at a time: one a core, but with a core for each program."""
+    most = max(
+        1 + sum(entrant.program is not None for entrant in plan.entrants if entrant.name in pair)
+        for pair in plan.pairings
+    )
+    return min(max(1, cores() // most), len(plan.fixtures()))
 
 
 def _check_sprt(entrants: list[str], against: str | None, sprt: tuple[float, float] | None) -> None:

@@ -1,0 +1,1 @@
+"""Other teams' programs in our matches: started, served, watched and ended."""

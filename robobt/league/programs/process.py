@@ -1,0 +1,147 @@
+"""A team's program as a child process that ends with its match, with all it has started."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Self
+from uuid import uuid4
+
+from robobt.config.errors import one_line
+from robobt.signals import uninterrupted
+
+MOST_OUTPUT = 1 << 20
+"""How much of a program's output is kept [bytes]; the rest is read and dropped."""
+
+_MARK = "ROBOBT_PROGRAM"
+"""Environment variable that everything a program starts inherits."""
+
+_WORDS = 0.5
+"""How long the last words of a program that has ended are waited for [s]."""
+
+_GONE = 10.0
+"""How long the system may take to end what was killed [s]."""
+
+_GUARD = r"""
+exec 3<&0 </dev/null
+env "$0" "$@" 3<&- & child=$!
+{
+  read -r _ <&3
+  kill -TERM "$child"; sleep 0.3
+  for again in 1 2 3; do
+    for file in $(grep -lzxF -e "$0" /proc/[0-9]*/environ); do
+      file=${file#/proc/}; kill -KILL "${file%/environ}"
+    done
+  done
+  kill -KILL 0
+} 2>/dev/null &
+wait "$child" 2>/dev/null
+"""
+"""A shell that ends with the program, and ends it once its own input ends, however this process does.
+
+It leads a group of processes, all of which it kills, and before that whatever bears the mark, ``$0``, in its
+environment: a program's children may have left the group.
+"""
+
+
+class TeamProcess:
+    """A running program. A context manager, at whose end it and all its children are gone.
+
+    Args:
+        command: program and arguments.
+        folder: where it runs.
+        output: file for the beginning of what it prints.
+
+    Raises:
+        OSError: it cannot be started.
+    """
+
+    def __init__(self, command: Sequence[str], folder: Path, output: Path) -> None:
+        if (
+            shutil.which(command[0], path=os.environ.get("PATH")) is None
+            and not (folder / command[0]).is_file()
+        ):
+            raise FileNotFoundError(errno.ENOENT, "there is no such program", command[0])
+        self._mark = f"{_MARK}={uuid4().hex}"
+        self._output = output
+        with uninterrupted:
+            self._process = subprocess.Popen(
+                ["/bin/sh", "-c", _GUARD, self._mark, *command],
+                cwd=folder,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                # Ctrl-C in a terminal is for this process; the group is ended as a whole.
+                start_new_session=True,
+            )
+        assert self._process.stdout is not None
+        self._reader = threading.Thread(target=_keep, args=(self._process.stdout, output), daemon=True)
+        self._reader.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def ended(self) -> str | None:
+        """Return how it ended, with its last words; None while it runs."""
+        code = self._process.poll()
+        if code is None:
+            return None
+        how = f"was ended by signal {code - 128}" if code > 128 else f"ended with exit code {code}"
+        self._reader.join(_WORDS)
+        words = self._output.read_text(errors="replace").split("\n") if self._output.exists() else []
+        last = next((line for line in reversed(words) if line.strip()), "")
+        return f"its program {how}{f': {one_line(last, 200)}' if last else ''}"
+
+    def close(self) -> None:
+        """End it and everything it has started, by force where it does not react."""
+        with uninterrupted:
+            assert self._process.stdin is not None
+            with suppress(OSError):
+                self._process.stdin.close()
+            end = time.monotonic() + _GONE
+            while (self._group() or self._marked()) and time.monotonic() < end:
+                time.sleep(0.02)
+                self._process.poll()
+            self._process.wait()
+            self._reader.join(_WORDS)
+
+    def _group(self) -> bool:
+        """Return whether a process of the group is left."""
+        try:
+            os.killpg(self._process.pid, 0)
+        except OSError:
+            return False
+        return True
+
+    def _marked(self) -> list[int]:
+        """Return the processes that bear this program's mark; none where there is no /proc."""
+        if not sys.platform.startswith("linux"):
+            return []
+        mark, found = self._mark.encode(), []
+        for folder in Path("/proc").iterdir():
+            if not folder.name.isdigit() or int(folder.name) == os.getpid():
+                continue
+            with suppress(OSError):
+                if mark in (folder / "environ").read_bytes().split(b"\0"):
+                    found.append(int(folder.name))
+        return found
+
+
+def _keep(source: IO[bytes], path: Path) -> None:
+    """Keep the beginning of what a program prints; read all of it, so that it is never held up."""
+    left = MOST_OUTPUT
+    with suppress(OSError, ValueError), source, path.open("wb", buffering=0) as file:
+        while data := source.read1(1 << 16):  # type: ignore[attr-defined]
+            file.write(data[:left])
+            left -= len(data[:left])

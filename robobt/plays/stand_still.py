@@ -1,0 +1,13 @@
+"""A robot that stands still: somebody else drives it, or nobody."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS
+from robobt.skills.stop import Stop
+from robobt.tree import Behaviour
+
+
+@PLAYS.register("stand_still")
+def stand_still() -> Behaviour:
+    """Stand still."""
+    return Stop()

@@ -1,0 +1,76 @@
+"""Every match has ports of its own, and a team commands its own robots only."""
+
+from __future__ import annotations
+
+import select
+import socket
+
+import pytest
+
+from robobt.league.programs.ports import MatchPorts
+from robobt.league.wire.grsim import write_grsim
+from robobt.league.wire.messages import RobotControlResponse
+from robobt.league.wire.simulation import write_control
+from robobt.league.wire.sockets import Receiver
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.game import Team
+from robobt.world.state import BallState, Frame, RobotId, RobotState
+
+BLUE = RobotId(Team.BLUE, 0)
+TRUTH = Frame(0.0, DIVISION_B, BallState(0.0, 0.0), (RobotState(0, 0.0, 0.0, ball_contact=True),), ())
+
+
+def send(port: str, *packets: bytes) -> socket.socket:
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    for packet in packets:
+        sock.sendto(packet, ("127.0.0.1", int(port)))
+    return sock
+
+
+def test_no_two_matches_share_a_port() -> None:
+    with MatchPorts(Team) as one, MatchPorts(Team) as other:
+        addresses = [ports.addresses(team) for ports in (one, other) for team in Team]
+        own = [value for each in addresses for name, value in each.items() if name in ("grsim", "protocol")]
+        assert len(set(own)) == len(own) == 8
+        for name in ("vision", "tracker", "referee"):
+            assert len({each[name] for each in addresses}) == 2
+
+
+def test_what_is_sent_reaches_the_own_match_only() -> None:
+    with MatchPorts(Team) as one, MatchPorts(Team) as other:
+        places = [ports.addresses(Team.BLUE)["vision"].split(":") for ports in (one, other)]
+        with (
+            Receiver(places[0][0], int(places[0][1])) as near,
+            Receiver(places[1][0], int(places[1][1])) as far,
+        ):
+            one.senders["vision"].send(b"seen")
+            assert select.select([near], [], [], 5.0)[0]
+            assert [packet.data for packet in near.receive()] == [b"seen"]
+            assert list(far.receive()) == []
+
+
+def test_a_team_commands_by_either_protocol() -> None:
+    with MatchPorts([Team.BLUE]) as ports:
+        addresses = ports.addresses(Team.BLUE)
+        with send(addresses["grsim"], write_grsim(Team.BLUE, {0: RobotCommand(vx=1.0)}, 0.0)):
+            assert ports.commands(TRUTH)[Team.BLUE][BLUE].vx == 1.0
+        with send(addresses["protocol"], write_control({0: RobotCommand(vx=0.5)})) as sock:
+            assert ports.commands(TRUTH)[Team.BLUE][BLUE].vx == 0.5
+            sock.settimeout(5.0)
+            answer = RobotControlResponse.FromString(sock.recv(2048))
+        assert [(feedback.id, feedback.dribbler_ball_contact) for feedback in answer.feedback] == [(0, True)]
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [
+        write_grsim(Team.YELLOW, {0: RobotCommand(vx=1.0)}, 0.0),
+        write_grsim(Team.BLUE, {0: RobotCommand(vx=float("nan"))}, 0.0),
+        b"",
+        b"no packet at all",
+    ],
+)
+def test_what_is_not_for_its_own_robots_is_dropped(packet: bytes) -> None:
+    with MatchPorts([Team.BLUE]) as ports, send(ports.addresses(Team.BLUE)["grsim"], packet):
+        assert not ports.commands(TRUTH).get(Team.BLUE)

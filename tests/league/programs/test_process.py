@@ -1,0 +1,97 @@
+"""A team's program ends with its match, and so does all it has started."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="needs /proc"),
+]
+
+ESCAPES = (
+    "import signal, subprocess, sys, time\n"
+    "signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
+    "child = 'import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)'\n"
+    "print(subprocess.Popen([sys.executable, '-S', '-c', child], start_new_session=True).pid, flush=True)\n"
+    "time.sleep(600)\n"
+)
+
+
+def wait_for_words(path: Path) -> str:
+    end = time.monotonic() + 20.0
+    while time.monotonic() < end:
+        if path.exists() and (words := path.read_text()).endswith("\n"):
+            return words
+        time.sleep(0.01)
+    raise AssertionError("it says nothing")
+
+
+def runs(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def test_children_that_ignore_signals_and_left_the_group_are_ended_too(tmp_path: Path) -> None:
+    output = tmp_path / "out.txt"
+    with TeamProcess([sys.executable, "-S", "-c", ESCAPES], tmp_path, output) as program:
+        child = int(wait_for_words(output))
+        assert runs(child)
+        assert program.ended() is None
+    assert not runs(child)
+
+
+def test_nothing_is_left_when_the_match_is_killed(tmp_path: Path) -> None:
+    output = tmp_path / "out.txt"
+    match = (
+        "import sys, time; from pathlib import Path\n"
+        "from robobt.league.programs.process import TeamProcess\n"
+        f"folder, output = Path({str(tmp_path)!r}), Path({str(output)!r})\n"
+        f"TeamProcess([sys.executable, '-S', '-c', {ESCAPES!r}], folder, output)\n"
+        "time.sleep(600)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", match]) as process:
+        child = int(wait_for_words(output))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    end = time.monotonic() + 10.0
+    while runs(child) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not runs(child)
+
+
+def test_how_it_ended_is_told_with_its_last_words(tmp_path: Path) -> None:
+    ends = {"print('bye'); raise SystemExit(3)": "ended with exit code 3: bye"}
+    ends["import os; os.kill(os.getpid(), 9)"] = "was ended by signal 9"
+    for code, told in ends.items():
+        with TeamProcess([sys.executable, "-S", "-c", code], tmp_path, tmp_path / "out.txt") as program:
+            end = time.monotonic() + 20.0
+            while program.ended() is None and time.monotonic() < end:
+                time.sleep(0.01)
+            assert program.ended() == f"its program {told}"
+
+
+def test_only_the_beginning_of_its_output_is_kept(tmp_path: Path) -> None:
+    output = tmp_path / "out.txt"
+    shout = "import os\nfor _ in range(200): os.write(1, b'x' * (1 << 20))\n"
+    with TeamProcess([sys.executable, "-S", "-c", shout], tmp_path, output) as program:
+        end = time.monotonic() + 30.0
+        while program.ended() is None and time.monotonic() < end:
+            time.sleep(0.01)
+    assert output.stat().st_size == MOST_OUTPUT
+
+
+def test_a_program_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="there is no such program"):
+        TeamProcess(["no-such-program"], tmp_path, tmp_path / "out.txt")

@@ -1,0 +1,131 @@
+"""Programs as entrants: served, watched, and ended; who misbehaves has lost by rule."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.match.recording import load_recording
+from robobt.tournament.entrants import Entrant, EntrantError, read_entrant
+from robobt.tournament.play import Played, play
+from robobt.tournament.recordings import Keep, Recordings
+from robobt.world.game import Team
+from tests.tournament.made_up import drill, plan, runner
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs /proc"),
+]
+
+CLIENT = Path(__file__).parent.parent / "league" / "programs" / "client.py"
+ROOT = Path(__file__).parent.parent.parent
+
+FILE = """
+entrant: {name}
+program:
+  command: [env, "PYTHONPATH={root}", {python}, {client}, {name}, "{{team}}", "{{grsim}}"]
+  ready_within: {ready}
+  silent_for: 3.0
+"""
+
+
+def program(folder: Path, name: str, ready: float = 30.0) -> Entrant:
+    file = folder / f"{name}.yaml"
+    file.write_text(FILE.format(name=name, root=ROOT, python=sys.executable, client=CLIENT, ready=ready))
+    return read_entrant(str(file))
+
+
+def run(tmp_path: Path, *teams: Entrant, workers: int = 0, seconds: float = 3.0, **options: Any) -> Played:
+    given = {"scenario": drill(seconds), "entrants": (runner(0.0), *teams), "against": "at 0"}
+    what = plan(1, **given, speed=3.0)
+    with what.open_store(tmp_path / "night.sqlite") as store:
+        return play(what, store, workers, **options)
+
+
+def left(*names: str) -> list[str]:
+    """Clients that still run."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        with suppress(OSError):
+            words = (folder / "cmdline").read_text().split("\0")
+            found += [name for name in names if str(CLIENT) in words and name in words]
+    return found
+
+
+def test_a_program_drives_its_robots_from_either_side(tmp_path: Path) -> None:
+    recordings = Recordings(tmp_path / "recordings", Keep.ALL, "at 0")
+    found = run(tmp_path, program(tmp_path, "drives"), recordings=recordings)
+    assert [(match.outcome, round(match.time, 1)) for match in found.matches] == [("time", 3.0)] * 2
+    for match in found.matches:
+        recording = load_recording(recordings.path(match.fixture))
+        start, end = recording.frame(0), recording.frame(len(recording) - 1)
+        side, other = (Team.BLUE, Team.YELLOW) if match.blue == "drives" else (Team.YELLOW, Team.BLUE)
+        # Ahead at 1 m/s, from when its first command is there; the other one stands still.
+        before, after = (frame.seen_by(side).own[0].x for frame in (start, end))
+        assert 1.5 < after - before <= 3.0
+        assert start.seen_by(other).own[0].position == end.seen_by(other).own[0].position
+    assert {path.read_text() for path in (tmp_path / "night.output").glob("*/*.txt")} == {"ready\n"}
+    assert not left("drives")
+
+
+@pytest.mark.slow
+def test_programs_side_by_side_never_meet(tmp_path: Path) -> None:
+    teams = [program(tmp_path, name) for name in ("drives", "floods")]
+    what = plan(2, entrants=tuple(teams), speed=3.0)
+    with what.open_store(tmp_path / "night.sqlite") as store:
+        found = play(what, store, 2)
+    assert [match.forfeited_by for match in found.matches] == [None] * 4
+    assert not left("drives", "floods")
+
+
+@pytest.mark.slow
+def test_who_misbehaves_has_lost_and_nothing_is_left(tmp_path: Path) -> None:
+    bad = {
+        "exits": "its program ended with exit code 1: nothing to do here",
+        "crashes": "its program ended with exit code 1: RuntimeError: on purpose",
+        "mute": "its program did not command a robot within 8 s",
+        "nan": "its program did not command a robot within 8 s",
+        "silent": "its program was silent for 3 s",
+    }
+    good = ("floods", "shouts", "stubborn")
+    teams = [program(tmp_path, name, 8.0) for name in (*bad, *good)]
+    found = run(tmp_path, *teams, workers=2, seconds=24.0)
+    assert not found.failed
+    for name, told in bad.items():
+        matches = [match for match in found.matches if name in match.fixture]
+        assert [match.forfeited_by for match in matches] == [name, name], name
+        assert {match.side(name).first_error for match in matches} == {f"{name}: {told}"}
+    for name in good:
+        matches = [match for match in found.matches if name in match.fixture]
+        assert [match.forfeited_by for match in matches] == [None, None], name
+    assert not left(*bad, *good)
+    assert sum(path.stat().st_size for path in (tmp_path / "night.output").glob("*/*")) < 10 << 20
+
+
+def test_a_program_that_is_not_there_has_lost(tmp_path: Path) -> None:
+    file = tmp_path / "gone.yaml"
+    file.write_text("entrant: gone\nprogram: {command: [./no-such-program]}\n")
+    found = run(tmp_path, read_entrant(str(file)))
+    assert [match.forfeited_by for match in found.matches] == ["gone", "gone"]
+    assert found.matches[0].side("gone").first_error == "gone: ./no-such-program: there is no such program"
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        ("program: {}\n", "program.command: is missing"),
+        ("program: {command: []}\n", "program.command"),
+        ("program: {command: [x], ready_within: 0}\n", "program.ready_within"),
+        ("program: {command: [x]}\nplayers: [{play: stand_still}]\n", "program: plays all robots"),
+        ("", "players: is missing, and there is no program either"),
+    ],
+)
+def test_a_wrong_file_is_told_by_its_field(content: str, problem: str, tmp_path: Path) -> None:
+    file = tmp_path / "team.yaml"
+    file.write_text(f"entrant: a\n{content}")
+    with pytest.raises(EntrantError, match=problem):
+        read_entrant(str(file))
