@@ -32,13 +32,20 @@ class Claims:
         os.close(self._file)
 
     def take(self, what: Hashable) -> bool:
-        """Claim something; False when another program has it."""
+        """Claim something; False when another program has it.
+
+        Raises:
+            OSError: the file system has no locks.
+        """
         if fcntl is None:
             return True
         try:
             fcntl.lockf(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _place(what))
-        except OSError:
+        except (BlockingIOError, PermissionError):
             return False
+        except OSError as error:
+            # Taken for another program's claim this would be waited for, for ever.
+            raise OSError(error.errno, f"cannot be locked: {error.strerror}", str(self._path)) from error
         return True
 
     def release(self, what: Hashable) -> None:

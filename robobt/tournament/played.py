@@ -71,6 +71,11 @@ class PlayedMatch:
         """Return who met whom in which round."""
         return Fixture(self.blue, self.yellow, self.round)
 
+    @property
+    def course(self) -> tuple[object, ...]:
+        """Return what two plays of the same match have in common; a forfeit has no trace."""
+        return self.trace, self.outcome, self.blue_score, self.yellow_score
+
     def side(self, name: str) -> SideResult:
         """Return the figures of one of the entrants."""
         return self.sides[(Team.BLUE if name == self.blue else Team.YELLOW).value]

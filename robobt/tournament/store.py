@@ -152,7 +152,7 @@ class Store:
             here = known.get(match.fixture)
             if here is None:
                 new.append(match)
-            elif here.trace != match.trace:
+            elif here.course != match.course:
                 raise StoreError(
                     other.path,
                     f"went another way than in {self.path}; was it played by other code?",
@@ -167,8 +167,10 @@ class Store:
         before = self._connection.total_changes
         names = ", ".join(COLUMNS)
         places = ", ".join([f":{name}" for name in COLUMNS])
+        # Not OR IGNORE, which would also pass over a row that is not whole.
         self._connection.executemany(
-            f"INSERT OR IGNORE INTO matches ({names}) VALUES ({places})", [match.row() for match in matches]
+            f"INSERT INTO matches ({names}) VALUES ({places}) ON CONFLICT (blue, yellow, round) DO NOTHING",
+            [match.row() for match in matches],
         )
         return self._connection.total_changes - before
 
@@ -188,6 +190,8 @@ class Store:
         # Waiting for the disk after each row would cost more than the rest of the driver.
         for tries in range(_TRIES):
             try:
+                # Looked at before: another program's database stays as it is, down to its journal.
+                self._is_new(played)
                 self._connection.execute("PRAGMA journal_mode = WAL")
                 break
             except sqlite3.OperationalError:
@@ -197,20 +201,30 @@ class Store:
                 time.sleep(_PATIENCE / _TRIES)
         self._connection.execute("PRAGMA synchronous = NORMAL")
         with self._writing():
-            tables = {row[0] for row in self._connection.execute("SELECT name FROM sqlite_master")}
-            if not tables and played is not None:
+            if played is not None and self._is_new(played):
                 for statement in filter(str.strip, _SCHEMA.split(";\n")):
                     self._connection.execute(f"{statement};")
                 says = {"format": FORMAT, **{name: str(value) for name, value in played.items()}}
                 self._connection.executemany("INSERT INTO tournament VALUES (?, ?)", says.items())
-            elif not {"tournament", "entrants", "matches"} <= tables:
-                raise StoreError(self.path, "is no store of a tournament; give another name")
             held = self._connection.execute("SELECT field, value FROM tournament ORDER BY rowid")
             self.played = {row[0]: row[1] for row in held}
+            columns = {row["name"] for row in self._connection.execute("PRAGMA table_info(matches)")}
         if self.played.get("format") != FORMAT:
             raise StoreError(self.path, f"is {self.played.get('format')!r}, not {FORMAT!r}", "format")
         if played is not None:
             self._check({name: str(value) for name, value in played.items()}, None)
+        if other := columns ^ {*COLUMNS}:
+            missing, unknown = sorted(other - columns), sorted(other & columns)
+            what = f"lacks {', '.join(missing)}" if missing else f"has {', '.join(unknown)} besides"
+            raise StoreError(self.path, f"{what}; read it with the version of robobt that made it", "matches")
+
+    def _is_new(self, played: Mapping[str, object] | None) -> bool:
+        """Return whether there is nothing in the file yet, and it may be made a store."""
+        tables = {row[0] for row in self._connection.execute("SELECT name FROM sqlite_master")}
+        new = not tables and played is not None
+        if not new and not {"tournament", "entrants", "matches"} <= tables:
+            raise StoreError(self.path, "is no store of a tournament; give another name")
+        return new
 
     def _check(self, played: Mapping[str, str], other: Path | None) -> None:
         for name, value in played.items():

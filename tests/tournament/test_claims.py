@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import subprocess
 import sys
 from pathlib import Path
@@ -49,3 +50,17 @@ def test_what_is_released_can_be_claimed_again(tmp_path: Path) -> None:
         assert claims.take("x")
         claims.release("x")
         assert claims.take("x")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such locks here")
+def test_a_folder_without_locks_is_an_error_and_no_claim(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def without_locks(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.lockf", without_locks)
+    told = pytest.raises(OSError, match="cannot be locked")
+    with Claims(tmp_path / "night.sqlite") as claims, told as raised:
+        claims.take("x")
+    assert raised.value.filename == str(tmp_path / ".night.sqlite.claims")

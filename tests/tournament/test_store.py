@@ -74,12 +74,37 @@ def test_a_file_that_is_no_store_stays_as_it_is(path: Path) -> None:
     assert path.read_bytes() == before
 
 
-def test_another_database_is_no_store(path: Path) -> None:
+def test_another_database_is_no_store_and_stays_as_it_is(path: Path) -> None:
     connection = sqlite3.connect(path)
     connection.execute("CREATE TABLE mine (x)")
     connection.close()
-    with pytest.raises(StoreError, match="is no store of a tournament"):
-        Store(path, PLAYED)
+    before = path.read_bytes()
+    for played_there in (PLAYED, None):
+        with pytest.raises(StoreError, match="is no store of a tournament"):
+            Store(path, played_there)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [("DROP COLUMN blue_passes", "lacks blue_passes"), ("ADD COLUMN more TEXT", "has more besides")],
+)
+def test_a_store_with_other_columns_is_told(path: Path, change: str, problem: str) -> None:
+    Store(path, PLAYED).close()
+    connection = sqlite3.connect(path)
+    connection.execute(f"ALTER TABLE matches {change}")
+    connection.close()
+    with pytest.raises(
+        StoreError, match=f"night.sqlite: matches: {problem}; read it with the version of robobt"
+    ):
+        Store(path)
+
+
+def test_a_figure_that_is_no_number_is_told_not_dropped(path: Path) -> None:
+    with Store(path, PLAYED) as store:
+        with pytest.raises(StoreError, match=r"NOT NULL constraint failed: matches\.blue_possession"):
+            store.add(played("a", "b", 0, possession=float("nan")))
+        assert store.matches() == []
 
 
 def test_what_is_not_there_is_not_made_to_be_looked_at(path: Path) -> None:
@@ -141,6 +166,13 @@ class TestMerge:
             with pytest.raises(StoreError, match="matches: a v b, round 0: went another way"):
                 store.merge(other)
             assert len(store.matches()) == 1
+
+    def test_a_match_that_the_other_side_has_forfeited_is_told(self, path: Path, tmp_path: Path) -> None:
+        with Store(path, PLAYED) as store, Store(tmp_path / "b", PLAYED) as other:
+            store.add(played("a", "b", 0, trace="", outcome="forfeit_blue"))
+            other.add(played("a", "b", 0, trace="", outcome="forfeit_yellow"))
+            with pytest.raises(StoreError, match="matches: a v b, round 0: went another way"):
+                store.merge(other)
 
 
 def test_what_may_differ_between_two_plays_are_columns() -> None:
