@@ -108,15 +108,10 @@ def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
 
     def run(*args: _P.args, **kwargs: _P.kwargs) -> None:
         try:
-            command(*args, **kwargs)
-            sys.stdout.flush()
+            with as_far_as_read():
+                command(*args, **kwargs)
         except (typer.Exit, typer.Abort, typer.BadParameter):
             raise
-        except BrokenPipeError as error:
-            # Who read our lines has enough, as head has. What is left goes nowhere.
-            with suppress(OSError, ValueError):
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            raise typer.Exit(0) from error
         except KeyboardInterrupt as error:
             errors.print("robobt: ended by SIGINT")
             raise typer.Exit(130) from error
@@ -130,6 +125,18 @@ def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
             raise typer.Exit(1) from error
 
     return guarded
+
+
+@contextmanager
+def as_far_as_read() -> Iterator[None]:
+    """End the block early, without an error, when who reads what it prints has enough, as ``head`` has."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # What is left goes nowhere.
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _error_text(error: Exception) -> str:
@@ -220,8 +227,9 @@ def say(text: str) -> None:
 
 
 def warn(text: str) -> None:
-    """Print a line on stderr."""
-    errors.print(f"[yellow]robobt:[/yellow] {escape(text)}", soft_wrap=True)
+    """Print a line on stderr, or to nobody where that is no longer read."""
+    with suppress(BrokenPipeError):
+        errors.print(f"[yellow]robobt:[/yellow] {escape(text)}", soft_wrap=True)
 
 
 def print_json(data: Mapping[str, object]) -> None:

@@ -32,6 +32,9 @@ _UNSEEN = 1e-3
 
 _BISECTIONS = 60
 
+_MOST_ELO = 1000.0
+"""Strengths that can be told from never losing, or never winning, a match at all: a score of 99.7 % [Elo]."""
+
 
 class Verdict(StrEnum):
     """What a sequential test says."""
@@ -47,7 +50,7 @@ class SequentialTest:
 
     Attributes:
         elo0: of who is not better, in Elo points of single matches.
-        elo1: of who is better; above ``elo0``.
+        elo1: of who is better; above ``elo0``, both within ±1000.
         alpha: how often at most "better" may be said of a difference of ``elo0`` or less.
         beta: how often at most "not better" may be said of a difference of ``elo1`` or more.
     """
@@ -58,8 +61,10 @@ class SequentialTest:
     beta: float = 0.05
 
     def __post_init__(self) -> None:
-        if not self.elo0 < self.elo1:
-            raise ValueError(f"elo0 must be below elo1, not {self.elo0:g} and {self.elo1:g}")
+        if not -_MOST_ELO <= self.elo0 < self.elo1 <= _MOST_ELO:
+            raise ValueError(
+                f"elo0 must be below elo1, both within ±{_MOST_ELO:g}, not {self.elo0:g} and {self.elo1:g}"
+            )
         for name in ("alpha", "beta"):
             if not 0.0 < getattr(self, name) < 0.5:
                 raise ValueError(f"{name} must lie between 0 and 0.5, not {getattr(self, name):g}")

@@ -16,6 +16,7 @@ from robobt.cli.common import (
     Json,
     Progress,
     Seed,
+    as_far_as_read,
     console,
     cores,
     import_files,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from robobt.tournament.plan import Plan
     from robobt.tournament.play import Played
     from robobt.tournament.recordings import Recordings
-    from robobt.tournament.sequential import RunningTest
+    from robobt.tournament.sequential import RunningTest, SequentialTest
 
 ENTRANT = "ENTRANT"
 
@@ -159,9 +160,11 @@ def tournament(
     from robobt.tournament.standings import standings
 
     import_files(imports)
-    _check_sprt(entrants, against, sprt)
+    asked = None if sprt is None else _asked(entrants, against, sprt, alpha, beta)
     if record is not None and out is None:
         raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
+    if html is not None and out is not None and html.resolve() == out.resolve():
+        raise typer.BadParameter(f"would take the place of the store {out}", param_hint="--html")
     base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
     if referee is Who.NONE:
         raise typer.BadParameter("must be own or official", param_hint="--referee")
@@ -177,7 +180,7 @@ def tournament(
         referees,
         speed=speed,
     )
-    test = None if sprt is None else _running_test(plan, sprt, alpha, beta)
+    test = None if asked is None else _running_test(plan, asked)
     recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
     count = len(plan.fixtures())
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
@@ -205,25 +208,28 @@ def tournament(
         "referee": getattr(referees, "name", "own"),
         "rounds": plan.rounds,
     }
+    _tell_code(played)
+    # The exit code says who is better also where nobody reads on.
+    with as_far_as_read():
+        if as_json:
+            failed = {str(fixture): problem for fixture, problem in played.failed.items()}
+            ended = {"failed": failed, "interrupted": played.interrupted}
+            print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
+        else:
+            console.print(
+                f"[bold]{escape(base.name)}[/bold]: {found.matches} matches, seed {plan.seed}, "
+                f"{said['referee']} referee"
+            )
+            print_standings(found)
+            if test is not None:
+                say(f"\n{test.line()}")
     if html is not None:
         from robobt.tournament.report import write_report
 
         write_report(html, said, found, played.matches, recordings, None if test is None else test.line())
-    if as_json:
-        failed = {str(fixture): problem for fixture, problem in played.failed.items()}
-        ended = {"failed": failed, "interrupted": played.interrupted}
-        print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
-    else:
-        _tell_code(played)
-        console.print(
-            f"[bold]{escape(base.name)}[/bold]: {found.matches} matches, seed {plan.seed}, "
-            f"{said['referee']} referee"
-        )
-        print_standings(found)
-        if test is not None:
-            say(f"\n{test.line()}")
-        if html is not None:
-            say(f"Report: {html}")
+        if not as_json:
+            with as_far_as_read():
+                say(f"Report: {html}")
     if played.interrupted:
         raise typer.Exit(130)
     if test is not None:
@@ -241,19 +247,23 @@ def _workers(plan: Plan) -> int:
     return min(max(1, cores() // most), len(plan.fixtures()))
 
 
-def _check_sprt(entrants: list[str], against: str | None, sprt: tuple[float, float] | None) -> None:
-    if sprt is None:
-        return
+def _asked(
+    entrants: list[str], against: str | None, sprt: tuple[float, float], alpha: float, beta: float
+) -> SequentialTest:
+    from robobt.tournament.sequential import SequentialTest
+
     if against is None or len([text for text in entrants if text != against]) != 1:
         raise typer.BadParameter("needs one entrant, and --against for the other", param_hint="--sprt")
-    if not sprt[0] < sprt[1]:
-        raise typer.BadParameter(f"ELO0 must be below ELO1, not {sprt[0]:g} {sprt[1]:g}", param_hint="--sprt")
+    try:
+        return SequentialTest(*sprt, alpha, beta)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--sprt") from error
 
 
-def _running_test(plan: Plan, sprt: tuple[float, float], alpha: float, beta: float) -> RunningTest:
-    from robobt.tournament.sequential import RunningTest, SequentialTest
+def _running_test(plan: Plan, asked: SequentialTest) -> RunningTest:
+    from robobt.tournament.sequential import RunningTest
 
-    return RunningTest(SequentialTest(*sprt, alpha, beta), *plan.pairings[0])
+    return RunningTest(asked, *plan.pairings[0])
 
 
 def _entrant(text: str) -> Entrant:

@@ -70,6 +70,43 @@ def test_a_sequential_test_exits_with_what_it_found(
     assert said["matches"] < 100
 
 
+@pytest.mark.parametrize("options", [(), ("--json",)])
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_a_sequential_test_whose_tables_nobody_reads_exits_with_what_it_found(
+    stream: str, options: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from robobt.cli import common
+    from robobt.cli.tournament import tournament as command
+    from robobt.tournament.job import Job
+    from tests.tournament.made_up import played
+
+    def nobody_reads(*_: object, **__: object) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(Job, "play", lambda _, fixture, __: played(*fixture))
+    if stream == "stdout":
+        monkeypatch.setattr(command, "print_json", nobody_reads)
+        monkeypatch.setattr(command.console, "print", nobody_reads)
+    else:
+        monkeypatch.setattr(common.errors, "print", nobody_reads)
+        monkeypatch.setattr(command, "_tell_code", lambda _: common.warn("two states of the code"))
+    assert (
+        invoke("take_shot", "--against", "attack_main", "--sprt", "0", "30", *QUICK, *options).exit_code == 2
+    )
+
+
+def test_a_report_that_cannot_be_written_costs_no_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from robobt.tournament.job import Job
+    from tests.tournament.made_up import played
+
+    monkeypatch.setattr(Job, "play", lambda _, fixture, __: played(*fixture))
+    shown = invoke("take_shot", "attack_main", *QUICK, "--html", tmp_path, "--json")
+    assert json.loads(shown.stdout)["matches"] == 2
+    assert (shown.exit_code, str(tmp_path) in shown.stderr) == (1, True)
+
+
 @pytest.mark.parametrize(
     ("options", "problem"),
     [
@@ -85,7 +122,12 @@ def test_a_sequential_test_exits_with_what_it_found(
         (("take_shot", "attack_nn", "--record", "all"), "needs --out"),
         (("take_shot", "attack_nn", "--referee", "none"), "must be own or official"),
         (("take_shot", "attack_nn", "--sprt", "0", "30"), "needs one entrant, and --against"),
-        (("take_shot", "--against", "attack_nn", "--sprt", "30", "0"), "ELO0 must be below ELO1, not 30 0"),
+        (("take_shot", "--against", "attack_nn", "--sprt", "30", "0"), "elo0 must be below elo1"),
+        (("take_shot", "--against", "attack_nn", "--sprt", "0", "inf"), "both within ±1000, not 0 and inf"),
+        (
+            ("take_shot", "attack_nn", "--out", "a.x", "--html", "./a.x"),
+            "would take the place of the store a.x",
+        ),
         (("take_shot", "attack_nn", "--out", __file__), "cannot be used: file is not a database"),
     ],
 )
