@@ -3,14 +3,14 @@
 Source of messages: ssl-game-controller, ``ci/ci.go`` and ``engine/``. Each message with a time makes one
 tick, which is answered at once with the state before whatever it leads to. That (a command that follows by
 itself, an event that the controller raises) is queued, and so are the changes that we send; each is answered
-when it is done. Nothing says to what an answer belongs, and a tick that meets a queue that is not empty
-repeats what waits there. So a tick is sent only when all before it is done, and answered by exactly one
-message; what it leads to is read before the next one.
+when it is done, and may lead to further ones, which are queued in turn. Nothing says to what an answer
+belongs, and a tick that meets a queue that is not empty repeats what waits there, or even crashes the
+controller. So a tick is sent only when all before it is done: a change of the status message is answered
+after all that was queued before, and alone once the queue was empty.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 
 from robobt.league.referee.process import GameControllerError
@@ -30,8 +30,8 @@ from robobt.world.state import Frame
 EPOCH = 1_700_000_000
 """What the controller's clock shows when the match begins [s]; any time but 0 will do."""
 
-_SETTLED = 0.002
-"""What a tick leads to is done after this time [s]; a tenth of it is the rule."""
+_LONGEST = 50
+"""What one thing leads to has never led to so many others."""
 
 _SILENCE = 10.0
 """The controller has failed when it does not answer for so long [s]."""
@@ -53,7 +53,6 @@ class LockstepController:
     def __init__(self, stream: MessageStream) -> None:
         self._stream = stream
         self._frames = self._changes = 0
-        self._answered = 0.0
         self.asked = False
 
     def ask(
@@ -78,9 +77,7 @@ class LockstepController:
     def answer(self) -> list[Referee]:
         """Return what the controller said when it was asked: the state before what follows from it."""
         self.asked = False
-        message = self._next()
-        self._answered = time.monotonic()
-        return [message]
+        return [self._next()]
 
     def change(self, changes: Sequence[Change], config: Config | None = None) -> list[Referee]:
         """Change the match at once, without time passing; return what the controller says of it.
@@ -98,42 +95,36 @@ class LockstepController:
             if config is not None and number == 0:
                 message.api_inputs.add().config_delta.CopyFrom(config)
             message.api_inputs.add().change.CopyFrom(change)
-            # Changes are done in order, so this one's answer comes after all of those.
-            self._changes += 1
-            done = f"{_TRACKER} {self._changes}"
-            message.api_inputs.add().change.set_status_message_change.status_message = done
-            self._send(message)
-            while not said or said[-1].status_message != done:
-                said.append(self._next())
-        return said
+            said += self._marked(message)
+        return said + self.rest()
 
     def rest(self) -> list[Referee]:
         """Wait until all that the last tick led to is done, and return what the controller says of it."""
         said: list[Referee] = []
-        while True:
-            left = self._answered + _SETTLED - time.monotonic()
-            answer = self._receive(max(0.0, left))
-            if answer is None:
+        for _ in range(_LONGEST):
+            answers = self._marked(CiInput())
+            said += answers
+            if len(answers) == 1:
                 return said
-            said.append(answer)
+        raise GameControllerError("the game controller does not come to rest")
+
+    def _marked(self, message: CiInput) -> list[Referee]:
+        """Send a message of changes; return what the controller says until all before and in it are done."""
+        # Changes are done in order, so this one's answer comes after all of those.
+        self._changes += 1
+        done = f"{_TRACKER} {self._changes}"
+        message.api_inputs.add().change.set_status_message_change.status_message = done
+        self._send(message)
+        said = [self._next()]
+        while said[-1].status_message != done:
+            said.append(self._next())
+        return said
 
     def _next(self) -> Referee:
-        answer = self._receive(_SILENCE)
-        if answer is None:
-            raise GameControllerError(f"the game controller has not answered for {_SILENCE:.0f} s")
-        return answer
-
-    def _send(self, message: CiInput) -> None:
         try:
-            self._stream.send(message.SerializeToString())
-        except StreamError as error:
-            raise GameControllerError(str(error)) from error
-
-    def _receive(self, wait: float) -> Referee | None:
-        try:
-            data = self._stream.receive(wait)
+            data = self._stream.receive(_SILENCE)
             if data is None:
-                return None
+                raise GameControllerError(f"the game controller has not answered for {_SILENCE:.0f} s")
             output = CiOutput.FromString(data)
         except StreamError as error:
             raise GameControllerError(str(error)) from error
@@ -143,3 +134,9 @@ class LockstepController:
             raise GameControllerError("the game controller sends a message without the state of the match")
         message: Referee = output.referee_msg
         return message
+
+    def _send(self, message: CiInput) -> None:
+        try:
+            self._stream.send(message.SerializeToString())
+        except StreamError as error:
+            raise GameControllerError(str(error)) from error

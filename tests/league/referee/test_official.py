@@ -258,11 +258,7 @@ def test_the_controller_ends_with_the_match(connect: Connect) -> None:
     assert played.started.closed == 1
 
 
-def test_matches_are_played_recorded_and_repeated_under_it(
-    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # The stand-in is no quick program, and on a busy machine slower still.
-    monkeypatch.setattr("robobt.league.referee.lockstep._SETTLED", 0.02)
+def test_matches_are_played_recorded_and_repeated_under_it(program: Path, tmp_path: Path) -> None:
     scenario = scenario_from(data(referee=True, ends={"time_limit": 13.0}), "test.yaml")
     factory: OfficialRefereeFactory = pickle.loads(pickle.dumps(OfficialRefereeFactory(program)))
     record = {0: tmp_path / "match.robobt.arrows"}
