@@ -83,6 +83,7 @@ def report(
         "<h2>Ratings</h2>",
         rating_plot(found.standings),
         _table(_STANDING_HEAD, [_standing_row(name, one) for name, one in found.standings.items()]),
+        "".join([f"<p>{escape(remark)}</p>" for remark in found.remarks()]),
         "<h2>Won, drawn, lost of the row against the column</h2>",
         _cross_table(found),
         "<h2>Encounters</h2>",

@@ -91,6 +91,21 @@ class Standings:
     standings: Mapping[str, Standing]
     encounters: Sequence[Encounter]
 
+    def remarks(self) -> list[str]:
+        """Return what a reader has to know besides: repeated matches, forfeits, failures of trees."""
+        found = []
+        if self.distinct < self.matches:
+            found.append(
+                f"only {self.distinct} of {self.matches} matches differ; vary the starts or add noise, "
+                "as with --set simulator.realism=friendly"
+            )
+        for name, one in self.standings.items():
+            if one.forfeits:
+                found.append(f"{name}: lost {one.forfeits} matches by rule; the first: {one.first_error}")
+            if one.errors:
+                found.append(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+        return found
+
 
 def standings(
     matches: Sequence[PlayedMatch], names: Sequence[str], reference: str | None = None

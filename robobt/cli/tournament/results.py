@@ -75,6 +75,9 @@ def results(
     for name in [*(entrant or []), *(compare or ()), *([lost_by] if lost_by else [])]:
         if name not in known:
             raise typer.BadParameter(f"no entrant is called {name!r}; there are {', '.join(known)}")
+    if compare is not None and compare[0] == compare[1]:
+        raise typer.BadParameter("needs two different entrants", param_hint="--compare")
+    ends = sorted({match.outcome for match in found})
     found = [match for match in found if _wanted(match, entrant or [], outcome, lost_by)]
     said = {"played": played, "merged": merged}
     if merge and not as_json:
@@ -84,6 +87,8 @@ def results(
             print_json({**said, "matches": [match.row() for match in found]})
         else:
             _list(found)
+            if not found:
+                say(f"No such match; matches ended as {', '.join(ends)}.")
         return
     if not found:
         raise typer.BadParameter(f"{store}: no match is left, or none was played yet")

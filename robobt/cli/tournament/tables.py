@@ -17,11 +17,6 @@ if TYPE_CHECKING:
 
 def print_standings(found: Standings) -> None:
     """Print ratings, encounters and the entrants' figures."""
-    if found.distinct < found.matches:
-        warn(
-            f"only {found.distinct} of {found.matches} matches differ; vary the starts or add noise, "
-            "as with --set simulator.realism=friendly"
-        )
     names = list(found.standings)
     ratings = table("", "entrant", "Elo", "95 %", "matches", "won", "drawn", "lost", "goals")
     for number, (name, one) in enumerate(found.standings.items(), start=1):
@@ -38,11 +33,8 @@ def print_standings(found: Standings) -> None:
     print_encounters(found.encounters)
     console.print()
     console.print(team_figures({name: one.figures for name, one in found.standings.items()}, "a match"))
-    for name, one in found.standings.items():
-        if one.forfeits:
-            warn(f"{name}: lost {one.forfeits} matches by rule; the first: {one.first_error}")
-        if one.errors:
-            warn(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+    for remark in found.remarks():
+        warn(remark)
 
 
 def print_encounters(found: Sequence[Encounter]) -> None:

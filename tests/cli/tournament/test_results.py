@@ -57,6 +57,7 @@ def test_matches_are_listed_and_filtered(store: Path) -> None:
     assert len(listed("--lost-by", C)) == 6
     assert listed("--outcome", "forfeit_blue") == []
     assert "full time" in plain(invoke(store, "--matches"))
+    assert "No such match; matches ended as full_time." in plain(invoke(store, "--outcome", "full"))
 
 
 def test_two_entrants_are_compared_by_whom_both_have_met(store: Path) -> None:
@@ -86,6 +87,7 @@ def test_stores_of_several_machines_are_merged(store: Path, tmp_path: Path) -> N
     [
         (("--entrant", "nobody"), "no entrant is called 'nobody'; there are at 1, at 2, at 3"),
         (("--compare", A, "nobody"), "no entrant is called 'nobody'"),
+        (("--compare", A, A), "needs two different entrants"),
         (("--merge", "gone.sqlite"), "gone.sqlite: there is no such file"),
     ],
 )
