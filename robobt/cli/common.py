@@ -267,6 +267,10 @@ class Progress:
     def __exit__(self, *_: object) -> None:
         self._bars.stop()
 
+    def name(self, text: str) -> None:
+        """Change what stands before the bar."""
+        self._bars.update(self._bar, description=escape(text))
+
     def advance(self, steps: int = 1) -> None:
         """Count more steps as done."""
         self._bars.advance(self._bar, steps)

@@ -149,6 +149,11 @@ class RunningTest:
         self.verdict, self.rounds, self.ratio = self._test.judge(list(scores.values()))
         return self.verdict is not Verdict.UNDECIDED
 
+    def brief(self) -> str:
+        """Return how far it is, in a few words."""
+        low, high = self._test.bounds
+        return f"{self.rounds} rounds, {low:.2f} < {self.ratio:+.2f} < {high:.2f}"
+
     def line(self) -> str:
         """Return what it says, with its bounds."""
         test, (low, high) = self._test, self._test.bounds
