@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from robobt.engines.run import run_tasks
+from robobt.engines.run import engine, run_tasks
 from robobt.engines.work import Work
 from robobt.plays.python_files import imported_files
 from robobt.signals import uninterrupted
@@ -56,8 +57,8 @@ def play(
     """Play what is missing in the store.
 
     A match that cannot be played, because of a fault of nobody's plays, is left out; one whose process a
-    play ends, or holds up for ever, is lost by the side whose play it was. Several programs may do this
-    at once with one store: each match is played by one of them.
+    play ends, or holds up for ever, twice, is lost by the side whose play it was. Several programs may do
+    this at once with one store: each match is played by one of them.
 
     Args:
         plan: what is played.
@@ -75,6 +76,16 @@ def play(
     """
     driver = _Driver(plan, store, recordings, on_match, enough)
     interrupted = False
+    died: set[Fixture] = set()
+
+    def lost(fixture: Fixture, problem: str) -> PlayedMatch | Failure:
+        # A process may also be killed from outside, as for want of memory, or have stood still with this one;
+        # a match that a play has ended ends again. An engine elsewhere has tried more than once already.
+        if fixture in died or engine() is not None:
+            return works.lost(fixture, problem)
+        died.add(fixture)
+        return _Again(fixture, problem)
+
     with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
         works = job.of(plan, Path(notes), store.path.with_suffix(".output"), recordings)
         try:
@@ -84,7 +95,7 @@ def play(
                     driver.claimed(missing, claims),
                     min(workers, len(missing)),
                     setup=partial(set_up, imported_files()),
-                    lost=works.lost if workers else None,
+                    lost=lost if workers else None,
                 )
                 waits = True
                 with closing(tasks) as results:
@@ -99,6 +110,10 @@ def play(
         except KeyboardInterrupt:
             interrupted = True
     return Played([driver.done[one] for one in sorted(driver.done, key=_order)], driver.failed, interrupted)
+
+
+class _Again(Failure):
+    """A match whose process has died for the first time, and that is played once more."""
 
 
 class _Driver:
@@ -117,10 +132,13 @@ class _Driver:
         self.done: dict[Fixture, PlayedMatch] = {}
         self.failed: dict[Fixture, str] = {}
         self.stop = False
+        # Those of earlier rounds come first, as a sequential test waits for them.
+        self._again: deque[Fixture] = deque()
         held = {match.fixture: match for match in store.matches(plan.names)}
         for fixture in self._wanted:
             if fixture in held:
-                self._finished(held[fixture])
+                self._known(held[fixture])
+        self._judge()
 
     def missing(self) -> list[Fixture]:
         """Return what is still to be played, nothing once it is enough."""
@@ -128,13 +146,17 @@ class _Driver:
 
     def claimed(self, missing: Iterable[Fixture], claims: Claims) -> Iterator[Fixture]:
         """Yield what nobody else is playing; what another program has finished meanwhile counts as played."""
-        for fixture in missing:
-            if self.stop:
-                return
+        left = deque(missing)
+        self._again.clear()
+        while (self._again or left) and not self.stop:
+            fixture = self._again.popleft() if self._again else left.popleft()
             if not claims.take(fixture):
                 continue
             theirs = self._store.match(fixture)
             if theirs is None:
+                if self._recordings is not None:
+                    # What another tournament has left there is not of this match.
+                    self._recordings.remove(fixture)
                 yield fixture
             else:
                 claims.release(fixture)
@@ -142,6 +164,9 @@ class _Driver:
 
     def take(self, result: PlayedMatch | Failure) -> None:
         """Take in a match that has just been played."""
+        if isinstance(result, _Again):
+            self._again.append(result.fixture)
+            return
         if isinstance(result, Failure):
             self.failed[result.fixture] = result.problem
             return
@@ -152,9 +177,15 @@ class _Driver:
             self._recordings.sort_out(self.done.values())
 
     def _finished(self, match: PlayedMatch) -> None:
+        self._known(match)
+        self._judge()
+
+    def _known(self, match: PlayedMatch) -> None:
         self.done[match.fixture] = match
         if self._on_match is not None:
             self._on_match(match)
+
+    def _judge(self) -> None:
         if self._enough is not None and self._enough(self.done.values(), self.failed):
             self.stop = True
 

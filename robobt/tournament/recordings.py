@@ -47,9 +47,10 @@ class Recordings:
         """Return where the page of a recorded match is."""
         return self.folder / f"{file_name(fixture)}.html"
 
-    def there(self, fixture: Fixture) -> bool:
-        """Return whether there is a recording of a match."""
-        return self.path(fixture).is_file()
+    def remove(self, fixture: Fixture) -> None:
+        """Remove the recording of a match, and its page."""
+        for path in (self.path(fixture), self.page(fixture)):
+            path.unlink(missing_ok=True)
 
     def kept(self, matches: Iterable[PlayedMatch]) -> set[Fixture]:
         """Return which of the matches are to be kept."""
@@ -67,7 +68,7 @@ class Recordings:
         """Remove the recordings of matches that are not to be kept."""
         matches = list(matches)
         for fixture in {match.fixture for match in matches} - self.kept(matches):
-            self.path(fixture).unlink(missing_ok=True)
+            self.remove(fixture)
 
     def _badness(self, match: PlayedMatch) -> tuple[float, int, int, bool]:
         return match.score(self.first), match.lead(self.first), match.round, match.blue != self.first

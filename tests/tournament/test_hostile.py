@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from robobt.plays import PLAYS, python_files
 from robobt.tournament.entrants import read_entrant
+from robobt.tournament.fixtures import Fixture
 from robobt.tournament.play import Played, play
 from tests.registries import temporarily
 from tests.tournament.made_up import plan, runner
@@ -18,6 +20,7 @@ pytestmark = pytest.mark.integration
 
 HOSTILE = """
 import os, signal, sys
+from pathlib import Path
 from robobt import PLAYS
 from robobt.skills.base import Skill
 
@@ -33,6 +36,12 @@ class Hostile(Skill):
         if self.what == "exits":
             sys.exit(0)
         if self.what == "killed":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if self.what == "killed once":
+            try:
+                Path(__file__).with_name("killed").touch(exist_ok=False)
+            except FileExistsError:
+                return self.run()
             os.kill(os.getpid(), signal.SIGKILL)
         if self.what == "interrupts":
             raise KeyboardInterrupt
@@ -61,11 +70,24 @@ def _hostile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         yield
 
 
-def tournament(path: Path, *what: str) -> Played:
+def tournament(path: Path, *what: str, rounds: int = 1, workers: int = 2, **options: Any) -> Played:
     teams = [read_entrant("hostile", {"what": name}, name) for name in what]
-    against = plan(1, entrants=(runner(1.0), *teams), against="at 1", silence=8.0)
+    against = plan(rounds, entrants=(runner(1.0), *teams), against="at 1", silence=8.0)
     with against.open_store(path / "night.sqlite") as store:
-        return play(against, store, 2)
+        return play(against, store, workers, **options)
+
+
+@pytest.mark.usefixtures("_hostile")
+def test_a_match_whose_process_is_killed_from_outside_is_played_again(tmp_path: Path) -> None:
+    ended: list[Fixture] = []
+    found = tournament(
+        tmp_path, "killed once", rounds=2, workers=1, on_match=lambda match: ended.append(match.fixture)
+    )
+    assert (tmp_path / "killed").exists()
+    assert [match.forfeited_by for match in found.matches] == [None] * 4
+    assert not found.failed
+    # A sequential test waits for the first round: it must not have to until all others are played.
+    assert [(one.blue, one.round) for one in ended[:2]] == [("at 1", 0), ("killed once", 0)]
 
 
 @pytest.mark.usefixtures("_hostile")

@@ -42,6 +42,20 @@ def test_the_page_has_every_table_and_needs_nothing_else() -> None:
     assert page.links == []
 
 
+def test_the_page_tells_what_went_wrong_as_plain_text() -> None:
+    broken = [
+        played("a", "b", number, trace="same", errors=2, first_error="<b>no ball</b>") for number in (0, 1)
+    ]
+    forfeit = played("a", "b", 2, trace="", outcome="forfeit_blue", first_error="<b>it crashed</b>")
+    matches = [forfeit, *broken]
+    page = report({}, standings(matches, ["a", "b"]), matches, {})
+    text = " ".join(Page(page).words)
+    assert "only 2 of 3 matches differ" in text
+    assert "a: lost 1 matches by rule; the first: <b>it crashed</b>" in text
+    assert "a: trees failed in 4 ticks" in text
+    assert "<b>" not in page
+
+
 def test_the_plot_is_sound_and_has_every_entrant() -> None:
     plot = Xml.fromstring(rating_plot(FOUND.standings))
     assert len(plot.findall("circle")) == 2
@@ -59,3 +73,17 @@ def test_recorded_matches_are_linked(tmp_path: Path) -> None:
     write_report(path, {}, standings(matches, what.names), matches, recordings)
     (link,) = Page(path.read_text()).links
     assert "robobt replay" in (path.parent / link).read_text()
+
+
+@pytest.mark.integration
+def test_recordings_and_pages_of_an_earlier_tournament_are_not_shown(tmp_path: Path) -> None:
+    what = plan(1, entrants=(runner(1.0), runner(2.0)))
+    recordings = Recordings(tmp_path / "night.recordings", Keep.ALL, "at 1")
+    recordings.folder.mkdir()
+    for fixture in what.fixtures():
+        recordings.page(fixture).write_text("of an earlier tournament")
+    with what.open_store(tmp_path / "night.sqlite") as store:
+        matches = play(what, store, recordings=recordings).matches
+    write_report(tmp_path / "night.html", {}, standings(matches, what.names), matches, recordings)
+    for match in matches:
+        assert "of an earlier tournament" not in recordings.page(match.fixture).read_text()

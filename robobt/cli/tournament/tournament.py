@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Collection
 from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
@@ -31,8 +32,10 @@ from robobt.cli.tournament.tables import print_standings
 
 if TYPE_CHECKING:
     from robobt.tournament.entrants import Entrant
+    from robobt.tournament.fixtures import Fixture
     from robobt.tournament.plan import Plan
     from robobt.tournament.play import Played
+    from robobt.tournament.played import PlayedMatch
     from robobt.tournament.recordings import Recordings
     from robobt.tournament.sequential import RunningTest, SequentialTest
 
@@ -140,7 +143,7 @@ def tournament(
     """Let teams play each other, each pairing from either side with the same seeds, and rate them.
 
     Ratings are Bradley and Terry's on the Elo scale (400 points are odds of ten to one), 0 being --against,
-    or else the mean. Whose play ends the process or hangs for five minutes has lost that match.
+    or else the mean. Whose play ends the process or hangs for five minutes, twice, has lost that match.
 
     With --sprt the exit code is 0 for better, 1 for not better, 2 for undecided after the last round.
 
@@ -186,13 +189,21 @@ def tournament(
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
         path = Path(folder) / "tournament.sqlite" if out is None else out
         with plan.open_store(path) as store, Progress("tournament", count) as progress:
+
+            def enough(matches: Collection[PlayedMatch], failed: Collection[Fixture]) -> bool:
+                if test is None:
+                    return False
+                decided = test.enough(matches, failed)
+                progress.name(test.brief())
+                return decided
+
             played = play(
                 plan,
                 store,
                 _workers(plan) if workers is None else workers,
                 recordings=recordings,
                 on_match=lambda _: progress.advance(),
-                enough=None if test is None else test.enough,
+                enough=enough,
             )
     for fixture, problem in played.failed.items():
         warn(f"{fixture} could not be played: {problem}")
