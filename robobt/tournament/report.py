@@ -116,8 +116,10 @@ def rating_plot(standings: Mapping[str, Standing]) -> str:
             f'<line x1="{at(rating.low):.1f}" x2="{at(rating.high):.1f}" y1="{y:.0f}" y2="{y:.0f}" />'
             f'<circle cx="{at(rating.elo):.1f}" cy="{y:.0f}" r="4"><title>{_elo(one)}</title></circle>'
         )
-    for elo in (low, high):
-        drawn.append(f'<text x="{at(elo):.1f}" y="{bottom + 16:.0f}" text-anchor="middle">{elo:+.0f}</text>')
+    for elo, anchor in ((low, "start"), (high, "end")):
+        drawn.append(
+            f'<text x="{at(elo):.1f}" y="{bottom + 16:.0f}" text-anchor="{anchor}">{elo:+.0f}</text>'
+        )
     size = f'width="{_WIDTH:.0f}" height="{bottom + 24:.0f}"'
     return f'<svg {size} role="img" aria-label="Ratings with 95 % intervals">{"".join(drawn)}</svg>'
 

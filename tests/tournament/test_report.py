@@ -60,6 +60,9 @@ def test_the_plot_is_sound_and_has_every_entrant() -> None:
     plot = Xml.fromstring(rating_plot(FOUND.standings))
     assert len(plot.findall("circle")) == 2
     assert {"a", "b & <c>"} <= {(text.text or "") for text in plot.iter("text")}
+    low, high = list(plot.iter("text"))[-2:]
+    # Labels at the edges run inwards: what is outside the picture is cut off.
+    assert [low.get("text-anchor"), high.get("text-anchor")] == ["start", "end"]
 
 
 @pytest.mark.integration
