@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import cos, hypot, pi, sin
 
 import pytest
 from hypothesis import given, settings
@@ -176,3 +176,43 @@ def test_a_ball_bounces_off_a_robot_that_drives_away_from_it(kind: str, heading:
         world.act({ME: RobotCommand(vx=-away * cos(heading))})
         assert world.time < 1.0, "the ball flies on"
     assert world.truth().ball.vx == pytest.approx(-away + bounce * (3.25 - away), abs=0.15)
+
+
+@pytest.mark.integration
+@settings(max_examples=60, deadline=None)
+@given(
+    kind=st.sampled_from(["default", "sumatra", "erforce"]),
+    heading=st.floats(-pi, pi),
+    drives=st.tuples(st.floats(0.0, 2.0), st.floats(-pi, pi)),
+    bearing=st.floats(-pi, pi),
+    offset=st.floats(-0.09, 0.09),
+    closing=st.floats(0.5, 6.0),
+    period=st.sampled_from([0.005, 1 / 60]),
+)
+def test_no_ball_leaves_a_robot_that_drives_faster_than_it_came(
+    kind: str,
+    heading: float,
+    drives: tuple[float, float],
+    bearing: float,
+    offset: float,
+    closing: float,
+    period: float,
+) -> None:
+    """As the robot sees it: whichever way it drives and wherever it is hit, nothing adds energy."""
+    vx, vy = drives[0] * cos(drives[1]), drives[0] * sin(drives[1])
+    c, s = cos(bearing), sin(bearing)
+    ball = (0.4 * c - offset * s, 0.4 * s + offset * c, vx - closing * c, vy - closing * s)
+    world = one_robot(kind, ball=(4.0, 2.5, 0.0, 0.0), period=period, field=DIVISION_B)
+    world.reset(Placement({ME: (0, 0, heading)}, ball, {ME: (vx, vy)}), seed=0)
+    ahead = cos(heading) * vx + sin(heading) * vy
+    left = cos(heading) * vy - sin(heading) * vx
+    came = closing
+    while world.time < 0.6:
+        world.act({ME: RobotCommand(vx=ahead, vy=left)})
+        frame = world.truth()
+        me, seen = frame.own[0], frame.ball
+        speed = hypot(seen.vx - me.vx, seen.vy - me.vy)
+        if frame.last_touch is None:
+            came = speed
+        assert speed < came + 0.25
+        assert hypot(seen.x - me.x, seen.y - me.y) > preset(kind).body.face + 0.0215 - 0.004
