@@ -136,7 +136,10 @@ def parse_play(text: str, option: str) -> tuple[str, dict[str, object]]:
     play, _, given = text.partition(":")
     # A comma inside a value is not followed by NAME=.
     parts = re.split(r",(?=\s*\w+=)", given) if given else []
-    return play, parse_assignments([part.strip() for part in parts], option)
+    params = parse_assignments([part.strip() for part in parts], option)
+    if len(params) < len(parts):
+        raise typer.BadParameter(f"a parameter is given twice in {text!r}", param_hint=option)
+    return play, params
 
 
 def _variants(

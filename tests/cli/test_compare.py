@@ -97,6 +97,7 @@ def test_trials_that_are_the_same_match_are_told() -> None:
         (("--blue", "attack_man", "--blue", "attack_nn"), "no play is called 'attack_man'"),
         (("--blue", ":sped=1", "--blue", "attack_nn"), "no such parameter"),
         (("--blue", ":speed", "--blue", "attack_nn"), "takes name=value, not 'speed'"),
+        (("--blue", ":speed=1,speed=2", "--blue", "attack_nn"), "a parameter is given twice"),
         (("--set", "ends.time=3"), "ends.time: there is no such field"),
         (("--set", "blue 0=3"), "takes a field or a parameter of the robot"),
         (("--set", "blue 7.play=goalkeeper"), "there is no robot 'blue 7'"),
