@@ -33,6 +33,8 @@ EPOCH = 1_700_000_000
 _LONGEST = 50
 """What one thing leads to has never led to so many others."""
 
+_RESTLESS = "the game controller does not come to rest"
+
 _SILENCE = 10.0
 """The controller has failed when it does not answer for so long [s]."""
 
@@ -106,7 +108,7 @@ class LockstepController:
             said += answers
             if len(answers) == 1:
                 return said
-        raise GameControllerError("the game controller does not come to rest")
+        raise GameControllerError(_RESTLESS)
 
     def _marked(self, message: CiInput) -> list[Referee]:
         """Send a message of changes; return what the controller says until all before and in it are done."""
@@ -115,10 +117,12 @@ class LockstepController:
         done = f"{_TRACKER} {self._changes}"
         message.api_inputs.add().change.set_status_message_change.status_message = done
         self._send(message)
-        said = [self._next()]
-        while said[-1].status_message != done:
+        said: list[Referee] = []
+        for _ in range(_LONGEST):
             said.append(self._next())
-        return said
+            if said[-1].status_message == done:
+                return said
+        raise GameControllerError(_RESTLESS)
 
     def _next(self) -> Referee:
         try:

@@ -288,21 +288,26 @@ def test_two_halves_are_played_to_the_end_under_the_official_one() -> None:
 
 
 class Scripted:
-    """A stream whose other side answers each time with the next of these bytes."""
+    """A stream whose other side answers each time with the next of these bytes, and changes as it should."""
 
     def __init__(self, answers: Any) -> None:
         self._answers, self._asked = answers, 0
+        self._changed: list[bytes] = []
+        self._state = FakeController().state
 
     def send(self, message: bytes) -> None:
         sent = CiInput.FromString(message)
         self._asked += sent.HasField("timestamp")
+        for given in sent.api_inputs:
+            self._state.status_message = given.change.set_status_message_change.status_message
+            self._changed.append(CiOutput(referee_msg=self._state).SerializeToString())
 
     def receive(self, wait: float) -> bytes | None:
-        if not self._asked:
-            return None
-        self._asked -= 1
-        data: bytes = next(self._answers)
-        return data
+        if self._asked:
+            self._asked -= 1
+            data: bytes = next(self._answers)
+            return data
+        return self._changed.pop(0) if self._changed else None
 
 
 def test_ten_thousand_mutated_messages_are_followed_or_one_clear_error() -> None:
