@@ -31,6 +31,9 @@ SHORTEST = 1.4
 SHORTEST_RESTART = 0.35
 """Of a pass from an own restart, where no opponent may be so near [m]."""
 
+AREA_GAP, AREA_GAP_RESTART = 0.15, 0.3
+"""How far from the defence areas a pass may end: at an own restart no hull within the rules' 0.2 m [m]."""
+
 LONGEST_WAIT = 1.2
 """For a receiver that is not there yet [s]."""
 
@@ -109,6 +112,7 @@ def passes(
                 least,
                 1.0 if chips else 0.0,
                 SHORTEST if plan.short is None else SHORTEST_RESTART,
+                AREA_GAP if frame.game.in_play else AREA_GAP_RESTART,
             )
         ),
     )
@@ -151,12 +155,12 @@ def _rate(
     """
     out = np.zeros((len(points), 4))
     half_length, half_width, half_goal, depth, half_area = size[0], size[1], size[2], size[3], size[4]
-    least, chips, shortest = size[5], size[6] > 0.0, size[7]
+    least, chips, shortest, area_gap = size[5], size[6] > 0.0, size[7], size[8]
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
             continue
-        if abs(x) > half_length - depth - 0.15 and abs(y) < half_area + 0.15:
+        if abs(x) > half_length - depth - area_gap and abs(y) < half_area + area_gap:
             continue
         length = hypot(x - ox, y - oy)
         if length < shortest:

@@ -89,11 +89,9 @@ def short_place(frame: Frame, last: Point | None) -> Point | None:
         angle = 2.0 * pi * k / _SHORT_ANGLES
         place = (x + SHORT * cos(angle), y + SHORT * sin(angle))
         inside = abs(place[0]) < field.half_length - _LINE and abs(place[1]) < field.half_width - _LINE
-        if (
-            not inside
-            or in_own_defense_area(field, *place, 0.3)
-            or in_their_defense_area(field, *place, 0.25)
-        ):
+        if not inside:
+            continue
+        if in_own_defense_area(field, *place, _AREA) or in_their_defense_area(field, *place, _AREA):
             continue
         room = min((distance(robot.position, place) for robot in frame.opponents), default=2.0)
         if last is not None and distance(place, last) < 0.1:

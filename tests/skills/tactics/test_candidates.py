@@ -6,11 +6,11 @@ from robobt.skills.aims import Pass
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import SHORTEST, passes
-from robobt.world import DIVISION_B, RobotState
+from robobt.world import DIVISION_B, GameState, RobotState, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import frame, held, robot
-from tests.skills.refereed import OPEN
+from tests.skills.refereed import OPEN, free_kick
 
 ME = robot(-1.0, 0.0, number=1, contact=True)
 MATE = robot(0.5, 1.5, number=4)
@@ -23,10 +23,11 @@ def found(
     last: Pass | None = None,
     least: float = 0.15,
     chips: bool = True,
+    game: GameState = OPEN,
 ) -> list[Pass]:
     team = TeamStore()
     team.plan.players.update((1, *(mate.id for mate in mates)))
-    view = frame(ME, held(ME), mates, theirs, game=OPEN)
+    view = frame(ME, held(ME), mates, theirs, game=game)
     agree(view, team)
     team.plan.places.update(places or {})
     return passes(view, team, ME, last, 1.5, least=least, most=100, chips=chips)
@@ -45,6 +46,14 @@ def test_no_pass_is_too_short_out_of_the_field_or_into_a_defence_area() -> None:
         assert distance(ball, one.target) >= SHORTEST
         assert DIVISION_B.contains(*one.target)
         assert not in_their_defense_area(DIVISION_B, *one.target)
+
+
+def test_at_a_restart_no_receiver_stands_too_close_to_their_defence_area() -> None:
+    mates = (robot(3.28, 0.4, number=4), robot(4.0, 1.2, number=5))
+    for game, close in ((OPEN, True), (free_kick(Team.BLUE, held(ME)), False)):
+        rated = found(mates, game=game)
+        assert rated
+        assert any(in_their_defense_area(DIVISION_B, *one.target, 0.29) for one in rated) is close
 
 
 def test_who_does_not_share_out_tasks_gets_no_pass() -> None:
