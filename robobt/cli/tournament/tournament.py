@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from robobt.tournament.play import Played
     from robobt.tournament.played import PlayedMatch
     from robobt.tournament.recordings import Recordings
-    from robobt.tournament.sequential import RunningTest, SequentialTest
+    from robobt.tournament.sequential import SequentialTest
 
 ENTRANT = "ENTRANT"
 
@@ -160,6 +160,7 @@ def tournament(
     from robobt.match.scenario.changes import changed
     from robobt.tournament.plan import Plan
     from robobt.tournament.play import play
+    from robobt.tournament.sequential import RunningTest
     from robobt.tournament.standings import standings
 
     import_files(imports)
@@ -183,7 +184,7 @@ def tournament(
         referees,
         speed=speed,
     )
-    test = None if asked is None else _running_test(plan, asked)
+    test = None if asked is None else RunningTest(asked, *plan.pairings[0])
     recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
     count = len(plan.fixtures())
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
@@ -269,12 +270,6 @@ def _asked(
         return SequentialTest(*sprt, alpha, beta)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--sprt") from error
-
-
-def _running_test(plan: Plan, asked: SequentialTest) -> RunningTest:
-    from robobt.tournament.sequential import RunningTest
-
-    return RunningTest(asked, *plan.pairings[0])
 
 
 def _entrant(text: str) -> Entrant:
