@@ -192,10 +192,13 @@ def _end_by_force() -> None:
         time.sleep(0.001)
     if _told.force is None:
         return
+    atexit._run_exitfuncs()
+    if _told.force is None:
+        # It did let go, only later, as on a busy machine.
+        return
     name = signal.Signals(number).name
     with suppress(OSError):
         os.write(2, f"robobt: ended by force on {name}: a skill or a callback does not let go\n".encode())
-    atexit._run_exitfuncs()
     os._exit(_BASE + number)
 
 

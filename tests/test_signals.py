@@ -186,3 +186,30 @@ def test_who_swallows_every_exception_is_ended_by_force(start_python: StartPytho
     assert process.wait(20) == 128 + signal.SIGTERM
     assert time.monotonic() - began < 15.0
     assert process.stdout.readline() == "robots stopped\n"
+
+
+LATE = """
+import atexit, sys, time
+from robobt.signals import at_the_latest_after, ending
+atexit.register(time.sleep, 1.0)
+with ending():
+    try:
+        with at_the_latest_after(0.1):
+            print("ready", flush=True)
+            try:
+                time.sleep(60)
+            finally:
+                time.sleep(0.5)
+    finally:
+        time.sleep(1.5)
+        print("files finished", flush=True)
+"""
+
+
+def test_who_lets_go_while_its_end_is_being_forced_may_finish(start_python: StartPython) -> None:
+    process = start_python("-c", LATE)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(20) == 128 + signal.SIGTERM
+    assert process.stdout.readline() == "files finished\n"

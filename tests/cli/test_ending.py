@@ -18,16 +18,18 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
-from robobt.cli import app
+from robobt.cli import app, common
 from robobt.league.log.files import read_log
 from robobt.league.serve.serving import served_line_up, served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
+from robobt.match.loop import Match
 from robobt.match.recording import load_recording
 from robobt.plays import PLAYS
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.state import RobotId
+from robobt.worlds import sim_world
 from tests.league.served import free_endpoints, served
 from tests.registries import temporarily
 
@@ -86,6 +88,12 @@ robots:
 ball: {position: [2.0, 2.0]}
 ends: {time_limit: 600}
 """
+
+
+@pytest.fixture(autouse=True)
+def _no_end_by_force_in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An orderly end takes longer on a busy machine, and one by force would end pytest."""
+    monkeypatch.setattr(common, "_PATIENCE", 60.0)
 
 
 def robobt(*arguments: object) -> Result:
@@ -268,6 +276,16 @@ def told_to_stop(last: dict[RobotId, RobotCommand]) -> bool:
     return len(last) == 12 and all(command == RobotCommand() for command in last.values())
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Play twice, so that no signal meets the compiler, or the reading of a file of what it kept."""
+    Match(load_scenario("six_v_six").lasting(2.0), 1, sim_world).play()
+    endpoints, recording = free_endpoints(), tmp_path_factory.mktemp("compiled") / "played.robobt.arrows"
+    with served_six_v_six(endpoints):
+        robobt(*six_v_six(endpoints, recording), "--set", "ends.time_limit=1")
+
+
+@pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_match_over_the_network_stops_its_robots_before_it_ends(tmp_path: Path, number: int) -> None:
     endpoints, recording = free_endpoints(), tmp_path / "ended.robobt.arrows"
