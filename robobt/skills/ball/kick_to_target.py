@@ -38,6 +38,8 @@ _BEHIND = 0.16
 _THROUGH = 0.05
 _ROUND = 1.0
 """Tangent of the angle to the line of the kick beyond which the way leads round the ball first."""
+_ROUND_RESTART = 0.35
+"""The same at a restart, where the robot must not meet the ball askew."""
 _RUN_UP_DISTANCE = 2.5
 _IN_MOUTH = 0.03
 """A ball no farther than this from the heading's line meets the mouth [m]."""
@@ -220,7 +222,8 @@ class KickToTarget(DrivingSkill):
         behind = (x - _BEHIND * ux, y - _BEHIND * uy)
         allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
         at_wall = distance(allowed, behind) > _REACHABLE
-        in_line = aside < _ROUND * back and (not near or aside < _IN_MOUTH)
+        round_ = _ROUND if frame.game.in_play else _ROUND_RESTART
+        in_line = aside < round_ * back and (not near or aside < _IN_MOUTH)
         close = self.take and near and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _AHEAD
         if not in_line and frame.game.in_play and (has_ball(me, ball) or (at_wall and near) or close):
             # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
@@ -259,7 +262,10 @@ class KickToTarget(DrivingSkill):
             return False
         sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
         leaving = me.heading + atan2(sideways, order.along)
-        if abs(wrap_angle(direction(ball.position, order.target) - leaving)) > order.tolerance:
+        off = abs(wrap_angle(direction(ball.position, order.target) - leaving))
+        # At a restart a touch is the kick, however it is aimed: another one would be a foul.
+        touched = me.ball_contact and not self.frame.game.in_play
+        if off > order.tolerance and not touched:
             return False
         self.store.command.kick_speed = order.speed
         self.store.command.kick_angle = order.angle

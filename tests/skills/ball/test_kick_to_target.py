@@ -298,6 +298,15 @@ def test_at_a_restart_it_goes_round_a_ball_before_its_mouth_without_touching_it(
         assert (alone.command.vx > 0.2) is touches
 
 
+def test_at_a_restart_a_ball_that_it_touches_is_kicked_however_it_is_aimed() -> None:
+    me = robot(0.0, 0.0, heading=0.3, number=1, contact=True)
+    for game, kicks in ((OPEN, False), (free_kick(Team.BLUE, held(me)), True)):
+        alone = Alone(KickToTarget())
+        alone.store.pass_ = pass_to(2, 3.0, 0.0)
+        alone.tick(frame(me, held(me), game=game), 1)
+        assert (alone.command.kick_speed > 0.0) is kicks
+
+
 def test_a_pass_with_a_tolerance_of_its_own_is_kicked_and_chipped_as_told() -> None:
     me = robot(contact=True)
     for kick, speed, angle in (

@@ -70,7 +70,8 @@ class BallSpeed(Rule):
 class DoubleTouch(Rule):
     """Who takes a kick-off or free kick may not touch the ball again before another robot does.
 
-    From 0.05 m of the ball's way on; who pushes it that far is still touching it.
+    From 0.05 m of the ball's way on; who pushes it that far is still touching it. Nobody is at fault
+    where a second robot has touched it on that way.
     """
 
     phases = frozenset({Phase.KICK, Phase.PLAY})
@@ -80,24 +81,33 @@ class DoubleTouch(Rule):
         self._spot: Point = (0.0, 0.0)
         self._team: Team | None = None
         self._kicker: RobotId | None = None
+        self._before: RobotId | None = None
+        self._touched: set[RobotId] = set()
 
     def enter(self, scene: Scene) -> None:
         """Note where the ball lies, and then who has kicked it."""
         self._kicker = None
+        last = scene.touches.last
         if scene.phase is Phase.KICK:
             self._spot, self._team = scene.frame.ball.position, scene.game.restart_team
+            self._before, self._touched = last, set()
             return
-        last = scene.touches.last
         moved = distance(self._spot, scene.frame.ball.position) > self._in_play
         taken = moved and scene.game.command is not RefereeCommand.FORCE_START
-        if taken and last is not None and last.team is self._team:
+        alone = self._touched <= {last}
+        if taken and alone and last is not None and last.team is self._team:
             self._kicker = last
         self._team = None
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
         """Report the second touch once."""
         kicker, touches = self._kicker, scene.touches
-        if scene.phase is Phase.KICK or kicker is None:
+        if scene.phase is Phase.KICK:
+            self._touched.update(touches.now)
+            if touches.last is not None and touches.last != self._before:
+                self._touched.add(touches.last)
+            return ()
+        if kicker is None:
             return ()
         if touches.last != kicker or any(robot != kicker for robot in touches.now):
             self._kicker = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 import pytest
 
 from robobt.match.referee.events import EventKind
@@ -90,6 +92,14 @@ def test_staying_at_a_ball_that_has_hardly_moved_is_none(us: Team) -> None:
     # The time to take the kick is over: the ball is in play where it lies.
     game = kicked(us, Restart.FREE_KICK, 0.049)
     game.ours(1, 0.2 - MOUTH, 0.0).roll(0.2, 0.0)
+    assert game.events == []
+
+
+def test_a_second_robot_that_has_touched_it_before_may_go_on(us: Team) -> None:
+    # The ball of a short kick meets a mate before it is in play.
+    game = Watching(us, game=STOP, stop_distance=None).ours(2, 0.04 + MOUTH, 0.0, heading=pi).kick_of(us)
+    game.touch(1).roll(0.02, 0.0).touch(2).roll(0.04, 0.0)
+    game.ours(2, 0.06 + MOUTH, 0.0, heading=pi).roll(0.06, 0.0).in_play().wait(0.1)
     assert game.events == []
 
 
