@@ -28,9 +28,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
     """Compute Wilson's score interval for a proportion.
 
     Unlike the textbook normal interval it stays inside [0, 1] and keeps its
-    coverage when every trial succeeds or none does.
-
-    No trials at all give (0, 1): nothing is known.
+    coverage when every trial succeeds or none does. No trials at all give (0, 1): nothing is known.
 
     Raises:
         ValueError: counts or confidence out of range.
@@ -193,6 +191,34 @@ def paired_difference_interval(first: ArrayLike, second: ArrayLike, confidence: 
     gained, lost = (int((a & ~b).sum()) + 1) / trials, (int((b & ~a).sum()) + 1) / trials
     half = z * sqrt((gained + lost - (gained - lost) ** 2) / trials)
     return Interval(max(-1.0, gained - lost - half), min(1.0, gained - lost + half))
+
+
+_BETS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Shares of what one has that are bet on the next value being negative."""
+
+
+def surely_negative(values: ArrayLike, error: float = 0.05) -> int | None:
+    """Return after how many values, looked at one by one, their mean is surely negative; None: never.
+
+    However many values come and however they are distributed, a mean of 0 or more is called negative at
+    most so often as ``error``: who bets fairly that it is wins 1 / ``error`` times the stake so seldom.
+
+    Args:
+        values: (n,) in the order in which they came, each -1 to 1.
+        error: 0 to 1, both excluded.
+
+    Raises:
+        ValueError: a value or the error is out of range.
+
+    Source: Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting", 2024.
+    """
+    sample = np.asarray(values, dtype=np.float64)
+    if sample.ndim != 1 or not (np.abs(sample) <= 1.0).all() or not 0.0 < error < 1.0:
+        raise ValueError("needs a list of values from -1 to 1, and an error between 0 and 1")
+    with np.errstate(over="ignore"):
+        won = np.cumprod(1.0 - _BETS * sample[:, None], axis=0).mean(axis=1)
+    over = np.flatnonzero(won >= 1.0 / error)
+    return int(over[0]) + 1 if len(over) else None
 
 
 def holm(p_values: Sequence[float]) -> list[float]:

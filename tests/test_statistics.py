@@ -12,6 +12,7 @@ from robobt.statistics import (
     mcnemar,
     mean_interval,
     reliability,
+    surely_negative,
     wilson_interval,
 )
 
@@ -171,3 +172,32 @@ def test_reliability_and_calibration_error_worked_out_by_hand():
 def test_impossible_reliabilities_are_refused(predicted: list[float], came: list[int], bins: int):
     with pytest.raises(ValueError, match=r"bins|outcomes"):
         reliability(predicted, came, bins)
+
+
+class TestSurelyNegative:
+    def test_who_always_loses_is_found_out_after_seven_values(self) -> None:
+        assert surely_negative([-1.0] * 6) is None
+        assert surely_negative([-1.0] * 100) == 7
+        assert surely_negative([-1.0] * 100, 1e-3) == 13
+
+    def test_a_mean_of_zero_is_seldom_called_negative_however_long_one_looks(self) -> None:
+        rng = np.random.default_rng(1)
+        for values in (
+            rng.choice([-1.0, 1.0], (500, 300)),
+            rng.choice([-1.0, 0.0, 0.0, 1.0], (500, 300)),
+            rng.choice([-0.25, -0.25, -0.25, 0.75], (500, 300)),
+        ):
+            assert sum(surely_negative(row) is not None for row in values) <= 0.06 * len(values)
+
+    def test_a_negative_mean_is_found(self) -> None:
+        values = np.random.default_rng(1).choice([-1.0, 0.0, 0.5], 200)
+        assert (surely_negative(values) or 200) < 100
+        assert surely_negative(-values) is None
+
+    def test_no_values_say_nothing(self) -> None:
+        assert surely_negative([]) is None
+
+    @pytest.mark.parametrize("given", [([2.0], 0.05), ([float("nan")], 0.05), ([0.0], 0.0), ([0.0], 1.0)])
+    def test_what_is_out_of_range_is_refused(self, given: tuple[list[float], float]) -> None:
+        with pytest.raises(ValueError, match="values from -1 to 1, and an error between"):
+            surely_negative(*given)

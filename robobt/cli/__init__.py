@@ -22,6 +22,7 @@ _COMMANDS = {
     "match": "match:match",
     "compare": "compare:compare",
     "tournament": "tournament.tournament:tournament",
+    "sweep": "tournament.sweep:sweep",
     "results": "tournament.results:results",
     "replay": "replay:replay",
     "scenarios": "scenarios:scenarios",

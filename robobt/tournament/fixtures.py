@@ -25,9 +25,9 @@ def pairings(names: Sequence[str], against: str | None = None) -> list[tuple[str
     return [(name, against) for name in names if name != against]
 
 
-def fixtures(pairs: Sequence[tuple[str, str]], rounds: int) -> Iterator[Fixture]:
-    """Yield all matches round by round, so that a tournament that is stopped is nearly balanced."""
-    for number in range(rounds):
-        for first, second in pairs:
-            yield Fixture(first, second, number)
-            yield Fixture(second, first, number)
+def fixtures(pairs: Sequence[tuple[str, str]], rounds: int, first: int = 0) -> Iterator[Fixture]:
+    """Yield all matches, round by round so that a tournament that is stopped is nearly balanced."""
+    for number in range(first, first + rounds):
+        for one, other in pairs:
+            yield Fixture(one, other, number)
+            yield Fixture(other, one, number)

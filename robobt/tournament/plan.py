@@ -36,6 +36,7 @@ class Plan:
         silence: how long a match may stand still before it is given up [s].
         world: makes the world of a match.
         speed: simulated time over real time, for matches with programs; others are as fast as they are.
+        first_round: number of the first round; those before it have other seeds.
 
     Raises:
         TournamentError: two entrants have one name, there is none to meet, or nobody by the name.
@@ -51,6 +52,7 @@ class Plan:
     silence: float = SILENCE
     world: WorldFactory = sim_world
     speed: float = 1.0
+    first_round: int = 0
 
     def __post_init__(self) -> None:
         names = self.names
@@ -80,10 +82,14 @@ class Plan:
 
     def fixtures(self) -> list[Fixture]:
         """Return all matches, round by round."""
-        return list(fixtures(self.pairings, self.rounds))
+        return list(fixtures(self.pairings, self.rounds, self.first_round))
 
-    def open_store(self, path: Path) -> Store:
+    def open_store(self, path: Path, **besides: str) -> Store:
         """Open its store, or make it, with the entrants entered.
+
+        Args:
+            path: the file.
+            besides: what else is played, by field.
 
         Raises:
             StoreError: the file is another tournament's, or not a store.
@@ -94,6 +100,7 @@ class Plan:
             "seed": self.seed,
             "referee": getattr(self.referee, "name", "own"),
             "robobt": __version__,
+            **besides,
         }
         store = Store(path, played)
         try:

@@ -25,6 +25,8 @@ from robobt.tournament.store import Store
 
 Enough = Callable[[Collection[PlayedMatch], Collection[Fixture]], bool]
 
+Needless = Callable[[Fixture], bool]
+
 _POLL = 1.0
 """How often it is looked whether another program has finished what it has claimed [s]."""
 
@@ -52,6 +54,7 @@ def play(
     recordings: Recordings | None = None,
     on_match: Callable[[PlayedMatch], object] | None = None,
     enough: Enough | None = None,
+    needless: Needless | None = None,
     job: type[Job] = Job,
 ) -> Played:
     """Play what is missing in the store.
@@ -68,13 +71,14 @@ def play(
         on_match: called with each match as it is there, first with those that the store holds already.
         enough: called after each match with all that are there and those that could not be played; once
             it says True no further match begins, and those in progress are not waited for.
+        needless: says of a match, before it begins, whether nobody has to know its result any more.
         job: plays a match.
 
     Raises:
         StoreError: the store cannot be written.
         OSError: a recording cannot be written.
     """
-    driver = _Driver(plan, store, recordings, on_match, enough)
+    driver = _Driver(plan, store, recordings, on_match, enough, needless)
     interrupted = False
     died: set[Fixture] = set()
 
@@ -126,8 +130,10 @@ class _Driver:
         recordings: Recordings | None,
         on_match: Callable[[PlayedMatch], object] | None,
         enough: Enough | None,
+        needless: Needless | None,
     ) -> None:
         self._store, self._recordings, self._on_match, self._enough = store, recordings, on_match, enough
+        self._needless = needless or (lambda _: False)
         self._wanted = plan.fixtures()
         self.done: dict[Fixture, PlayedMatch] = {}
         self.failed: dict[Fixture, str] = {}
@@ -142,7 +148,10 @@ class _Driver:
 
     def missing(self) -> list[Fixture]:
         """Return what is still to be played, nothing once it is enough."""
-        return [] if self.stop else [f for f in self._wanted if f not in self.done and f not in self.failed]
+        if self.stop:
+            return []
+        known = (self.done, self.failed)
+        return [one for one in self._wanted if not any(one in of for of in known) and not self._needless(one)]
 
     def claimed(self, missing: Iterable[Fixture], claims: Claims) -> Iterator[Fixture]:
         """Yield what nobody else is playing; what another program has finished meanwhile counts as played."""
@@ -150,7 +159,7 @@ class _Driver:
         self._again.clear()
         while (self._again or left) and not self.stop:
             fixture = self._again.popleft() if self._again else left.popleft()
-            if not claims.take(fixture):
+            if self._needless(fixture) or not claims.take(fixture):
                 continue
             theirs = self._store.match(fixture)
             if theirs is None:

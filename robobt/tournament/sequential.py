@@ -110,14 +110,13 @@ class SequentialTest:
 class RunningTest:
     """A sequential test that goes on while its matches are played.
 
-    Only rounds before the first that is still being played count, so that the verdict does not
-    depend on which match ends first. A round with a match that could not be played is left out,
-    and so is one that repeats another move for move.
+    Which rounds count says :func:`scores_of`.
 
     Args:
         test: what is asked.
         first: who may be better.
         second: better than whom.
+        first_round: number of the first round that counts.
 
     Attributes:
         verdict: what it says so far.
@@ -125,9 +124,9 @@ class RunningTest:
         ratio: the log-likelihood ratio there.
     """
 
-    def __init__(self, test: SequentialTest, first: str, second: str) -> None:
+    def __init__(self, test: SequentialTest, first: str, second: str, first_round: int = 0) -> None:
         self.verdict, self.rounds, self.ratio = Verdict.UNDECIDED, 0, 0.0
-        self._test, self._first, self._second = test, first, second
+        self._test, self._first, self._second, self._first_round = test, first, second, first_round
 
     def enough(self, matches: Iterable[PlayedMatch], failed: Collection[Fixture] = ()) -> bool:
         """Return whether the evidence is enough.
@@ -136,16 +135,7 @@ class RunningTest:
             matches: what was played so far.
             failed: what could not be played.
         """
-        pairs = rounds_of(matches, self._first, self._second)
-        left_out = {fixture.round for fixture in failed}
-        scores: dict[tuple[object, ...], float] = {}
-        for number in count():
-            if number in pairs:
-                pair = pairs[number]
-                traces = tuple([match.trace or match.round for match in pair])
-                scores.setdefault(traces, fmean(match.score(self._first) for match in pair))
-            elif number not in left_out:
-                break
+        scores = scores_of(matches, self._first, self._second, failed, self._first_round)
         self.verdict, self.rounds, self.ratio = self._test.judge(list(scores.values()))
         return self.verdict is not Verdict.UNDECIDED
 
@@ -172,6 +162,39 @@ class RunningTest:
         """Return plain data."""
         found = {"verdict": self.verdict.value, "rounds": self.rounds, "ratio": self.ratio}
         return {**asdict(self._test), **found, "bounds": self._test.bounds}
+
+
+def scores_of(
+    matches: Iterable[PlayedMatch],
+    first: str,
+    second: str,
+    failed: Collection[Fixture] = (),
+    first_round: int = 0,
+) -> dict[int, float]:
+    """Return what the first entrant scores, 0 to 1, in each round that counts, by its number.
+
+    Only rounds before the first that is still being played count, so that no verdict depends on which
+    match ends first. A round with a match that could not be played is left out, and so is one that
+    repeats another move for move.
+
+    Args:
+        matches: what was played so far.
+        first: whose scores.
+        second: whom it met.
+        failed: what could not be played.
+        first_round: number of the first round that counts.
+    """
+    pairs = rounds_of(matches, first, second)
+    left_out = {fixture.round for fixture in failed if {first, second} == {fixture.blue, fixture.yellow}}
+    scores: dict[tuple[object, ...], tuple[int, float]] = {}
+    for number in count(first_round):
+        if number in pairs:
+            pair = pairs[number]
+            traces = tuple([match.trace or match.round for match in pair])
+            scores.setdefault(traces, (number, fmean(match.score(first) for match in pair)))
+        elif number not in left_out:
+            break
+    return dict(scores.values())
 
 
 def _tilted(shares: NDArray[np.float64], mean: float) -> NDArray[np.float64]:

@@ -26,23 +26,17 @@ from robobt.cli.common import (
     say,
     warn,
 )
-from robobt.cli.compare import Set, parse_play
+from robobt.cli.compare import Set
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
+from robobt.cli.tournament.asked import ENTRANT, EXITS, Alpha, Beta, asked_test, parse_entrant, tell_code
 from robobt.cli.tournament.tables import print_standings
 
 if TYPE_CHECKING:
-    from robobt.tournament.entrants import Entrant
     from robobt.tournament.fixtures import Fixture
     from robobt.tournament.plan import Plan
-    from robobt.tournament.play import Played
     from robobt.tournament.played import PlayedMatch
     from robobt.tournament.recordings import Recordings
     from robobt.tournament.sequential import SequentialTest
-
-ENTRANT = "ENTRANT"
-
-_EXITS = ("better", "not better", "undecided")
-"""What a sequential test says, by the exit code."""
 
 _ROUNDS, _MOST_ROUNDS = 10, 5000
 """Rounds by default: of a tournament, and of a sequential test."""
@@ -93,12 +87,8 @@ def tournament(
             "ELO0 points or less, better by ELO1 or more.",
         ),
     ] = None,
-    alpha: Annotated[
-        float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")
-    ] = 0.05,
-    beta: Annotated[
-        float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")
-    ] = 0.05,
+    alpha: Alpha = 0.05,
+    beta: Beta = 0.05,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -174,7 +164,7 @@ def tournament(
         raise typer.BadParameter("must be own or official", param_hint="--referee")
     base, referees = refereed(base, referee, game_controller, stages)
     texts = [*entrants, *([against] if against is not None and against not in entrants else [])]
-    teams = tuple([_entrant(text) for text in texts])
+    teams = tuple([parse_entrant(text) for text in texts])
     plan = Plan(
         base,
         teams,
@@ -220,7 +210,7 @@ def tournament(
         "referee": getattr(referees, "name", "own"),
         "rounds": plan.rounds,
     }
-    _tell_code(played)
+    tell_code(played.matches)
     # The exit code says who is better also where nobody reads on.
     with as_far_as_read():
         if as_json:
@@ -245,7 +235,7 @@ def tournament(
     if played.interrupted:
         raise typer.Exit(130)
     if test is not None:
-        raise typer.Exit(_EXITS.index(test.verdict.value))
+        raise typer.Exit(EXITS.index(test.verdict.value))
     if played.failed:
         raise typer.Exit(1)
 
@@ -262,35 +252,12 @@ def _workers(plan: Plan) -> int:
 def _asked(
     entrants: list[str], against: str | None, sprt: tuple[float, float], alpha: float, beta: float
 ) -> SequentialTest:
-    from robobt.tournament.sequential import SequentialTest
-
     if against is None or len([text for text in entrants if text != against]) != 1:
         raise typer.BadParameter("needs one entrant, and --against for the other", param_hint="--sprt")
-    try:
-        return SequentialTest(*sprt, alpha, beta)
-    except ValueError as error:
-        raise typer.BadParameter(str(error), param_hint="--sprt") from error
-
-
-def _entrant(text: str) -> Entrant:
-    from robobt.tournament.entrants import read_entrant
-
-    if "=" not in text:
-        return read_entrant(text)
-    play, params = parse_play(text, ENTRANT)
-    return read_entrant(play, params, text)
+    return asked_test(sprt, alpha, beta)
 
 
 def _recordings(out: Path, keep: KeepOption, first: str) -> Recordings:
     from robobt.tournament.recordings import Keep, Recordings
 
     return Recordings(out.with_suffix(".recordings"), Keep(keep.value), first)
-
-
-def _tell_code(played: Played) -> None:
-    versions = {match.code for match in played.matches}
-    if len(versions) > 1:
-        warn(
-            f"the matches were played by {len(versions)} states of the code; for a fair comparison play "
-            "them all anew, with another --out"
-        )

@@ -89,7 +89,7 @@ def test_a_sequential_test_whose_tables_nobody_reads_exits_with_what_it_found(
         monkeypatch.setattr(command.console, "print", nobody_reads)
     else:
         monkeypatch.setattr(common.errors, "print", nobody_reads)
-        monkeypatch.setattr(command, "_tell_code", lambda _: common.warn("two states of the code"))
+        monkeypatch.setattr(command, "tell_code", lambda _: common.warn("two states of the code"))
     assert (
         invoke("take_shot", "--against", "attack_main", "--sprt", "0", "30", *QUICK, *options).exit_code == 2
     )

@@ -1,0 +1,55 @@
+"""What the commands that let teams play ask for: entrants and sequential tests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robobt.cli.common import warn
+from robobt.cli.compare import parse_play
+
+if TYPE_CHECKING:
+    from robobt.tournament.entrants import Entrant
+    from robobt.tournament.played import PlayedMatch
+    from robobt.tournament.sequential import SequentialTest
+
+ENTRANT = "ENTRANT"
+
+EXITS = ("better", "not better", "undecided")
+"""What a sequential test says, by the exit code."""
+
+Alpha = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")]
+
+Beta = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")]
+
+
+def asked_test(sprt: tuple[float, float], alpha: float, beta: float) -> SequentialTest:
+    """Return the test that --sprt, --alpha and --beta ask for."""
+    from robobt.tournament.sequential import SequentialTest
+
+    try:
+        return SequentialTest(*sprt, alpha, beta)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--sprt") from error
+
+
+def parse_entrant(text: str) -> Entrant:
+    """Return the entrant of a command line."""
+    from robobt.tournament.entrants import read_entrant
+
+    if "=" not in text:
+        return read_entrant(text)
+    play, params = parse_play(text, ENTRANT)
+    return read_entrant(play, params, text)
+
+
+def tell_code(matches: Iterable[PlayedMatch]) -> None:
+    """Warn when matches were played by several states of the code."""
+    versions = {match.code for match in matches}
+    if len(versions) > 1:
+        warn(
+            f"the matches were played by {len(versions)} states of the code; for a fair comparison play "
+            "them all anew, with another --out"
+        )

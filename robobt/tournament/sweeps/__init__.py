@@ -1,0 +1,1 @@
+"""Tuning the parameters of a play: what is varied, which candidates are tried, and what came of it."""

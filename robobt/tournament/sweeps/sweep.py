@@ -1,0 +1,155 @@
+"""What a sweep tunes and against whom, and the sequential test that confirms what it finds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robobt.match.loop import WorldFactory
+from robobt.match.refereeing import RefereeFactory, own_referee
+from robobt.match.scenario.scenario import Scenario
+from robobt.tournament.entrants import Entrant, meeting, read_entrant
+from robobt.tournament.fixtures import Fixture
+from robobt.tournament.plan import Plan
+from robobt.tournament.play import Played, play
+from robobt.tournament.played import PlayedMatch
+from robobt.tournament.sequential import RunningTest, SequentialTest
+from robobt.tournament.sweeps.vary import SweepError, Varied
+from robobt.worlds import sim_world
+
+
+@dataclass(slots=True, frozen=True)
+class Sweep:
+    """What is tuned, and how.
+
+    Candidates are proposed by Optuna's tree-structured Parzen estimator, ``at_once`` at a time, so that what
+    is proposed does not depend on which match ends first.
+
+    Attributes:
+        scenario: the field, the starts, the rules and the ends of every match.
+        play: whose parameters are tuned.
+        params: those that stay as they are.
+        varied: those that are varied.
+        against: whom every candidate plays.
+        candidates: how many are tried.
+        at_once: how many of them are proposed, and play, at a time.
+        rounds: how many a candidate plays that is not stopped.
+        seed: of the rounds and of what is proposed.
+        error: how often at most a candidate is stopped that is not worse.
+        referee: makes the referee of a match.
+        world: makes the world of a match.
+
+    Raises:
+        SweepError: a parameter is varied twice, or fixed as well.
+        ScenarioError, EntrantError: the play does not fit the scenario with some of the values.
+    """
+
+    scenario: Scenario
+    play: str
+    params: Mapping[str, object]
+    varied: tuple[Varied, ...]
+    against: Entrant
+    candidates: int
+    at_once: int
+    rounds: int
+    seed: int
+    error: float = 0.05
+    referee: RefereeFactory = own_referee
+    world: WorldFactory = sim_world
+
+    def __post_init__(self) -> None:
+        names = [one.name for one in self.varied]
+        if not names:
+            raise SweepError("nothing is varied")
+        for name in names:
+            if names.count(name) > 1 or name in self.params:
+                raise SweepError(f"{name}: is given twice")
+        for one in self.varied:
+            for value in one.extremes():
+                entrant = self.entrant({one.name: value})
+                meeting(self.scenario, entrant, self.against)
+
+    def entrant(self, params: Mapping[str, object]) -> Entrant:
+        """Return the play with these values of what is varied."""
+        return read_entrant(self.play, {**self.params, **params}, self.named(params))
+
+    def named(self, params: Mapping[str, object]) -> str:
+        """Return what the play is called with these values, as a command line would write it."""
+        return f"{self.play}:" + ",".join(
+            [f"{name}={_text(value)}" for name, value in {**self.params, **params}.items()]
+        )
+
+    def plan(self, entrants: Sequence[Entrant], rounds: int, first_round: int = 0) -> Plan:
+        """Return a gauntlet of entrants against the one that all meet."""
+        return Plan(
+            self.scenario,
+            (*entrants, self.against),
+            rounds,
+            self.seed,
+            self.against.name,
+            self.referee,
+            world=self.world,
+            first_round=first_round,
+        )
+
+    def says(self) -> str:
+        """Return what the store keeps: two sweeps of which it is equal propose the same candidates."""
+        varied = ", ".join(f"{one.name}={one.text}" for one in self.varied)
+        fixed = "".join(f", {name}={_text(value)}" for name, value in self.params.items())
+        return (
+            f"{self.play}{fixed} by {varied} against {self.against.name}: {self.rounds} rounds, "
+            f"{self.at_once} at once, error {self.error:g}, Optuna {load_optuna().__version__}"
+        )
+
+
+def confirm(
+    sweep: Sweep,
+    params: Mapping[str, object],
+    test: SequentialTest,
+    rounds: int,
+    path: Path,
+    workers: int = 0,
+    on_progress: Callable[[RunningTest], object] | None = None,
+) -> tuple[RunningTest, Played]:
+    """Test sequentially whether a candidate is better than whom all have met, on seeds that nobody has seen.
+
+    Args:
+        sweep: what was tuned.
+        params: what is varied, as the candidate has it.
+        test: what is asked.
+        rounds: how many are played at most.
+        path: the store of the search, which keeps these matches too.
+        workers: processes; 0 is this process itself.
+        on_progress: called after each match.
+
+    Raises:
+        StoreError: the store cannot be written.
+    """
+    plan = sweep.plan([sweep.entrant(params)], rounds, sweep.rounds)
+    running = RunningTest(test, sweep.named(params), sweep.against.name, sweep.rounds)
+
+    def enough(matches: Collection[PlayedMatch], failed: Collection[Fixture]) -> bool:
+        decided = running.enough(matches, failed)
+        if on_progress is not None:
+            on_progress(running)
+        return decided
+
+    with plan.open_store(path, sweep=sweep.says()) as store:
+        return running, play(plan, store, workers, enough=enough)
+
+
+def load_optuna() -> Any:
+    """Return Optuna, which is imported only where it is needed."""
+    try:
+        import optuna
+    except ImportError as error:
+        raise SweepError('Optuna is not installed; pip install "robobt[sweep]"') from error
+    return optuna
+
+
+def _text(value: object) -> str:
+    """Return a value as on a command line."""
+    return value if isinstance(value, str) else json.dumps(value)
