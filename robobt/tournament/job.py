@@ -14,6 +14,8 @@ from typing import Self
 import robobt
 from robobt.config.errors import one_line
 from robobt.league.programs.world import ForfeitError, ProgramWorld
+from robobt.league.referee.process import GameControllerError
+from robobt.league.wire.stream import StreamError
 from robobt.match.loop import Match
 from robobt.match.runner import trial_seed
 from robobt.plays import PLAYS
@@ -39,10 +41,17 @@ def code_digest() -> str:
 
 @dataclass(slots=True, frozen=True)
 class Failure:
-    """A match that could not be played."""
+    """A match that could not be played.
+
+    Attributes:
+        fixture: which.
+        problem: why.
+        again: whether it may be played if it is begun anew, as what failed is neither's play.
+    """
 
     fixture: Fixture
     problem: str
+    again: bool = False
 
 
 @dataclass(slots=True, frozen=True)
@@ -93,6 +102,8 @@ class Job:
                 match = Match(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
                 with guarded(match, self._note(fixture), plan.silence):
                     result = match.play()
+        except (GameControllerError, StreamError) as error:
+            return Failure(fixture, one_line(f"{type(error).__name__}: {error}"), again=True)
         except OSError:
             raise
         except ForfeitError as error:

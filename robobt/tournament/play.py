@@ -80,15 +80,13 @@ def play(
     """
     driver = _Driver(plan, store, recordings, on_match, enough, needless)
     interrupted = False
-    died: set[Fixture] = set()
 
     def lost(fixture: Fixture, problem: str) -> PlayedMatch | Failure:
         # A process may also be killed from outside, as for want of memory, or have stood still with this one;
         # a match that a play has ended ends again. An engine elsewhere has tried more than once already.
-        if fixture in died or engine() is not None:
+        if fixture in driver.begun_anew or engine() is not None:
             return works.lost(fixture, problem)
-        died.add(fixture)
-        return _Again(fixture, problem)
+        return Failure(fixture, problem, again=True)
 
     with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
         works = job.of(plan, Path(notes), store.path.with_suffix(".output"), recordings)
@@ -116,12 +114,14 @@ def play(
     return Played([driver.done[one] for one in sorted(driver.done, key=_order)], driver.failed, interrupted)
 
 
-class _Again(Failure):
-    """A match whose process has died for the first time, and that is played once more."""
-
-
 class _Driver:
-    """What has been played so far, and what follows from each match."""
+    """What has been played so far, and what follows from each match.
+
+    Attributes:
+        done: matches that are played; ``failed`` says of others why not.
+        begun_anew: matches that are played once more, as their process died or their referee was lost.
+        stop: whether it is enough.
+    """
 
     def __init__(
         self,
@@ -137,6 +137,7 @@ class _Driver:
         self._wanted = plan.fixtures()
         self.done: dict[Fixture, PlayedMatch] = {}
         self.failed: dict[Fixture, str] = {}
+        self.begun_anew: set[Fixture] = set()
         self.stop = False
         # Those of earlier rounds come first, as a sequential test waits for them.
         self._again: deque[Fixture] = deque()
@@ -173,7 +174,8 @@ class _Driver:
 
     def take(self, result: PlayedMatch | Failure) -> None:
         """Take in a match that has just been played."""
-        if isinstance(result, _Again):
+        if isinstance(result, Failure) and result.again and result.fixture not in self.begun_anew:
+            self.begun_anew.add(result.fixture)
             self._again.append(result.fixture)
             return
         if isinstance(result, Failure):

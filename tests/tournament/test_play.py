@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
+from robobt.league.referee.process import GameControllerError
 from robobt.match import ScenarioError
 from robobt.match.recording import load_recording
 from robobt.tournament.fixtures import Fixture
@@ -92,6 +93,36 @@ def test_a_match_that_cannot_be_played_is_left_out_and_tried_again(tmp_path: Pat
     assert len(found.failed) == 6
     assert set(found.failed.values()) == {"RuntimeError: the field is on fire"}
     assert len(run(plan(1), tmp_path / "a").matches) == 6
+
+
+class LosingItsController(PlainWorld):
+    """Loses the game controller in the first try of every match."""
+
+    lost: ClassVar[set[object]] = set()
+
+    def reset(self, placement: Any, seed: int) -> None:
+        super().reset(placement, seed)
+        if seed not in self.lost:
+            self.lost.add(seed)
+            raise GameControllerError("the game controller closed the connection")
+
+
+def test_a_match_whose_game_controller_is_lost_is_played_again(tmp_path: Path) -> None:
+    two = (runner(2.0), runner(1.0))
+    found = run(plan(1, world=LosingItsController, entrants=two), tmp_path / "a")
+    assert not found.failed
+    assert rows(found.matches) == rows(run(plan(1, entrants=two), tmp_path / "b").matches)
+
+
+class WithoutController(PlainWorld):
+    def reset(self, placement: Any, seed: int) -> None:
+        raise GameControllerError("the game controller closed the connection")
+
+
+def test_where_it_is_lost_again_the_match_is_left_out_and_the_tournament_ends(tmp_path: Path) -> None:
+    found = run(plan(1, world=WithoutController), tmp_path / "a")
+    assert len(found.failed) == 6
+    assert "GameControllerError: the game controller closed" in next(iter(found.failed.values()))
 
 
 def test_trees_that_fail_are_counted_and_the_match_goes_on(tmp_path: Path) -> None:
