@@ -12,6 +12,7 @@ from robobt.config.validation import Settings
 from robobt.league.wire.endpoints import Endpoints, HostAddress
 from robobt.league.wire.links import GrSimLink, Link, ProtocolLink
 from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.steps import StepLink
 from robobt.world.game import Team
 
 
@@ -22,8 +23,9 @@ class LeagueError(RobobtError, RuntimeError):
 class Connection(Settings):
     """How a field of the league is reached. Nothing leaves this machine unless a host is named."""
 
-    simulator: Literal["grsim", "protocol", "observer"] = Field(
-        "grsim", description="grSim's packets, the simulation protocol, or no commands at all"
+    simulator: Literal["grsim", "protocol", "steps", "observer"] = Field(
+        "grsim",
+        description="grSim's packets, the simulation protocol, its steps (lock step), or no commands at all",
     )
     host: HostAddress = Field(LOOPBACK, description="where the robots are commanded (IPv4 address)")
     interface: HostAddress | None = Field(
@@ -73,4 +75,6 @@ class Connection(Settings):
         """Return a new link that commands the robots."""
         if self.simulator == "grsim":
             return GrSimLink(self.host, self.endpoints, self.interface, self.teams)
+        if self.simulator == "steps":
+            return StepLink(self.host, self.endpoints, self.teams)
         return ProtocolLink(self.host, self.endpoints) if self.simulator == "protocol" else Link()

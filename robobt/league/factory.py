@@ -32,8 +32,8 @@ class AddressError(ConfigError):
 def parse_address(address: str) -> tuple[Connection, str | None]:
     """Return the connection of an address, and the preset of the physics there if it names one.
 
-    The form is ``league://SIMULATOR?name=value&...`` with "grsim", "protocol" or "observer"
-    as the simulator. The names are the fields of :class:`Connection`, "physics", and the
+    The form is ``league://SIMULATOR?name=value&...`` with "grsim", "protocol", "steps" or
+    "observer" as the simulator. The names are the fields of :class:`Connection`, "physics", and the
     fields of :class:`Endpoints` (ADDRESS:PORT or a port); teams is blue, yellow or both.
 
     Raises:

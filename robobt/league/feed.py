@@ -179,11 +179,7 @@ class Feed:
                 if self._clock() > end:
                     break
                 continue
-            if seen.field is not None:
-                self._see(seen.field)
-            for number, place in seen.cameras.items():
-                turned = self.sign()
-                self.filter.cameras[number] = CameraPlace(turned * place.x, turned * place.y, place.z)
+            self._look_around(seen)
             if seen.frame is not None:
                 self.add(seen.frame, arrived)
         if self.referee is not None:
@@ -212,6 +208,14 @@ class Feed:
             self._delay = frame.sent - frame.captured
         self.fresh = True
         self._cameras[frame.camera] = frame.captured
+
+    def _look_around(self, seen: VisionPacket) -> None:
+        """Take in a packet's geometry."""
+        if seen.field is not None:
+            self._see(seen.field)
+        for number, place in seen.cameras.items():
+            turned = self.sign()
+            self.filter.cameras[number] = CameraPlace(turned * place.x, turned * place.y, place.z)
 
     def _see(self, field: FieldGeometry) -> None:
         """Play on the field that the vision reports."""

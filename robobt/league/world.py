@@ -12,10 +12,11 @@ from typing import Self
 
 from robobt.league.claims import Claims
 from robobt.league.connection import Connection
-from robobt.league.feed import ALL_CAMERAS, Feed
+from robobt.league.feed import ALL_CAMERAS
 from robobt.league.known_field import KnownField
 from robobt.league.pacing import Pace
 from robobt.league.placing import Placer
+from robobt.league.step_feed import feed_of
 from robobt.league.watch import MatchWatch
 from robobt.league.wire.commands import clamp_command
 from robobt.league.wire.packets import PacketCounts
@@ -62,7 +63,7 @@ class LeagueWorld(World):
         settings: physics to expect there.
         period: control period [s].
         connection: how the field is reached.
-        clock: monotonic seconds; the only clock of this world.
+        clock: monotonic seconds; the only clock of this world. In lock step it is the field's own.
         known: what earlier worlds of the same field have found out about it.
         options: fields of :class:`Connection` by name, instead of ``connection``.
 
@@ -101,10 +102,11 @@ class LeagueWorld(World):
             # First, as who is released thereby gives up its ports.
             claims = Claims(here.where, commanded, here.teams, self.close)
             opened.callback(claims.close)
-            self._feed = Feed(here, field, self.settings, self._limits, clock, known)
-            opened.callback(self._feed.close)
             self._link = here.link()
             opened.callback(self._link.close)
+            self._clock = clock = self._link.clock or clock
+            self._feed = feed_of(self._link, period, here, field, self.settings, self._limits, clock, known)
+            opened.callback(self._feed.close)
             self._opened = opened.pop_all()
         if claims.taken:
             self._feed.known.tell("players", claims.message())

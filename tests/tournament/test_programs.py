@@ -9,11 +9,15 @@ from typing import Any
 
 import pytest
 
+from robobt.match import load_scenario
 from robobt.match.recording import load_recording
 from robobt.tournament.entrants import Entrant, EntrantError, read_entrant
+from robobt.tournament.plan import Plan
 from robobt.tournament.play import Played, play
+from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Keep, Recordings
 from robobt.world.game import Team
+from robobt.worlds import sim_world
 from tests.tournament.made_up import drill, plan, runner
 
 pytestmark = [
@@ -27,15 +31,19 @@ ROOT = Path(__file__).parent.parent.parent
 FILE = """
 entrant: {name}
 program:
-  command: [env, "PYTHONPATH={root}", {python}, {client}, {name}, "{{team}}", "{{grsim}}"]
+  command: [env, "PYTHONPATH={root}", {python}, {client}, "{name}", "{{team}}", "{port}"]
   ready_within: {ready}
-  silent_for: 3.0
+  silent_for: {silent}
+  {more}
 """
 
 
-def program(folder: Path, name: str, ready: float = 30.0) -> Entrant:
+def program(
+    folder: Path, name: str, ready: float = 30.0, port: str = "{grsim}", more: str = "", silent: float = 3.0
+) -> Entrant:
     file = folder / f"{name}.yaml"
-    file.write_text(FILE.format(name=name, root=ROOT, python=sys.executable, client=CLIENT, ready=ready))
+    given = {"ready": ready, "port": port, "more": more, "silent": silent}
+    file.write_text(FILE.format(name=name, root=ROOT, python=sys.executable, client=CLIENT, **given))
     return read_entrant(str(file))
 
 
@@ -72,14 +80,65 @@ def test_a_program_drives_its_robots_from_either_side(tmp_path: Path) -> None:
     assert not left("drives")
 
 
+STEPS = """
+entrant: {name}
+program:
+  command: [env, "PYTHONPATH={root}", {python}, -m, robobt, match, {scenario}, --referee, none, --trials, "1",
+    --world, "league://steps?teams={{team}}&vision={{vision}}&referee={{referee}}&{{team}}={{steps}}&follow_referee=true&place=\
+false"]
+  lockstep: true
+  ready_within: 120
+  silent_for: 120
+"""
+
+
+def stepped(folder: Path, name: str, scenario: str) -> Entrant:
+    file = folder / f"{name}.yaml"
+    file.write_text(STEPS.format(name=name, root=ROOT, python=sys.executable, scenario=scenario))
+    return read_entrant(str(file))
+
+
+def twice(tmp_path: Path, what: Plan) -> list[list[PlayedMatch]]:
+    found = []
+    for name in ("once", "again"):
+        with what.open_store(tmp_path / f"{name}.sqlite") as store:
+            found.append(play(what, store, 2).matches)
+    for once, again in zip(*found, strict=True):
+        assert once.forfeited_by is again.forfeited_by is None, (once.sides, again.sides)
+        assert (once.trace, once.ticks) == (again.trace, again.ticks)
+    return found
+
+
+def test_matches_of_programs_in_lock_step_are_the_same_bit_for_bit(tmp_path: Path) -> None:
+    teams = [
+        program(tmp_path, name, port="{steps}", more="lockstep: true", silent=60.0)
+        for name in ("steps", "steps 2")
+    ]
+    found = twice(tmp_path, plan(1, scenario=drill(2.4), entrants=tuple(teams)))
+    assert len({match.trace for match in found[0]}) == 2
+    assert all(match.ticks > 100 for match in found[0])
+    assert not left("steps", "steps 2")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sides", [1, 2])
+def test_robobts_own_matches_in_lock_step_are_the_same_bit_for_bit(sides: int, tmp_path: Path) -> None:
+    scenario = load_scenario("striker_vs_goalie").lasting(3.0)
+    teams = [stepped(tmp_path, name, "striker_vs_goalie") for name in ("first", "second")]
+    if sides == 1:
+        teams[1] = read_entrant("attack_main")
+    found = twice(tmp_path, plan(1, scenario=scenario, entrants=tuple(teams), world=sim_world))
+    assert found[0][0].trace != found[0][1].trace
+
+
 @pytest.mark.slow
 def test_programs_side_by_side_never_meet(tmp_path: Path) -> None:
-    teams = [program(tmp_path, name) for name in ("drives", "floods")]
+    teams = [program(tmp_path, name) for name in ("drives", "twice")]
     what = plan(2, entrants=tuple(teams), speed=3.0)
     with what.open_store(tmp_path / "night.sqlite") as store:
         found = play(what, store, 2)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
-    assert not left("drives", "floods")
+    assert not left("drives", "twice")
 
 
 @pytest.mark.slow
@@ -91,18 +150,21 @@ def test_who_misbehaves_has_lost_and_nothing_is_left(tmp_path: Path) -> None:
         "nan": "its program did not command a robot within 8 s",
         "silent": "its program was silent for 3 s",
     }
-    good = ("floods", "shouts", "stubborn")
-    teams = [program(tmp_path, name, 8.0) for name in (*bad, *good)]
+    end = "its program, or a child of it, did not end within 5 s of SIGTERM"
+    bad |= {
+        "floods": "its program sent more than 50 packets a control period, for too long",
+        "shouts": "its program printed more than 64 MB",
+        "stubborn": end,
+        "deaf": end,
+    }
+    teams = [program(tmp_path, name, 8.0) for name in bad]
     found = run(tmp_path, *teams, workers=2, seconds=24.0)
     assert not found.failed
     for name, told in bad.items():
         matches = [match for match in found.matches if name in match.fixture]
         assert [match.forfeited_by for match in matches] == [name, name], name
         assert {match.side(name).first_error for match in matches} == {f"{name}: {told}"}
-    for name in good:
-        matches = [match for match in found.matches if name in match.fixture]
-        assert [match.forfeited_by for match in matches] == [None, None], name
-    assert not left(*bad, *good)
+    assert not left(*bad)
     assert sum(path.stat().st_size for path in (tmp_path / "night.output").glob("*/*")) < 10 << 20
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import socket
-import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from contextlib import ExitStack
 from typing import Self
 
@@ -19,8 +18,11 @@ from robobt.world.state import Frame, RobotId
 
 _GROUPS = {"vision": VISION_GROUP, "tracker": VISION_GROUP, "referee": REFEREE_GROUP}
 
-_MAX_READING = 0.002
-"""How long one port is read at a time, so that who floods its own does not delay the match [s]."""
+MOST_PACKETS = 50
+"""Packets of a team in a control period: each of eleven robots may be commanded four times."""
+
+_TOLERATED = 60 * MOST_PACKETS
+"""Packets beyond these that are tolerated, as when many come at once; they are forgotten as slowly."""
 
 
 class MatchPorts:
@@ -34,15 +36,18 @@ class MatchPorts:
 
     Attributes:
         senders: of vision, tracker and referee, by these names.
+        flooded: the team that has sent far more than anybody needs, None without one.
 
     Raises:
         OSError: there is no free port.
     """
 
-    def __init__(self, teams: Iterable[Team]) -> None:
+    def __init__(self, teams: Collection[Team]) -> None:
         self.senders: dict[str, Sender] = {}
         self._places: dict[str, str] = {}
         self._receivers: dict[tuple[Team, str], Receiver] = {}
+        self._beyond = dict.fromkeys(teams, 0)
+        self.flooded: Team | None = None
         with ExitStack() as opened:
             for name, group in _GROUPS.items():
                 port = opened.enter_context(_reserved())
@@ -72,6 +77,13 @@ class MatchPorts:
         """Return the sockets at which commands arrive, for ``select``."""
         return list(self._receivers.values())
 
+    def period_over(self) -> None:
+        """Take note that a control period is over."""
+        for team, beyond in self._beyond.items():
+            if beyond > _TOLERATED:
+                self.flooded = self.flooded or team
+            self._beyond[team] = max(0, beyond - MOST_PACKETS)
+
     def commands(self, truth: Frame) -> dict[Team, dict[RobotId, RobotCommand]]:
         """Return the commands that have come, for teams of which any has.
 
@@ -81,9 +93,12 @@ class MatchPorts:
         found: dict[Team, dict[RobotId, RobotCommand]] = {}
         robots = truth.robots()
         for (team, kind), port in self._receivers.items():
-            end = time.monotonic() + _MAX_READING
             headings = {robot.number: state.heading for robot, state in robots.items() if robot.team is team}
-            for packet in port.receive():
+            for number, packet in enumerate(port.receive()):
+                self._beyond[team] += 1
+                if number >= MOST_PACKETS:
+                    # Who floods its own port must not delay the match.
+                    continue
                 if kind == "grsim":
                     request = read_grsim(packet.data, port.counts)
                 elif kind == "protocol":
@@ -97,8 +112,6 @@ class MatchPorts:
                     found.setdefault(team, {}).update(own)
                 if kind == "protocol":
                     _answer(port, packet, own, truth)
-                if time.monotonic() > end:
-                    break
         return found
 
 

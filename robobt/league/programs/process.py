@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -18,8 +19,14 @@ from uuid import uuid4
 from robobt.config.errors import one_line
 from robobt.signals import uninterrupted
 
-MOST_OUTPUT = 1 << 20
+KEPT_OUTPUT = 1 << 20
 """How much of a program's output is kept [bytes]; the rest is read and dropped."""
+
+MOST_OUTPUT = 64 << 20
+"""How much a program may print in a match [bytes]."""
+
+LEAVE = 5.0
+"""How long a program that is told to end may take [s]."""
 
 _MARK = "ROBOBT_PROGRAM"
 """Environment variable that everything a program starts inherits."""
@@ -60,6 +67,10 @@ class TeamProcess:
         folder: where it runs.
         output: file for the beginning of what it prints.
 
+    Attributes:
+        printed: how much it has printed [bytes].
+        stubborn: whether it, or a child of it, did not end when it was told to (Linux).
+
     Raises:
         OSError: it cannot be started.
     """
@@ -72,6 +83,8 @@ class TeamProcess:
             raise FileNotFoundError(errno.ENOENT, "there is no such program", command[0])
         self._mark = f"{_MARK}={uuid4().hex}"
         self._output = output
+        self.printed, self.stubborn = 0, False
+        self._told: set[int] = set()
         with uninterrupted:
             self._process = subprocess.Popen(
                 ["/bin/sh", "-c", _GUARD, self._mark, *command],
@@ -83,7 +96,7 @@ class TeamProcess:
                 start_new_session=True,
             )
         assert self._process.stdout is not None
-        self._reader = threading.Thread(target=_keep, args=(self._process.stdout, output), daemon=True)
+        self._reader = threading.Thread(target=self._keep, args=(self._process.stdout,), daemon=True)
         self._reader.start()
 
     def __enter__(self) -> Self:
@@ -92,8 +105,15 @@ class TeamProcess:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def ended(self) -> str | None:
-        """Return how it ended, with its last words; None while it runs."""
+    def ended(self, wait: bool = False) -> str | None:
+        """Return how it ended, with its last words; None while it runs.
+
+        Args:
+            wait: whether it is about to end, and a moment is waited for that.
+        """
+        if wait:
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(_WORDS)
         code = self._process.poll()
         if code is None:
             return None
@@ -103,8 +123,27 @@ class TeamProcess:
         last = next((line for line in reversed(words) if line.strip()), "")
         return f"its program {how}{f': {one_line(last, 200)}' if last else ''}"
 
+    def tell(self) -> None:
+        """Tell it, and everything it has started, to end; each once."""
+        for process in self._marked():
+            if process not in self._told:
+                self._told.add(process)
+                with suppress(OSError):
+                    os.kill(process, signal.SIGTERM)
+
+    def leave(self) -> None:
+        """Wait for the end of it that it was told of, and find out whether it is stubborn."""
+        end = time.monotonic() + LEAVE
+        while self._marked():
+            if time.monotonic() > end:
+                self.stubborn = True
+                return
+            # What has been started in the meantime was not told yet.
+            self.tell()
+            time.sleep(0.02)
+
     def close(self) -> None:
-        """End it and everything it has started, by force where it does not react."""
+        """End it and everything it has started, by force."""
         with uninterrupted:
             assert self._process.stdin is not None
             with suppress(OSError):
@@ -137,11 +176,9 @@ class TeamProcess:
                     found.append(int(folder.name))
         return found
 
-
-def _keep(source: IO[bytes], path: Path) -> None:
-    """Keep the beginning of what a program prints; read all of it, so that it is never held up."""
-    left = MOST_OUTPUT
-    with suppress(OSError, ValueError), source, path.open("wb", buffering=0) as file:
-        while data := source.read1(1 << 16):  # type: ignore[attr-defined]
-            file.write(data[:left])
-            left -= len(data[:left])
+    def _keep(self, source: IO[bytes]) -> None:
+        """Keep the beginning of what it prints; read all of it, so that it is never held up."""
+        with suppress(OSError, ValueError), source, self._output.open("wb", buffering=0) as file:
+            while data := source.read1(1 << 16):  # type: ignore[attr-defined]
+                file.write(data[: max(0, KEPT_OUTPUT - self.printed)])
+                self.printed += len(data)

@@ -15,20 +15,25 @@ from pydantic import Field
 
 from robobt.config.errors import RobobtError
 from robobt.config.validation import Settings
-from robobt.league.programs.ports import MatchPorts
-from robobt.league.programs.process import TeamProcess
+from robobt.league.programs.ports import MOST_PACKETS, MatchPorts
+from robobt.league.programs.process import LEAVE, MOST_OUTPUT, TeamProcess
+from robobt.league.programs.steps import StepPort
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.publishing import GEOMETRY_INTERVAL
 from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.geometry import write_geometry
+from robobt.league.wire.simulation import read_control
 from robobt.league.wire.tracker import write_tracked
-from robobt.league.wire.vision import write_vision
+from robobt.league.wire.vision import CameraFrame, write_vision
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import REALISM
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, RefereeCommand, Team
 from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import Frame, RobotId
+
+_LISTENS = 0.05
+"""How long a program in lock step is waited for until the others are looked at [s]."""
 
 _TIMEOUT = 0.1
 """A robot that gets no command for this long stops [s]. Source: ER-Force's standby time."""
@@ -41,7 +46,10 @@ class Program(Settings):
         strict=False,
         min_length=1,
         description="program and arguments; {team}, {host}, {vision}, {tracker}, {referee} and the ports "
-        "{grsim} and {protocol} are filled in",
+        "{grsim}, {protocol} and, in lock step, {steps} are filled in",
+    )
+    lockstep: bool = Field(
+        False, description="whether it asks for time to pass, by SimulationSyncRequest at {steps}"
     )
     ready_within: float = Field(
         60.0, gt=0, le=600, description="how long it may take until it first commands its robots [s]"
@@ -52,7 +60,7 @@ class Program(Settings):
 
 
 class ForfeitError(RobobtError, RuntimeError):
-    """A team's program crashed, is silent or was never ready.
+    """A team's program crashed, is silent, was never ready, or does what no match can bear.
 
     Attributes:
         team: whose it is.
@@ -67,8 +75,10 @@ class ProgramWorld(WrappedWorld):
     """Another world in which programs command the robots of one or both teams. A context manager.
 
     The field, as cameras without noise see it, is published once a control period, and so are the
-    referee's decisions. Programs are started when the world is reset; the match begins once each of them
-    has commanded its robots. Until then they are shown the field at rest and HALT.
+    referee's decisions. Programs in lock step are waited for instead, and answered what they see after as
+    much time as they ask for; with nobody else a match is as fast as they are, and repeatable. Programs are
+    started when the world is reset; the match begins once each of them has commanded its robots. Until then
+    they are shown the field at rest and HALT.
 
     Args:
         world: where it is played.
@@ -101,20 +111,44 @@ class ProgramWorld(WrappedWorld):
         self._commands: dict[RobotId, tuple[float, RobotCommand]] = {}
         self._heard: dict[Team, float] = {}
         self._judged: Frame | None = None
-        self._frames, self._stamped_from, self._due = 0, 0.0, 0.0
+        self._seen: CameraFrame | None = None
+        self._frames, self._stamped_from, self._began, self._due = 0, 0.0, 0.0, 0.0
         with ExitStack() as opened:
             self._ports = opened.enter_context(MatchPorts(programs))
+            self._steps = {
+                team: opened.enter_context(StepPort(scenario.period))
+                for team, program in programs.items()
+                if program.lockstep
+            }
             self._opened = opened.pop_all()
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        try:
+            if kind is None:
+                self._dismiss()
+        finally:
+            self.close()
 
     def close(self) -> None:
         """End the programs and release the ports."""
         self._opened.close()
+
+    def _dismiss(self) -> None:
+        """Let the programs end by themselves after a match that was played to its end.
+
+        Raises:
+            ForfeitError: one of them does not.
+        """
+        for process in self._processes.values():
+            process.tell()
+        for team, process in self._processes.items():
+            process.leave()
+            if process.stubborn:
+                problem = f"its program, or a child of it, did not end within {LEAVE:g} s of SIGTERM"
+                raise ForfeitError(team, problem)
 
     def reset(self, placement: Placement, seed: int) -> None:
         """Put everything in its place and wait for the programs; see :meth:`robobt.world.World.reset`.
@@ -125,23 +159,23 @@ class ProgramWorld(WrappedWorld):
         super().reset(placement, seed)
         for team, program in self._programs.items():
             addresses = self._ports.addresses(team)
+            if team in self._steps:
+                addresses["steps"] = str(self._steps[team].port)
             command = [_filled(word, addresses) for word in program.command]
             try:
                 process = TeamProcess(command, self._folders[team], self._output / f"{team.value}.txt")
             except OSError as error:
                 raise ForfeitError(team, f"{command[0]}: {error.strerror or error}") from error
             self._processes[team] = self._opened.enter_context(process)
-        began = self._due = time.monotonic()
+        self._began = self._due = time.monotonic()
         halted = GameState(command=RefereeCommand.HALT)
         while len(self._heard) < len(self._programs):
             truth = super().truth()
             truth.game = halted
-            self._publish(truth, waiting=True)
+            self._stamped_from += self._period
+            self._publish(truth)
             self._wait(truth)
-            for team, program in self._programs.items():
-                if team not in self._heard and time.monotonic() - began > program.ready_within:
-                    problem = f"its program did not command a robot within {program.ready_within:g} s"
-                    raise ForfeitError(team, problem)
+        self._stamped_from += self._period
         self._commands.clear()
 
     def truth(self) -> Frame:
@@ -154,7 +188,7 @@ class ProgramWorld(WrappedWorld):
         """Let the programs see the field and command their robots for a control period.
 
         Raises:
-            ForfeitError: a program has ended, or was silent for too long.
+            ForfeitError: a program has ended, was silent for too long, floods its ports or prints too much.
         """
         truth = self._judged or self.truth()
         self._publish(truth)
@@ -169,42 +203,94 @@ class ProgramWorld(WrappedWorld):
         }
 
     def _wait(self, truth: Frame) -> None:
-        """Take in what the programs command until the control period is over."""
+        """Take in what the programs command until the control period may pass."""
         # What was lost is not caught up with: programs could not follow.
         self._due = max(self._due, time.monotonic() - self._step) + self._step
-        sockets = self._ports.sockets()
+        in_real_time = len(self._steps) < len(self._programs)
         while True:
             for team, commands in self._ports.commands(truth).items():
-                self._heard[team] = time.monotonic()
-                self._commands |= {robot: (truth.time, one) for robot, one in commands.items()}
-            left = self._due - time.monotonic()
-            if left <= 0.0:
+                if team not in self._steps:
+                    self._heard[team] = time.monotonic()
+                    self._commands |= {robot: (truth.time, one) for robot, one in commands.items()}
+            for team, port in self._steps.items():
+                self._take_step(team, port, truth)
+            waited_for = [port for port in self._steps.values() if not port.left]
+            left = self._due - time.monotonic() if in_real_time else 0.0
+            if left <= 0.0 and not waited_for:
                 break
-            if select.select(sockets, [], [], left)[0]:
+            if left <= 0.0:
+                self._check()
+            sockets = [one.fileno() for one in self._ports.sockets()] + [one.fileno() for one in waited_for]
+            if select.select(sockets, [], [], left if left > 0.0 else _LISTENS)[0]:
                 # Who floods its port is read at most a thousand times a second.
-                time.sleep(min(0.001, left))
-        now = time.monotonic()
+                time.sleep(max(0.0, min(0.001, left)))
+        self._ports.period_over()
+        self._check()
+        for port in self._steps.values():
+            port.passed()
+
+    def _take_step(self, team: Team, port: StepPort, truth: Frame) -> None:
+        """Take in the request of a program in lock step, if it has come."""
+        data = port.receive()
+        if data is None:
+            return
+        states = {robot.number: state for robot, state in truth.robots().items() if robot.team is team}
+        headings = {number: state.heading for number, state in states.items()}
+        request = read_control(data, team, headings, port.counts)
+        commands = {} if request is None else request.commands
+        if commands or team in self._heard:
+            self._heard[team] = time.monotonic()
+        self._commands |= {robot: (truth.time, one) for robot, one in commands.items()}
+        self._answer(team, port, truth)
+
+    def _answer(self, team: Team, port: StepPort, truth: Frame) -> None:
+        """Answer a program in lock step if as much time has passed as it asked for."""
+        if self._seen is not None:
+            robots = truth.robots().items()
+            port.answer(
+                self._seen, [one.number for one, state in robots if one.team is team and state.ball_contact]
+            )
+
+    def _check(self) -> None:
+        """End the match if a program has lost it by rule."""
+        if self._ports.flooded is not None:
+            problem = f"its program sent more than {MOST_PACKETS} packets a control period, for too long"
+            raise ForfeitError(self._ports.flooded, problem)
         for team, process in self._processes.items():
-            ended = process.ended()
+            program, port = self._programs[team], self._steps.get(team)
+            ended = process.ended(wait=port is not None and port.problem is not None)
             if ended is not None:
                 raise ForfeitError(team, ended)
-            patience = self._programs[team].silent_for
-            if team in self._heard and now - self._heard[team] > patience:
-                raise ForfeitError(team, f"its program was silent for {patience:g} s")
+            if process.printed > MOST_OUTPUT:
+                raise ForfeitError(team, f"its program printed more than {MOST_OUTPUT >> 20} MB")
+            if port is not None and port.problem is not None:
+                raise ForfeitError(team, port.problem)
+            now = time.monotonic()
+            if team not in self._heard:
+                if now - self._began > program.ready_within:
+                    problem = f"its program did not command a robot within {program.ready_within:g} s"
+                    raise ForfeitError(team, problem)
+            elif now - self._heard[team] > program.silent_for:
+                if port is not None and port.left:
+                    # It is not its turn.
+                    self._heard[team] = now
+                    continue
+                raise ForfeitError(team, f"its program was silent for {program.silent_for:g} s")
 
-    def _publish(self, frame: Frame, waiting: bool = False) -> None:
-        if waiting:
-            self._stamped_from += self._period
+    def _publish(self, frame: Frame) -> None:
         stamp = self._stamped_from + frame.time
-        (seen,) = self._camera.capture(frame, stamp, stamp)
+        (self._seen,) = self._camera.capture(frame, stamp, stamp)
         geometry = None
         if self._frames % GEOMETRY_INTERVAL == 0:
             geometry = write_geometry(frame.field, self._camera.places)
         senders = self._ports.senders
-        senders["vision"].send(write_vision(seen, geometry))
+        senders["vision"].send(write_vision(self._seen, geometry))
         senders["tracker"].send(write_tracked(frame, self._frames, stamp, self._uuid))
         senders["referee"].send(self._publisher.write(frame.game, stamp))
         self._frames += 1
+        # Last, as who plays in lock step then finds all else that is of this instant.
+        for team, port in self._steps.items():
+            self._answer(team, port, frame)
 
 
 def _filled(word: str, addresses: Mapping[str, str]) -> str:

@@ -19,6 +19,7 @@ from robobt.league.serve.server import SimServer
 from robobt.league.wire.messages import RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse
 from robobt.league.wire.packets import decode
 from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.steps import NO_STEP
 from robobt.league.wire.stream import MessageStream, StreamError
 from robobt.league.wire.vision import CameraFrame, write_frame
 from robobt.signals import check
@@ -152,7 +153,7 @@ class StepServer:
             # NaN compares as false.
             if not 0.0 <= asked <= _LONGEST or abs(asked / period - round(asked / period)) > 1e-3:
                 answer.errors.add(
-                    code="SIM_STEP", message=f"a step is a multiple of {period:.6f} s, at most {_LONGEST:g} s"
+                    code=NO_STEP, message=f"a step is a multiple of {period:.6f} s, at most {_LONGEST:g} s"
                 )
             else:
                 steps = max(steps, round(asked / period))

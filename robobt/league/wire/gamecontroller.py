@@ -60,10 +60,12 @@ class RefereeFollower:
     Attributes:
         game: the current state, in the coordinates of the packets; HALT before the first.
         blue_on_positive_half: whether blue defends +x; None until a packet says so.
+        sent: when the last packet was sent, as its sender's clock has it [s].
         counts: what happened to the packets.
     """
 
     def __init__(self) -> None:
+        self.sent = 0.0
         self.game = GameState(
             RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_touch=False, placement=None
         )
@@ -109,6 +111,7 @@ class RefereeFollower:
             if not on_field(*placement):
                 return None
         command = _command(message.command)
+        self.sent = message.packet_timestamp / 1e6
         events = message.game_events[:MAX_OBJECTS]
         told = {event.SerializeToString(): event for event in events}
         # They stay in the packets until play goes on.

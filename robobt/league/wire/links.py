@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
@@ -27,10 +27,12 @@ class Link:
 
     Attributes:
         active: whether robots can be commanded, and robots and ball be placed.
+        clock: the only clock of a world that lets time pass by this link; None where time passes by itself.
         counts: what happened to the packets that came back, by port.
     """
 
     active = False
+    clock: Callable[[], float] | None = None
 
     def __init__(self) -> None:
         self.counts: dict[str, PacketCounts] = {}
@@ -112,7 +114,7 @@ class GrSimLink(_SimulatorLink):
 
     def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
         """Send the robots their commands."""
-        for team, of_team in _by_team(commands).items():
+        for team, of_team in by_team(commands).items():
             self._commands.send(write_grsim(team, of_team, time))
         if self._keep_alive(time):
             for sender in self._teams.values():
@@ -146,7 +148,7 @@ class ProtocolLink(_SimulatorLink):
 
     def send(self, commands: Mapping[RobotId, RobotCommand], time: float) -> None:
         """Send the robots their commands."""
-        teams, keep_alive = _by_team(commands), self._keep_alive(time)
+        teams, keep_alive = by_team(commands), self._keep_alive(time)
         for team, sender in self._teams.items():
             if team in teams or keep_alive:
                 sender.send(write_control(teams.get(team, {})))
@@ -165,7 +167,7 @@ class ProtocolLink(_SimulatorLink):
                     yield RobotId(team, number), contact
 
 
-def _by_team(commands: Mapping[RobotId, RobotCommand]) -> dict[Team, dict[int, RobotCommand]]:
+def by_team(commands: Mapping[RobotId, RobotCommand]) -> dict[Team, dict[int, RobotCommand]]:
     """Return the commands by team and number, without teams that have none."""
     teams: dict[Team, dict[int, RobotCommand]] = {}
     for robot, command in commands.items():

@@ -82,7 +82,7 @@ def read_vision(data: bytes, counts: PacketCounts) -> VisionPacket | None:
 
 
 def _read_packet(message: SSL_WrapperPacket) -> VisionPacket | None:
-    frame = _read_frame(message.detection) if message.HasField("detection") else None
+    frame = read_frame(message.detection) if message.HasField("detection") else None
     if not message.HasField("geometry"):
         return None if frame is None else VisionPacket(frame, None)
     seen = read_field(message.geometry.field)
@@ -90,7 +90,7 @@ def _read_packet(message: SSL_WrapperPacket) -> VisionPacket | None:
     return None if frame is None and seen is None else VisionPacket(frame, seen, cameras)
 
 
-def _read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
+def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     """Return the plausible detections of a frame; None when the frame itself is implausible.
 
     Detections that are not finite, lie far outside any field or have an

@@ -74,3 +74,24 @@ def test_a_team_commands_by_either_protocol() -> None:
 def test_what_is_not_for_its_own_robots_is_dropped(packet: bytes) -> None:
     with MatchPorts([Team.BLUE]) as ports, send(ports.addresses(Team.BLUE)["grsim"], packet):
         assert not ports.commands(TRUTH).get(Team.BLUE)
+
+
+def test_who_sends_far_more_than_anybody_needs_has_flooded() -> None:
+    packet = write_grsim(Team.BLUE, {0: RobotCommand(vx=1.0)}, 0.0)
+    with MatchPorts(Team) as ports:
+        blue, yellow = [ports.addresses(team)["grsim"] for team in Team]
+
+        def periods(number: int, packets: int) -> None:
+            for _ in range(number):
+                with send(blue, *[packet] * packets), send(yellow, packet):
+                    left = packets
+                    while left > 0:
+                        left -= 250
+                        ports.commands(TRUTH)
+                ports.period_over()
+
+        periods(1, 500)
+        periods(70, 50)
+        assert ports.flooded is None
+        periods(20, 300)
+        assert ports.flooded is Team.BLUE

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
+from robobt.league.programs import process as process_module
+from robobt.league.programs.process import KEPT_OUTPUT, TeamProcess
 
 pytestmark = [
     pytest.mark.integration,
@@ -20,8 +21,9 @@ pytestmark = [
 ESCAPES = (
     "import signal, subprocess, sys, time\n"
     "signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
-    "child = 'import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)'\n"
-    "print(subprocess.Popen([sys.executable, '-S', '-c', child], start_new_session=True).pid, flush=True)\n"
+    "child = 'import os, signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); '\n"
+    "child += 'print(os.getpid(), flush=True); time.sleep(600)'\n"
+    "subprocess.Popen([sys.executable, '-S', '-c', child], start_new_session=True)\n"
     "time.sleep(600)\n"
 )
 
@@ -50,6 +52,21 @@ def test_children_that_ignore_signals_and_left_the_group_are_ended_too(tmp_path:
         assert runs(child)
         assert program.ended() is None
     assert not runs(child)
+
+
+@pytest.mark.parametrize("deaf", [False, True])
+def test_who_does_not_end_when_told_is_stubborn(
+    deaf: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process_module, "LEAVE", 1.0 if deaf else 20.0)
+    obeys = ESCAPES.replace("signal.signal(signal.SIGTERM, signal.SIG_IGN)\n", "\n", 1)
+    child = obeys if deaf else obeys.replace("signal.signal(signal.SIGTERM, signal.SIG_IGN); ", "")
+    output = tmp_path / "out.txt"
+    with TeamProcess([sys.executable, "-S", "-c", child], tmp_path, output) as program:
+        wait_for_words(output)
+        program.tell()
+        program.leave()
+        assert program.stubborn is deaf
 
 
 def test_nothing_is_left_when_the_match_is_killed(tmp_path: Path) -> None:
@@ -89,7 +106,8 @@ def test_only_the_beginning_of_its_output_is_kept(tmp_path: Path) -> None:
         end = time.monotonic() + 30.0
         while program.ended() is None and time.monotonic() < end:
             time.sleep(0.01)
-    assert output.stat().st_size == MOST_OUTPUT
+    assert output.stat().st_size == KEPT_OUTPUT
+    assert program.printed == 200 << 20
 
 
 def test_a_program_that_is_not_there_is_told(tmp_path: Path) -> None:

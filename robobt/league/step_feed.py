@@ -1,0 +1,109 @@
+"""What is received in lock step: each wait lets the field go on, whatever this machine's clock says."""
+
+from __future__ import annotations
+
+import select
+import time
+from collections.abc import Callable, Mapping
+
+from robobt.league.connection import Connection, LeagueError
+from robobt.league.feed import Feed
+from robobt.league.known_field import KnownField
+from robobt.league.wire.links import Link
+from robobt.league.wire.steps import StepLink
+from robobt.sim.settings import SimSettings
+from robobt.world.field import FieldGeometry
+from robobt.world.limits import RobotLimits
+from robobt.world.state import RobotId
+
+_ROUNDING = 1e-9
+
+_WAIT = 2.0
+"""How long what was sent before an answer may take to arrive: it travels by another way [s]."""
+
+
+class StepFeed(Feed):
+    """A feed whose camera frames are the answers to its link's steps, a ``period`` [s] each.
+
+    The game controller's messages and the field's geometry come as packets all the same. Those of an instant
+    have to be sent before the answer; the former's is waited for, as trees depend on it.
+    Other arguments are those of :class:`Feed`.
+    """
+
+    def __init__(
+        self,
+        connection: Connection,
+        field: FieldGeometry | None,
+        settings: SimSettings,
+        limits: Mapping[RobotId, RobotLimits],
+        clock: Callable[[], float],
+        known: KnownField | None,
+        link: StepLink,
+        period: float,
+    ) -> None:
+        super().__init__(connection, field, settings, limits, clock, known)
+        self._link, self._step = link, period
+        self._geometry_due = True
+
+    def receive(self, wait: float) -> None:
+        """Let up to ``wait`` seconds pass, until the field has been seen anew.
+
+        Raises:
+            LeagueError: the game controller says nothing about this instant.
+            StreamError: the simulator does not answer.
+        """
+        link, end = self._link, self._link.time + max(0.0, wait)
+        if wait <= 0.0:
+            return
+        if link.stepped + self._step > end + _ROUNDING:
+            link.time = end
+            return
+        frames = link.step(self._step)
+        link.time = max(link.time, link.stepped)
+        if frames:
+            self._packets(frames[-1].sent)
+        for frame in frames:
+            self.add(frame, link.time)
+
+    def _packets(self, sent: float) -> None:
+        """Take in the packets up to those of an instant [s]; the first geometry is waited for too."""
+        end = time.monotonic() + _WAIT
+        while True:
+            for packet in self._vision.receive():
+                seen = self._read(packet.data)
+                if seen is not None:
+                    self._look_around(seen)
+                    self._geometry_due &= not seen.cameras
+            if self.referee is not None:
+                for packet in self._sources[1].receive():
+                    self.referee.read(packet.data, packet.sender, self._link.time)
+            late = self.referee is not None and self.referee.sent < sent - 1e-3
+            if not late and not self._geometry_due:
+                return
+            left = end - time.monotonic()
+            if left <= 0.0:
+                # Not every simulator tells where its cameras are.
+                self._geometry_due = False
+                if not late:
+                    return
+                raise LeagueError(
+                    f"no game controller at {self.connection.endpoints.referee} follows the steps; play "
+                    "without follow_referee"
+                )
+            select.select(self._sources, [], [], left)
+
+
+def feed_of(
+    link: Link,
+    period: float,
+    connection: Connection,
+    field: FieldGeometry | None,
+    settings: SimSettings,
+    limits: Mapping[RobotId, RobotLimits],
+    clock: Callable[[], float],
+    known: KnownField | None,
+) -> Feed:
+    """Return the feed that goes with a link; other arguments are those of :class:`Feed`."""
+    if isinstance(link, StepLink):
+        return StepFeed(connection, field, settings, limits, clock, known, link, period)
+    return Feed(connection, field, settings, limits, clock, known)
