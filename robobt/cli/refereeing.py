@@ -39,7 +39,7 @@ RefereeOption = Annotated[
         "--referee",
         help="Who decides: robobt's own referee, the league's official game controller, which "
         "is stepped with the match, or none; by default as in the scenario. With a game controller in the "
-        "world (follow_referee=true) it is none.",
+        "world (follow_referee=true) it has to be none.",
     ),
 ]
 

@@ -12,7 +12,8 @@ from py_trees.common import Status
 from robobt.match import Match, MatchResult, play_match
 from robobt.match.recording import load_recording
 from robobt.match.referee.events import Decision, EventKind, RefereeEvent
-from robobt.match.scenario.scenario import Scenario, scenario_from
+from robobt.match.refereeing import RefereeFactory, own_referee
+from robobt.match.scenario.scenario import Scenario, ScenarioError, scenario_from
 from robobt.world import Frame, RobotCommand, RobotId, Team
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Stage
@@ -355,6 +356,12 @@ class Controlled(PlainWorld):
         if self.ticks != 3:
             return []
         return [RefereeEvent(self.ticks * self.period, EventKind.BOT_CRASH_UNIQUE, Team.BLUE, BLUE_0)]
+
+
+@pytest.mark.parametrize("referee", [own_referee, lambda scenario, field: ScriptedReferee()])
+def test_a_referee_beside_a_game_controller_is_refused(referee: RefereeFactory) -> None:
+    with pytest.raises(ScenarioError, match=r"test.yaml: referee: .* a game controller decides there; set"):
+        Match(scenario(referee=True), 1, Controlled, referee=referee)
 
 
 def test_what_the_worlds_own_referee_reports_is_counted_and_recorded(tmp_path: Path):
