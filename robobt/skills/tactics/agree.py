@@ -135,7 +135,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotStat
     ):
         return None
     shot = ball.vx > SHOT_FROM and not pass_under_way(frame, team)
-    if shot and game.in_play and team.attacker in plan.own_times:
+    if shot and game.in_play and team.attacker in plan.own_times and team.attacker != team.kicker:
         # Who gets it depends on what stops it.
         return team.attacker
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None

@@ -53,6 +53,14 @@ def test_who_took_a_restart_leaves_the_ball_to_the_others() -> None:
     assert agreement.team.attacker != 3
 
 
+def test_who_took_a_restart_does_not_go_after_its_own_shot() -> None:
+    agreement = Agreement()
+    agreement.at(0.0)
+    agreement.team.kicker = 3
+    agreement.at(0.1, (0.3, 0.0, 6.0, 0.0))
+    assert agreement.team.attacker != 3
+
+
 @pytest.mark.parametrize("ball", [(-4.0, 0.5), (4.0, -0.5)])
 def test_nobody_attacks_a_ball_in_a_defence_area(ball: tuple[float, float]) -> None:
     agreement = Agreement()
