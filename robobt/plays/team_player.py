@@ -91,7 +91,7 @@ def attack(choose: Callable[[], ChooseKick]) -> Behaviour:
         when(
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),
-        when("carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6)),
+        when("carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6, keep=0.25)),
         when("get the ball", GoToBall(), PickUpBall()),
     )
 

@@ -70,11 +70,13 @@ class Skill(Leaf[Store]):
         avoid_ball: bool = False,
         goalkeeper: bool = False,
         thereabouts: bool = False,
+        slack: float = _FACING,
         spare_mates: bool = False,
     ) -> None:
         """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.
 
-        With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball.
+        With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball:
+        ``slack`` off it at most, and more where the robot itself covers more of the view [rad].
         """
         store = self.store
         frame, me = store.frame, store.me
@@ -82,8 +84,7 @@ class Skill(Leaf[Store]):
         heading = direction(here, facing)
         if thereabouts:
             # What is close passes by quickly, and the robot itself covers more of the view.
-            slack = _FACING + atan2(ROBOT_RADIUS, distance(here, facing))
-            heading = roughly(me.heading, heading, slack)
+            heading = roughly(me.heading, heading, slack + atan2(ROBOT_RADIUS, distance(here, facing)))
         has_kicked = self.has_kicked
         store.command = travel(
             frame,

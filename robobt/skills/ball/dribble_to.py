@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import cos, hypot
+from math import cos, hypot, inf
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
 from robobt.motion.path_planner import next_waypoint
@@ -18,6 +18,8 @@ _GRACE = 0.15
 """The ball counts as lost when it has been out of the mouth for this long [s]."""
 _RULE_MARGIN = 0.1
 """How far before the dribbling limit the skill gives up, to have let go in time [m]."""
+_OTHER_WAY = 0.6
+"""A way that differs by more is another one [rad]."""
 
 
 @skill
@@ -35,6 +37,10 @@ class DribbleTo(Skill):
         max_acceleration: with the ball, in any direction [m/s^2].
         max_distance: how far the ball may be carried from where it was taken [m];
             the rules allow 1 m. None is any distance.
+        keep: how long it keeps to its way where another one turns up, for two like ones take turns [s].
+
+    Raises:
+        ValueError: ``keep`` is negative.
     """
 
     reads = ("target",)
@@ -45,17 +51,23 @@ class DribbleTo(Skill):
     max_turn: float = MAX_TURN
     max_acceleration: float = MAX_ACCELERATION
     max_distance: float | None = None
+    keep: float = 0.0
     _taken_at: Point | None = field(default=None, init=False)
     _last_held: float = field(default=0.0, init=False)
+    _way: float = field(default=0.0, init=False)
+    _way_since: float = field(default=-inf, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not self.keep >= 0.0:
+            raise ValueError(f"keep must be 0 or more, not {self.keep}")
         self._limits = dribbling_limits(self.max_speed, self.max_turn, self.max_acceleration)
 
     def on_start(self) -> None:
         """Take the ball's present place as the start of the carry."""
         self._taken_at = None
         self._last_held = self.frame.time
+        self._way_since = -inf
 
     def on_running(self) -> Status:
         """Carry for one tick."""
@@ -83,7 +95,7 @@ class DribbleTo(Skill):
     def _carry(self, target: Point) -> None:
         frame, me, limits = self.frame, self.me, self._limits
         point, speed_there = next_waypoint(frame, me, target)
-        heading = direction(me.position, point)
+        heading = self._steady(direction(me.position, point))
         dx, dy = point[0] - me.x, point[1] - me.y
         gap = hypot(dx, dy)
         vx = vy = 0.0
@@ -105,3 +117,12 @@ class DribbleTo(Skill):
         omega = turn_rate(me, heading, limits, frame.period)
         self.store.command = command(me, vx, vy, omega, limits, frame.period)
         self.store.command.dribbler = True
+
+    def _steady(self, way: float) -> float:
+        """Return the direction to face [rad]: ``way``, or the last one before a change has lasted."""
+        now = self.frame.time
+        changed = abs(wrap_angle(way - self._way)) > _OTHER_WAY
+        if changed and 0.0 <= now - self._way_since < self.keep:
+            return self._way
+        self._way, self._way_since = way, now
+        return way

@@ -8,7 +8,7 @@ from math import atan2, cos, hypot, inf, sin
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
 from robobt.motion.path_planner import travel
-from robobt.motion.pilot import travel_time
+from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.pick_up_ball import Grip, grab
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
@@ -24,6 +24,8 @@ _FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
 _SLOW = 0.2
 """A ball slower than this is gone to, not waited for [m/s]."""
 _CLOSE = 0.2
+_SOON = 1.0
+"""A ball nearer than this is faced exactly [m]."""
 _NEAR_ENOUGH = 0.15
 """A robot this near counts as there [m]: it would else back away before the ball for its last centimetres."""
 _STEP = 0.15
@@ -69,7 +71,13 @@ def earliest_meeting(
 
 
 def meet(
-    frame: Frame, me: RobotState, limits: RobotLimits, rolling: float, *, goalkeeper: bool = False
+    frame: Frame,
+    me: RobotState,
+    limits: RobotLimits,
+    rolling: float,
+    *,
+    goalkeeper: bool = False,
+    slack: float = 0.0,
 ) -> RobotCommand:
     """Meet the ball for one tick: drive onto its line, face it, and take it once it is near and slow.
 
@@ -79,6 +87,7 @@ def meet(
         limits: how to drive.
         rolling: speed at which the ball begins to roll [m/s].
         goalkeeper: may enter the own defence area.
+        slack: how far off it may look while the ball is not yet near [rad].
     """
     ball = frame.ball
     dx, dy = ball.x - me.x, ball.y - me.y
@@ -90,6 +99,8 @@ def meet(
     (x, y), _ = earliest_meeting(frame, me, limits, rolling)
     ux, uy = (ball.vx / speed, ball.vy / speed) if speed > _SLOW else (-cos(heading), -sin(heading))
     place = (x + _FRONT * ux, y + _FRONT * uy)
+    if gap > _SOON:
+        heading = roughly(me.heading, heading, slack)
     order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper)
     order.dribbler = gap < 1.0
     return order

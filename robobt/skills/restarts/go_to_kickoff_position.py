@@ -19,7 +19,7 @@ class GoToKickoffPosition(Skill):
 
     Args:
         spread: share of the field's width that the line takes.
-        spare_mates: drive gently where it comes near to team-mates.
+        spare_mates: drive gently where it comes near to team-mates, and look only roughly at the ball.
     """
 
     reads = ("team",)
@@ -36,5 +36,6 @@ class GoToKickoffPosition(Skill):
         share = (line.index(me.id) + 0.5) / len(line) - 0.5
         x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)
         target = (x, -share * self.spread * field.width)
-        self.drive_to(target, (0.0, 0.0), spare_mates=self.spare_mates)
+        gently = self.spare_mates
+        self.drive_to(target, (0.0, 0.0), thereabouts=gently, spare_mates=gently)
         return self.run("lining up")

@@ -47,6 +47,9 @@ _ASTRAY = 0.6
 
 _PASS_TIME = 3.0
 
+_FACING = 0.35
+"""How far off a ball that comes from afar it may look [rad]."""
+
 _ON_LINE = 0.5
 """A receiver nearer to the ball's line than this stays where it is along it [m]."""
 
@@ -133,7 +136,7 @@ class ReceivePass(Skill):
             if ahead > MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
                 store.command = catch(me, ball, limits, frame.period)
             else:
-                store.command = meet(frame, me, limits, rolling)
+                store.command = meet(frame, me, limits, rolling, slack=_FACING)
             return self.run("taking the ball")
         place_at = (x - MOUTH * cos(heading), y - MOUTH * sin(heading))
         order = travel(frame, me, place_at, heading, limits)

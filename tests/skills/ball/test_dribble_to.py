@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from math import hypot, pi
+from math import copysign, hypot, pi
 
 import pytest
 
@@ -40,6 +40,25 @@ def test_it_turns_before_it_drives() -> None:
     assert hypot(alone.command.vx, alone.command.vy) < 1e-9
     assert alone.command.omega != 0.0
     assert alone.command.dribbler
+
+
+@pytest.mark.parametrize(("keep", "turns"), [(0.0, {-1.0, 1.0}), (0.2, {1.0})])
+def test_it_keeps_to_its_way_where_two_like_ones_take_turns(keep: float, turns: set[float]) -> None:
+    alone, me = Alone(DribbleTo(keep=keep)), robot(contact=True)
+    seen = set()
+    for step in range(20):
+        alone.store.target = (0.0, 1.0 if step % 2 == 0 else -1.0)
+        alone.tick(frame(me, ball=held(me), time=step / 60))
+        seen.add(copysign(1.0, alone.command.omega))
+    assert seen == turns
+
+
+def test_another_way_that_lasts_is_taken() -> None:
+    alone, me = Alone(DribbleTo(keep=0.2)), robot(contact=True)
+    for step in range(20):
+        alone.store.target = (0.0, 1.0 if step == 0 else -1.0)
+        alone.tick(frame(me, ball=held(me), time=step / 60))
+        assert (alone.command.omega > 0.0) is (step / 60 < 0.2)
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0])

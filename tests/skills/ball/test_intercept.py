@@ -7,7 +7,7 @@ import pytest
 from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.pilot import travel_time
 from robobt.skills import Intercept
-from robobt.skills.ball.intercept import earliest_meeting
+from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.tree import Status
 from tests.simulation import Trial, always, blue, eventually, inside_the_field
 from tests.skills.fixed_world import Alone, frame, held, robot
@@ -23,6 +23,15 @@ def test_the_meeting_is_the_first_point_reached_in_time() -> None:
     assert travel_time(hypot(x + 0.1, 1.0) - 0.15, 0.0, me.limits) <= time + 0.01
     earlier = DEFAULT_BALL.way_in(time - 0.1, 2.0, 2.0) - 2.0
     assert travel_time(hypot(earlier + 0.1, 1.0) - 0.15, 0.0, me.limits) > time - 0.1
+
+
+@pytest.mark.parametrize(
+    ("away", "slack", "turns"), [(3.0, 0.0, True), (3.0, 0.35, False), (0.8, 0.35, True)]
+)
+def test_a_ball_from_afar_need_not_be_faced_exactly(away: float, slack: float, turns: bool) -> None:
+    me = robot(heading=0.3)
+    order = meet(frame(me, ball=(away, 0.0, -1.0, 0.0)), me, me.limits, 1.0, slack=slack)
+    assert (abs(order.omega) > 0.1) is turns
 
 
 def test_a_sliding_ball_is_met_nearer_than_a_rolling_one() -> None:

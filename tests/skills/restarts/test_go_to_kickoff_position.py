@@ -7,7 +7,7 @@ import pytest
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.store import TeamStore
 from robobt.world import Team
-from tests.skills.fixed_world import robot
+from tests.skills.fixed_world import Alone, frame, robot
 from tests.skills.refereed import Drive, kickoff
 
 
@@ -42,3 +42,10 @@ def test_the_kicker_leaves_no_gap_in_the_line() -> None:
     game = kickoff(Team.BLUE, may_touch=False)
     drive = Drive(GoToKickoffPosition(), waiting, game, (0.0, 0.0), mates=(kicker,), team=team)
     assert abs(drive.end.y) < 0.01
+
+
+@pytest.mark.parametrize("gently", [False, True])
+def test_driving_gently_it_looks_only_roughly_at_the_ball(gently: bool) -> None:
+    alone = Alone(GoToKickoffPosition(spare_mates=gently))
+    alone.tick(frame(robot(-2.0, 0.0, heading=0.2, number=1), game=kickoff(Team.BLUE, may_touch=False)), 1)
+    assert (abs(alone.command.omega) > 0.1) is not gently

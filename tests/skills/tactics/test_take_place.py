@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 from robobt.skills.tactics.take_place import TakePlace
 from robobt.tree import Status
 from robobt.world.geometry import distance
@@ -21,6 +23,14 @@ def test_it_drives_to_the_place_of_the_plan() -> None:
         assert alone.tick(view, 1) is Status.RUNNING
         me = moved(me, alone.command, 1 / 60)
     assert distance(me.position, place) < before - 0.03
+
+
+@pytest.mark.parametrize(("heading", "turns"), [(0.45, False), (0.7, True)])
+def test_it_looks_only_roughly_at_the_ball(heading: float, turns: bool) -> None:
+    alone, me = Alone(TakePlace()), robot(-2.0, 0.0, heading=heading, number=1)
+    alone.store.team.plan.players.update((1, 2))
+    alone.tick(frame(me, (1.0, 0.0), (robot(0.9, 0.0, number=2),), game=OPEN), 1)
+    assert (abs(alone.command.omega) > 0.1) is turns
 
 
 def test_a_robot_without_a_place_fails() -> None:
