@@ -8,6 +8,7 @@ from pathlib import Path
 from robobt.plays.base import PLAYS, Play
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS, ShotRater
+from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.restarts.referee_switch import RefereeSwitch
 from robobt.skills.store import Store
@@ -23,7 +24,9 @@ from robobt.tree.interop import (
     write_yaml,
 )
 
-VOCABULARY = Vocabulary(SKILLS, PLAYS, (RefereeSwitch, StayOut, TaskSwitch), {ShotRater: RATERS}, Store)
+VOCABULARY = Vocabulary(
+    SKILLS, PLAYS, (RefereeSwitch, StayOut, AvoidCrash, TaskSwitch), {ShotRater: RATERS}, Store
+)
 """What the files of plays may name."""
 
 

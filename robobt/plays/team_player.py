@@ -17,6 +17,7 @@ from robobt.skills.ball.settle_ball import SettleBall
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
+from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
@@ -77,7 +78,7 @@ def team_player(
         },
         otherwise=TakePlace(),
     )
-    return StayOut("team player", player)
+    return StayOut("team player", AvoidCrash("no crash", player))
 
 
 def attack(choose: Callable[[], ChooseKick]) -> Behaviour:

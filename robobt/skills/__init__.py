@@ -46,6 +46,7 @@ from robobt.skills.conditions.may_touch_ball import MayTouchBall as MayTouchBall
 from robobt.skills.conditions.opponent_has_ball import OpponentHasBall as OpponentHasBall
 from robobt.skills.conditions.team_has_ball import TeamHasBall as TeamHasBall
 from robobt.skills.conditions.under_pressure import UnderPressure as UnderPressure
+from robobt.skills.defence.avoid_crash import AvoidCrash as AvoidCrash
 from robobt.skills.defence.block_shot import BlockShot as BlockShot
 from robobt.skills.defence.challenge_ball import ChallengeBall as ChallengeBall
 from robobt.skills.defence.close_down import CloseDown as CloseDown

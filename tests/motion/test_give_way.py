@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
-from robobt.motion.give_way import slowed_towards
+from robobt.motion.give_way import slowed_in_play, slowed_towards
 from robobt.motion.path_planner import travel
 from robobt.world import RobotCommand, RobotState
 from robobt.world.game import Team
@@ -61,3 +61,33 @@ def test_only_while_the_ball_is_not_in_play() -> None:
         seen = frame(me, (0.0, 2.0), opponents=(other,), game=game)
         command = travel(seen, me, (2.0, 0.0), 0.0, me.limits)
         assert (command.vx < 0.1) is slower
+
+
+def in_play(me: RobotState, other: RobotState, ahead: float = 3.0, left: float = 0.0) -> RobotCommand:
+    now = np.array((me.x, me.y, me.heading, ahead, left), dtype=np.float64)
+    return RobotCommand(*slowed_in_play(now, movers([other]), 4.0))
+
+
+def test_in_play_a_robot_touches_one_that_stands_slower_than_a_crash_is() -> None:
+    me, other = robot(number=1), robot(1.5, 0.0)
+    for _ in range(180):
+        before = me
+        me = moved(me, in_play(me, other), 1 / 60)
+        if hypot(other.x - me.x, other.y - me.y) < 0.19:
+            break
+    assert 1.0 < before.speed < 1.5
+
+
+def test_in_play_it_need_not_stop_for_one_that_is_at_fault_itself() -> None:
+    oncoming = robot(0.4, 0.0, velocity=(-2.0, 0.0, 0.0))
+    assert 1.0 < in_play(robot(number=1), oncoming).vx <= 1.6
+
+
+@given(x=st.floats(-2, 2), y=st.floats(-2, 2), vx=speed, vy=speed, asked=speed, across=speed)
+def test_in_play_nobody_is_made_to_go_faster_at_the_other(
+    x: float, y: float, vx: float, vy: float, asked: float, across: float
+) -> None:
+    me, other = robot(number=1), robot(x, y, velocity=(vx, vy, 0.0))
+    given_way = in_play(me, other, ahead=asked, left=across)
+    towards = asked * x + across * y
+    assert given_way.vx * x + given_way.vy * y <= towards + 1e-9
