@@ -21,4 +21,5 @@ from robobt.plays.take_shot import take_shot as take_shot
 from robobt.plays.team import defender as defender
 from robobt.plays.team import field_player as field_player
 from robobt.plays.team import keeper as keeper
+from robobt.plays.team_keeper import team_keeper as team_keeper
 from robobt.plays.team_player import team_player as team_player

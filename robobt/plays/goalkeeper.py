@@ -46,12 +46,20 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
     """
     if style == "robobulls":
         return _robobulls(robobulls_limits(1.5 * speed), robobulls_limits(speed))
+    return keep_goal(
+        speed,
+        when("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
+    )
+
+
+def keep_goal(speed: float, clear: Behaviour) -> Behaviour:
+    """Do what ``goalkeeper`` does in its default style; ``clear`` is for a ball that rests in the area."""
     return first_of(
         "goalkeeper",
         when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
         when("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
         when("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)),
-        when("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
+        clear,
         CoverAngle(speed=speed),
         ReturnToGoal(speed=speed),
     )

@@ -151,13 +151,18 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
     Args:
         speed: factor on its top speed.
     """
+    return keep_by_the_rules(speed, goalkeeper(speed=speed))
+
+
+def keep_by_the_rules(speed: float, in_play: Behaviour) -> Behaviour:
+    """Do what the referee wants of a goalkeeper, and ``in_play`` while the ball is."""
     return first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
         when("their penalty", IsRestart(kind=Restart.PENALTY, ours=False), save_penalty(speed)),
-        goalkeeper(speed=speed),
+        in_play,
     )
 
 

@@ -35,6 +35,9 @@ from robobt.tree import Behaviour, Inverter, Sequence
 PASS_TOLERANCE = 0.06
 """Angle by which a pass may be off [rad]."""
 
+SURE = 0.5
+"""Least chance with which a pass has to arrive where the ball is safe: at a restart, and in the own area."""
+
 
 @PLAYS.register("team_player")
 def team_player(
@@ -42,7 +45,7 @@ def team_player(
 ) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
 
-    Any number of robots may play it, each the same; the goalkeeper plays ``keeper``. Who attacks,
+    Any number of robots may play it, each the same; the goalkeeper plays ``team_keeper``. Who attacks,
     receives, covers the goal, marks or supports is agreed on anew every frame
     (:mod:`robobt.skills.tactics.agree`).
 
@@ -107,7 +110,13 @@ def take_restart(shoot_at: float, pass_at: float, chips: bool) -> Behaviour:
 
     def choose() -> ChooseKick:
         return ChooseKick(
-            shoot_at=shoot_at, pass_at=pass_at, patience=2.5, floor=0.04, chips=chips, restart=True
+            shoot_at=shoot_at,
+            pass_at=pass_at,
+            patience=2.5,
+            floor=0.04,
+            least=SURE,
+            chips=chips,
+            restart=True,
         )
 
     return first_of(

@@ -43,6 +43,7 @@ class Plan:
         meant: when each player was last the receiver of that pass, and where [s, m].
         own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
         own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`.
+        meetings: when and where each robot can meet the ball, as :func:`robobt.motion.arrival.meetings`.
         attacker_since: since when the attacker is the one it is [s].
         ours: whether the ball counts as the own team's.
         ours_since: since when [s].
@@ -67,6 +68,7 @@ class Plan:
     their_times: dict[int, float] = field(default_factory=dict)
     own_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
     their_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
+    meetings: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
     attacker_since: float = -10.0
     ours: bool = False
     ours_since: float = 0.0

@@ -27,6 +27,7 @@ class TeamStore:
         markers: numbers of the robots that mark opponents.
         marks: which opponent each of them marks.
         threats: numbers of the opponents without the ball that could score soon, the most dangerous first.
+        meeting: where the attacker is to meet a rolling ball [m], None without one.
         kicker: who took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
         agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
@@ -42,6 +43,7 @@ class TeamStore:
     markers: set[int] = field(default_factory=set)
     marks: dict[int, int] = field(default_factory=dict)
     threats: list[int] = field(default_factory=list)
+    meeting: Point | None = None
     kicker: int | None = None
     restart_pending: bool = False
     agreed_on: Frame | None = None

@@ -14,7 +14,7 @@ from robobt.worlds import sim_world
 
 pytestmark = pytest.mark.integration
 
-SECONDS = 25.0
+SECONDS = 40.0
 
 
 class Watched:

@@ -35,17 +35,28 @@ def candidates(changes: Written) -> Iterator[tuple[int, list[JsonValue]]]:
 
 
 def plans(changes: Written) -> Iterator[tuple[int, list[object]]]:
-    """Give whom a team marks, by the marker's number, and whom it fears, the most dangerous first."""
+    """Give whom a team marks, by the marker's number, and whom it fears, the most dangerous first.
+
+    Then its attacker's number and where that is to meet the rolling ball, x and y [m]; nothing without one.
+    """
     marks: dict[int, int] = {}
     threats: list[int] = []
+    attacker: int | None = None
+    meeting: list[float] = []
     for tick, change in changes:
-        if "marks" not in change and "threats" not in change:
+        if not {"marks", "threats", "attacker", "meeting"} & change.keys():
             continue
         try:
             if "marks" in change:
                 marks = {int(a): int(b) for a, b in dict(change["marks"] or {}).items()}  # type: ignore[arg-type]
             if "threats" in change:
                 threats = [int(one) for one in change["threats"] or []]  # type: ignore[arg-type, union-attr]
+            if "attacker" in change:
+                attacker = None if change["attacker"] is None else int(change["attacker"])  # type: ignore[arg-type]
+            if "meeting" in change:
+                meeting = [float(one) for one in change["meeting"] or []]  # type: ignore[arg-type, union-attr]
+                if len(meeting) not in (0, 2) or None in plain(meeting):  # type: ignore[operator]
+                    raise ValueError("no place")
         except (TypeError, ValueError):
-            marks, threats = {}, []
-        yield tick, [marks, threats]
+            marks, threats, attacker, meeting = {}, [], None, []
+        yield tick, [marks, threats, [] if attacker is None or not meeting else [attacker, *meeting]]

@@ -61,6 +61,7 @@ _REACH = 0.06
 _OWN_REACH = 0.12
 _BEHIND_BALL = 0.3
 _SAME = 0.4
+_ROLLS, _RASTER = 0.5, 0.05
 
 
 def agree(frame: Frame, team: TeamStore) -> Plan:
@@ -76,6 +77,7 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
     before = team.attacker
     team.attacker = _attacker(frame, team, plan, players)
     team.agreed_on = frame
+    team.meeting = _meeting(frame, team, plan)
     if team.attacker != before:
         plan.attacker_since = frame.time
     if team.attacker != before or frame.time - plan.next_pass_time > _INTENT_LASTS:
@@ -99,7 +101,8 @@ def _look(frame: Frame, plan: Plan) -> None:
     everybody = movers_of(frame)
     plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
-    times = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)[:, 0].tolist()
+    plan.meetings = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)
+    times = plan.meetings[:, 0].tolist()
     ours, theirs = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, theirs, strict=True)}
@@ -162,6 +165,17 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotStat
     if game.restart is not None:
         gain = RESTART_GAIN
     return team.attacker if present < least + gain else best
+
+
+def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
+    """Return where the attacker meets the ball, to within a few centimetres so that it changes seldom."""
+    if frame.ball.speed < _ROLLS or not frame.game.in_play:
+        return None
+    for row, robot in enumerate(frame.own):
+        if robot.id == team.attacker:
+            x, y = (_RASTER * round(v / _RASTER) for v in plan.meetings[row, 1:].tolist())
+            return (x, y)
+    return None
 
 
 def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:

@@ -30,6 +30,7 @@ class ChooseKick(Skill):
         patience: time in which both fall to their floor [s].
         floor: share of both that remains.
         keep: factor on what was chosen last.
+        least: chance with which a pass has to arrive, 0 to 1.
         every: from one look to the next [s].
         max_distance: no shots from farther than this from the goal [m].
         model: predictor of a shot's scene: a shipped model or a file.
@@ -49,6 +50,7 @@ class ChooseKick(Skill):
     patience: float = 1.2
     floor: float = 0.1
     keep: float = 1.6
+    least: float = 0.15
     every: float = 0.05
     chips: bool = True
     restart: bool = False
@@ -62,7 +64,7 @@ class ChooseKick(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for setting in ("shoot_at", "pass_at", "floor"):
+        for setting in ("shoot_at", "pass_at", "floor", "least"):
             if not 0.0 <= getattr(self, setting) <= 1.0:
                 raise ValueError(f"{setting} must be 0 to 1, not {getattr(self, setting)}")
         if not self.patience > 0.0:
@@ -119,7 +121,7 @@ class ChooseKick(Skill):
         hold = point_worth(ball.x - 1.0, ball.y, ball.x, ball.y, _HOLDS, there, *goal)
         enough = min(self.pass_at * share, _BETTER * hold)
         late = self.restart and frame.time - self._since > self.patience + _LATE
-        least = 0.0 if late else _SURE if self.restart else _LEAST
+        least = 0.0 if late else self.least
         candidates = passes(frame, team, me, old_pass, self.keep, least=least, chips=self.chips)
         self.store.candidates = candidates[:_SHOWN]
         best = candidates[0] if candidates else None
@@ -149,9 +151,6 @@ class ChooseKick(Skill):
         shots = self._rater.rate_all(frame, ball.position, me)
         return shots[0] if shots else None
 
-
-_LEAST, _SURE = 0.15, 0.5
-"""Least chance with which a pass has to arrive, in play and at a restart, where the ball is safe."""
 
 _SHOWN = 5
 """So many passes are told of."""

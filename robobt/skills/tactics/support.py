@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import cos, inf, pi, sin
+from math import inf
 
 import numpy as np
 
+from robobt.motion.arrival import movers_of
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
@@ -33,6 +34,7 @@ _SHORT_GAIN = 0.15
 
 _SHORT_ANGLES = 16
 _LINE, _AREA = 0.15, 0.3
+_ALL_ROOM = 10.0
 
 _ROLLS = 1.0
 """A pass under way is faster [m/s]."""
@@ -85,20 +87,27 @@ def short_place(frame: Frame, last: Point | None) -> Point | None:
         return None
     x, y = game.placement or frame.ball.position
     best, most = None, -inf
-    for k in range(_SHORT_ANGLES):
-        angle = 2.0 * pi * k / _SHORT_ANGLES
-        place = (x + SHORT * cos(angle), y + SHORT * sin(angle))
-        inside = abs(place[0]) < field.half_length - _LINE and abs(place[1]) < field.half_width - _LINE
+    places = np.array((x, y)) + _beside()
+    theirs = movers_of(frame)[len(frame.own) :, :2]
+    rooms = np.hypot(*(places[:, None] - theirs).T).min(axis=0, initial=_ALL_ROOM).tolist()
+    for (px, py), room in zip(places.tolist(), rooms, strict=True):
+        inside = abs(px) < field.half_length - _LINE and abs(py) < field.half_width - _LINE
         if not inside:
             continue
-        if in_own_defense_area(field, *place, _AREA) or in_their_defense_area(field, *place, _AREA):
+        if in_own_defense_area(field, px, py, _AREA) or in_their_defense_area(field, px, py, _AREA):
             continue
-        room = min((distance(robot.position, place) for robot in frame.opponents), default=2.0)
+        place = (px, py)
         if last is not None and distance(place, last) < 0.1:
             room += _SHORT_GAIN
         if room > most:
             best, most = place, room
     return best
+
+
+@lru_cache(maxsize=1)
+def _beside() -> FloatArray:
+    angles = 2.0 * np.pi * np.arange(_SHORT_ANGLES) / _SHORT_ANGLES
+    return SHORT * np.stack((np.cos(angles), np.sin(angles)), axis=1)
 
 
 def _spread(value: FloatArray, points: FloatArray, place: Point) -> None:

@@ -318,10 +318,20 @@ def test_the_page_holds_the_passes_that_a_robot_compares(team_match: Recording) 
 
 def test_the_page_holds_whom_a_team_marks_and_fears(team_match: Recording) -> None:
     plans = [*zip(*[iter(page_data(team_match)["plans"]["blue"])] * 2, strict=True)]
-    assert any(marks for _, (marks, _) in plans)
-    for _, (marks, threats) in plans:
+    assert any(marks for _, (marks, _, _) in plans)
+    for _, (marks, threats, _) in plans:
         # Markers come off the most dangerous opponents first.
         assert set(marks.values()) <= set(threats) or not threats
+
+
+def test_the_page_holds_where_the_attacker_meets_a_rolling_ball(team_match: Recording) -> None:
+    plans = [*zip(*[iter(page_data(team_match)["plans"]["blue"])] * 2, strict=True)]
+    meetings = [meeting for _, (_, _, meeting) in plans if meeting]
+    assert meetings
+    for number, x, y in meetings:
+        assert number in range(1, 6)
+        assert abs(x) <= 4.7
+        assert abs(y) <= 3.2
 
 
 @pytest.mark.parametrize("other", ["far", [1, 2], {"3": "x"}, [{"receiver": 3}], [{"target": [0, None]}], 7])
@@ -329,5 +339,5 @@ def test_plans_of_some_other_kind_are_not_drawn(team_match: Recording, other: An
     written: Any = {"blue": [(0, {"marks": other})], "blue 3": [(5, {"candidates": other})]}
     recording = replace(team_match, written={key: [] for key in team_match.written} | written)
     data = page_data(recording)
-    assert data["plans"] == {"blue": [0, [{}, []]], "yellow": []}
+    assert data["plans"] == {"blue": [0, [{}, [], []]], "yellow": []}
     assert all(changes in ([], [5, []]) for changes in (robot["candidates"] for robot in data["robots"]))
