@@ -20,7 +20,7 @@ def test_the_simulator_is_a_world_by_its_name() -> None:
     ("address", "problem"),
     [
         ("grsim", "is league://SIMULATOR"),
-        ("league://webots", "simulator: input should be 'grsim', 'protocol' or 'observer'"),
+        ("league://webots", "simulator: input should be 'grsim', 'protocol', 'steps' or 'observer'"),
         ("league://grsim?port=1", "there is no option 'port'"),
         ("league://grsim?vision=here", "'here' is not an address like 224.5.23.2:10006"),
         ("league://grsim?vision=224.5.23.2:99999", "is not an address"),
