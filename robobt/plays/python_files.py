@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Iterable
+from contextlib import redirect_stdout
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
@@ -27,7 +28,8 @@ def import_file(path: str | Path) -> ModuleType:
     """Run a ``.py`` file, so that the plays, skills, raters and policies it registers are there.
 
     A file is run once; asked for again it is the same module. Modules that lie
-    beside it can be imported by it. When it raises, nothing of what it has registered stays.
+    beside it can be imported by it. What it prints goes to stderr. When it raises, nothing of what it has
+    registered stays.
     Worker processes of a match run the same files (:func:`imported_files`).
 
     Raises:
@@ -70,7 +72,9 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
     sys.modules[module.__name__] = module
     undo = [registry.undo_point() for registry in (PLAYS, SKILLS, RATERS, POLICIES)]
     try:
-        exec(compile(source, str(path), "exec"), module.__dict__)
+        # What it prints must not end up among a command's figures.
+        with redirect_stdout(sys.stderr):
+            exec(compile(source, str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
         del sys.modules[module.__name__]
         for take_back in undo:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -12,12 +13,14 @@ from typing import Self
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from robobt.config.errors import ConfigError, FieldError
-from robobt.config.resources import bundled_scenarios
+from robobt.config.resources import bundled_scenarios, models_folder
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
 from robobt.league.programs.world import Program
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.models.file import ModelError
+from robobt.models.find import find_model
 from robobt.plays import PLAYS
 from robobt.plays.files import is_play_file
 from robobt.plays.python_files import import_file
@@ -97,13 +100,19 @@ class Entrant:
         return EntrantError(self.source, problem, field)
 
     def digest(self) -> str:
-        """Hash what it plays, files by their contents: an edited tree is another team."""
+        """Hash what it plays, files by their contents: an edited tree or another model is another team."""
         parts = [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
         says = [part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)]
         digest = hashlib.blake2b(json.dumps(says, sort_keys=True).encode(), digest_size=16)
         trees = [Path(part.play) for part in parts if is_play_file(part.play)]
         for path in (*trees, *self.imports):
             digest.update(path.read_bytes())
+        named = [word for part in parts for word in _words(part.params)]
+        named += [
+            word for path in trees for word in re.findall(r"[\w./\\-]+", path.read_text(errors="replace"))
+        ]
+        for model in sorted({found for word in named if (found := _model(word)) is not None}):
+            digest.update(model.read_bytes())
         return digest.hexdigest()
 
 
@@ -204,6 +213,27 @@ def _from_side(name: str, text: str, scenario: Scenario, team: Team) -> Entrant:
     if not robots:
         raise EntrantError(text, f"{team.value} has no robot there")
     return Entrant(name, text, tuple(players or goalkeepers), goalkeepers[0] if goalkeepers else None)
+
+
+def _words(value: object) -> Iterator[str]:
+    """Yield the texts in plain data."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for part in value.values():
+            yield from _words(part)
+    elif isinstance(value, Sequence):
+        for part in value:
+            yield from _words(part)
+
+
+def _model(word: str) -> Path | None:
+    """Return the model that a parameter names, if it does; shipped ones count as robobt's code."""
+    try:
+        path = find_model(word)
+    except ModelError:
+        return None
+    return path if path.is_file() and path.resolve().parent != models_folder().resolve() else None
 
 
 def _part(robot: RobotSetup) -> Part:

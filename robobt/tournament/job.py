@@ -13,6 +13,7 @@ from typing import Self
 
 import robobt
 from robobt.config.errors import one_line
+from robobt.config.resources import models_folder
 from robobt.league.programs.world import ForfeitError, ProgramWorld
 from robobt.league.referee.process import GameControllerError
 from robobt.league.wire.stream import StreamError
@@ -31,10 +32,10 @@ from robobt.world.game import Team
 
 
 def code_digest() -> str:
-    """Hash robobt's code and the files that were imported: what else than settings decides a match."""
+    """Hash robobt's code, its models and the files that were imported, which decide a match too."""
     digest = hashlib.blake2b(digest_size=8)
     root = Path(robobt.__file__).parent
-    for path in (*sorted(root.rglob("*.py")), *imported_files()):
+    for path in (*sorted(root.rglob("*.py")), *sorted(models_folder().glob("*.*")), *imported_files()):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 

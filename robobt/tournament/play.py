@@ -30,6 +30,9 @@ Needless = Callable[[Fixture], bool]
 _POLL = 1.0
 """How often it is looked whether another program has finished what it has claimed [s]."""
 
+_TELLS = 15
+"""It is told after so many looks in vain: the other program may be suspended."""
+
 
 @dataclass(slots=True)
 class Played:
@@ -55,6 +58,7 @@ def play(
     on_match: Callable[[PlayedMatch], object] | None = None,
     enough: Enough | None = None,
     needless: Needless | None = None,
+    on_wait: Callable[[int], object] | None = None,
     job: type[Job] = Job,
 ) -> Played:
     """Play what is missing in the store.
@@ -72,6 +76,8 @@ def play(
         enough: called after each match with all that are there and those that could not be played; once
             it says True no further match begins, and those in progress are not waited for.
         needless: says of a match, before it begins, whether nobody has to know its result any more.
+        on_wait: called once when nothing is left but matches that another program has claimed, and it has not
+            ended one for a while, with their number.
         job: plays a match.
 
     Raises:
@@ -79,7 +85,7 @@ def play(
         OSError: a recording cannot be written.
     """
     driver = _Driver(plan, store, recordings, on_match, enough, needless)
-    interrupted = False
+    interrupted, looks = False, 0
 
     def lost(fixture: Fixture, problem: str) -> PlayedMatch | Failure:
         # A process may also be killed from outside, as for want of memory, or have stood still with this one;
@@ -107,7 +113,12 @@ def play(
                         claims.release(result.fixture)
                         if driver.stop:
                             break
-                if waits and driver.missing():
+                if not waits:
+                    looks = 0
+                elif left := driver.missing():
+                    looks = looks + 1 if left == missing else 0
+                    if looks == _TELLS and on_wait is not None:
+                        on_wait(len(left))
                     time.sleep(_POLL)
         except KeyboardInterrupt:
             interrupted = True

@@ -10,6 +10,7 @@ and ``finished``, in whichever order they were played.
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -65,7 +66,8 @@ class Store:
     """An open store. A context manager.
 
     Args:
-        path: the file; made where there is none, unless nothing is said of what is played.
+        path: the file; made where there is none, unless nothing is said of what is played. Then one that
+            cannot be written, or whose folder cannot, can still be read.
         played: what is played, by field; None opens a store that exists, whatever it holds.
 
     Attributes:
@@ -84,8 +86,11 @@ class Store:
             raise StoreError(self.path, "there is no such file")
         if not self.path.parent.is_dir():
             self.path.parent.mkdir(parents=True)
+        self._read_only = played is None and not all(
+            os.access(path, os.W_OK) for path in (self.path, self.path.parent)
+        )
         with self._naming():
-            self._connection = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
+            self._connection = sqlite3.connect(self._uri(), timeout=_PATIENCE, isolation_level=None, uri=True)
             self._connection.row_factory = sqlite3.Row
         try:
             with self._naming():
@@ -192,15 +197,16 @@ class Store:
             try:
                 # Looked at before: another program's database stays as it is, down to its journal.
                 self._is_new(played)
-                self._connection.execute("PRAGMA journal_mode = WAL")
+                if not self._read_only:
+                    self._connection.execute("PRAGMA journal_mode = WAL")
                 break
             except sqlite3.OperationalError:
                 # Another program is making the same change, for which SQLite does not wait by itself.
-                if tries == _TRIES - 1:
+                if self._read_only or tries == _TRIES - 1:
                     raise
                 time.sleep(_PATIENCE / _TRIES)
         self._connection.execute("PRAGMA synchronous = NORMAL")
-        with self._writing():
+        with self._naming() if self._read_only else self._writing():
             if played is not None and self._is_new(played):
                 for statement in filter(str.strip, _SCHEMA.split(";\n")):
                     self._connection.execute(f"{statement};")
@@ -217,6 +223,15 @@ class Store:
             missing, unknown = sorted(other - columns), sorted(other & columns)
             what = f"lacks {', '.join(missing)}" if missing else f"has {', '.join(unknown)} besides"
             raise StoreError(self.path, f"{what}; read it with the version of robobt that made it", "matches")
+
+    def _uri(self) -> str:
+        """Return how SQLite is to open it: where nothing can be written there is no place for its locks."""
+        uri = self.path.absolute().as_uri()
+        if not self._read_only:
+            return uri
+        # Unless its writer has left something beside it, which has to be read too.
+        beside = self.path.with_name(f"{self.path.name}-wal").exists()
+        return f"{uri}?mode=ro" if beside else f"{uri}?mode=ro&immutable=1"
 
     def _is_new(self, played: Mapping[str, object] | None) -> bool:
         """Return whether there is nothing in the file yet, and it may be made a store."""

@@ -194,3 +194,10 @@ def test_importing_needs_no_test_around_it(write: Write) -> None:
     code = f"from robobt.plays.python_files import import_file; print(import_file({str(write())!r}).advance)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert "function advance" in said
+
+
+def test_what_a_file_prints_is_no_figure(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "talks.py").write_text("print('hello')\n")
+    import_file(tmp_path / "talks.py")
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("", "hello\n")

@@ -10,7 +10,7 @@ import pytest
 from robobt.config.errors import ConfigError
 from robobt.match import load_scenario
 from robobt.plays import PLAYS, python_files
-from robobt.tournament.entrants import EntrantError, meeting, read_entrant
+from robobt.tournament.entrants import Entrant, EntrantError, Part, meeting, read_entrant
 from tests.registries import temporarily
 from tests.tournament.made_up import drill
 
@@ -136,3 +136,18 @@ def test_a_parameter_that_does_not_fit_names_the_robot() -> None:
 def test_parameters_are_for_plays_only() -> None:
     with pytest.raises(EntrantError, match="takes no parameters"):
         read_entrant("six_v_six:blue", {"speed": 1.0})
+
+
+def test_another_model_under_the_same_name_is_another_team(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    model, tree = tmp_path / "mine.pt", tmp_path / "tree.yaml"
+    tree.write_text("go_to_ball_and_shoot: {policy: mine.pt}\n")
+    for given in (Part(play="attack_main", params={"rater": "mine.pt"}), Part(play=str(tree))):
+        team = Entrant("a", "a", (given,))
+        model.write_bytes(b"one")
+        before = team.digest()
+        assert team.digest() == before
+        model.write_bytes(b"another")
+        assert team.digest() != before

@@ -10,6 +10,8 @@ import pytest
 from robobt.league.referee.process import GameControllerError
 from robobt.match import ScenarioError
 from robobt.match.recording import load_recording
+from robobt.tournament import play as play_module
+from robobt.tournament.claims import Claims
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.plan import Plan, TournamentError
 from robobt.tournament.play import Played, play
@@ -164,3 +166,19 @@ def test_an_entrant_that_does_not_fit_the_scenario_is_told_before() -> None:
         Exception, match=r"scripted: .*robots\.blue\.0\.params: blue 0: speed must not be negative"
     ):
         plan(entrants=(runner(1.0), runner(-1.0)))
+
+
+def test_who_waits_for_another_program_tells_it_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(play_module, "_POLL", 0.0)
+    told: list[int] = []
+    looks = 0
+
+    def taken(_: Claims, __: object) -> bool:
+        nonlocal looks
+        looks += 1
+        return looks > 6 * 40
+
+    monkeypatch.setattr(Claims, "take", taken)
+    found = run(plan(1), tmp_path / "a", on_wait=told.append)
+    assert told == [6]
+    assert len(found.matches) == 6

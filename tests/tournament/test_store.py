@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -177,3 +178,16 @@ class TestMerge:
 
 def test_what_may_differ_between_two_plays_are_columns() -> None:
     assert set(MAY_DIFFER) <= set(played("a", "b", 0).row())
+
+
+def test_a_store_that_cannot_be_written_can_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Store(tmp_path / "a", {"seed": 1}) as store:
+        store.add(played("a", "b", 0))
+    # Who plays the tests as root may write everywhere.
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    with Store(tmp_path / "a") as held:
+        assert [match.fixture for match in held.matches()] == [("a", "b", 0)]
+        assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+        with pytest.raises(StoreError, match="readonly database"):
+            held.add(played("a", "b", 1))

@@ -45,6 +45,14 @@ def parse_entrant(text: str) -> Entrant:
     return read_entrant(play, params, text)
 
 
+def tell_waiting(matches: int) -> None:
+    """Tell that another command holds up this one."""
+    warn(
+        f"waiting for {matches} matches that another command plays with the same store; if it is suspended, "
+        "let it go on or end it"
+    )
+
+
 def tell_code(matches: Iterable[PlayedMatch]) -> None:
     """Warn when matches were played by several states of the code."""
     versions = {match.code for match in matches}

@@ -29,7 +29,16 @@ from robobt.cli.common import (
 )
 from robobt.cli.compare import Set, parse_play
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
-from robobt.cli.tournament.asked import ENTRANT, EXITS, Alpha, Beta, asked_test, parse_entrant, tell_code
+from robobt.cli.tournament.asked import (
+    ENTRANT,
+    EXITS,
+    Alpha,
+    Beta,
+    asked_test,
+    parse_entrant,
+    tell_code,
+    tell_waiting,
+)
 
 if TYPE_CHECKING:
     from robobt.tournament.sequential import RunningTest
@@ -171,7 +180,7 @@ def sweep(
                 if found.best is not None:
                     progress.name(f"sweep, best {found.best.score:.3f}")
 
-            swept = search(asked, store, crew, on_progress)
+            swept = search(asked, store, crew, on_progress, tell_waiting)
         best, matches, failed = swept.best, swept.matches, swept.failed
         interrupted = swept.interrupted
         if best is not None and (best.score or 0.0) > 0.5 and confirm_rounds and not interrupted:

@@ -28,7 +28,16 @@ from robobt.cli.common import (
 )
 from robobt.cli.compare import Set
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
-from robobt.cli.tournament.asked import ENTRANT, EXITS, Alpha, Beta, asked_test, parse_entrant, tell_code
+from robobt.cli.tournament.asked import (
+    ENTRANT,
+    EXITS,
+    Alpha,
+    Beta,
+    asked_test,
+    parse_entrant,
+    tell_code,
+    tell_waiting,
+)
 from robobt.cli.tournament.tables import print_standings
 
 if TYPE_CHECKING:
@@ -195,6 +204,7 @@ def tournament(
                 recordings=recordings,
                 on_match=lambda _: progress.advance(),
                 enough=enough,
+                on_wait=tell_waiting,
             )
     for fixture, problem in played.failed.items():
         warn(f"{fixture} could not be played: {problem}")

@@ -64,7 +64,11 @@ class Swept:
 
 
 def search(
-    sweep: Sweep, path: Path, workers: int = 0, on_progress: Callable[[int, Swept], object] | None = None
+    sweep: Sweep,
+    path: Path,
+    workers: int = 0,
+    on_progress: Callable[[int, Swept], object] | None = None,
+    on_wait: Callable[[int], object] | None = None,
 ) -> Swept:
     """Try candidates, and go on where a search that was stopped has left off.
 
@@ -76,6 +80,7 @@ def search(
         workers: processes; 0 is this process itself.
         on_progress: called with a number of matches that are played, or need not be played any more, and
             what is known so far.
+        on_wait: called when another program holds this one up, as by :func:`robobt.tournament.play.play`.
 
     Raises:
         SweepError: Optuna is not installed.
@@ -102,7 +107,9 @@ def search(
 
             plan = sweep.plan([sweep.entrant(one.params) for one in new], sweep.rounds)
             with plan.open_store(path, sweep=sweep.says()) as store:
-                played = play(plan, store, workers, on_match=on_match, needless=race.needless)
+                played = play(
+                    plan, store, workers, on_match=on_match, needless=race.needless, on_wait=on_wait
+                )
             swept.matches += played.matches
             swept.failed |= played.failed
             if played.interrupted:
