@@ -68,6 +68,7 @@ _GROUPS = {
         "Measure how fast things are, on one core.",
         {
             "sim": "bench.parts:bench_sim",
+            "arenas": "bench.parts:bench_arenas",
             "tree": "bench.parts:bench_tree",
             "policy": "bench.parts:bench_policy",
             "env": "bench.parts:bench_env",

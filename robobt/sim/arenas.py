@@ -1,15 +1,15 @@
-"""N independent fields in one pymunk space, stepped and read together."""
+"""N independent fields, each a pymunk space of its own, stepped and read together."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, isqrt
+from math import ceil
 
 import numpy as np
 import pymunk
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.sim.bodies import BEYOND, fill, moment_of_inertia, walls_of
+from robobt.sim.bodies import fill, moment_of_inertia, walls_of
 from robobt.sim.chipmunk import BodyBuffer
 from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.kernels import control_tick
@@ -25,7 +25,7 @@ class Arenas:
     """The physics core: ``n`` copies of a field with ``len(limits)`` robots each and a ball.
 
     A match is one arena; vectorised training is hundreds. All arrays are views
-    that stay valid, in coordinates of each arena with its centre as origin.
+    that stay valid. What happens in an arena depends on nothing but itself, bit for bit.
 
     Args:
         field: dimensions.
@@ -42,8 +42,8 @@ class Arenas:
         contact: (n, R) whether the ball lies in the robot's mouth.
         kicked: (n, R) whether the robot kicked during the last step.
         touch: (n,) index of the last robot to touch the ball, -1 before the first.
-        history: (sub_steps, n, R + 1, 6) states after every sub-step in space
-            coordinates, the ball's last, with z and vz for heading and omega; empty unless
+        history: (sub_steps, n, R + 1, 6) states after every sub-step, the
+            ball's last, with z and vz for heading and omega; empty unless
             ``keep_history``.
         sub_steps: physics steps a control period.
         arena_parameters, robot_parameters, wheel_parameters: what the kernels use; columns are
@@ -69,19 +69,14 @@ class Arenas:
         self.sub_steps = max(1, ceil(period / settings.sub_step - 1e-9))
         self.dt = period / self.sub_steps
         count = len(limits)
-        pitch_x = field.length + 2 * (field.goal_line_margin + BEYOND) + 1.0
-        pitch_y = field.width + 2 * (field.margin + BEYOND) + 1.0
-        columns = isqrt(n - 1) + 1
-        self.origins = np.array(
-            [((i % columns) * pitch_x, (i // columns) * pitch_y) for i in range(n)], dtype=np.float64
-        )
         walls = walls_of(field)
         self._walls = np.array([box for box, _ in walls])
-        self._space = pymunk.Space()
-        # Chipmunk's default slop is made for pixels; ours is a tenth of a millimetre.
-        self._space.collision_slop = 1e-4
-        self._bodies = fill(self._space, settings, self.origins, count, walls)
-        self._buffer = BodyBuffer(self._space, n * (count + 1))
+        self._spaces = [pymunk.Space() for _ in range(n)]
+        for space in self._spaces:
+            # Chipmunk's default slop is made for pixels; ours is a tenth of a millimetre.
+            space.collision_slop = 1e-4
+        self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
+        self._buffer = BodyBuffer(self._spaces, count + 1)
         self.robots = np.zeros((n, count, 6))
         self.balls = np.zeros((n, 4))
         self.flight = np.zeros((n, FLIGHT))
@@ -119,18 +114,17 @@ class Arenas:
             balls: (m, 4) x, y, vx, vy; a moving ball rolls, or slides if the settings have it so.
             arenas: indices of the m arenas; all of them without.
         """
-        which = np.arange(len(self.origins)) if arenas is None else np.atleast_1d(np.asarray(arenas))
+        n = len(self._spaces)
+        which = np.arange(n) if arenas is None else np.atleast_1d(np.asarray(arenas))
         count = self.contact.shape[1]
         poses = np.asarray(robots, dtype=np.float64)
         poses = poses.reshape(len(which), count, poses.shape[-1])
         ball = np.asarray(balls, dtype=np.float64).reshape(len(which), 4)
-        rows = self._buffer.rows.reshape(len(self.origins), count + 1, 6)
+        rows = self._buffer.rows.reshape(n, self._buffer.stride, 6)
         self._buffer.read()
-        origin = self.origins[which]
         rows[which] = 0.0
         rows[which, :count, : poses.shape[-1]] = poses
-        rows[which, :count, :2] += origin[:, None, :]
-        rows[which, count, :2] = ball[:, :2] + origin
+        rows[which, count, :2] = ball[:, :2]
         rows[which, count, 3:5] = ball[:, 2:]
         self._velocity[which] = ball[:, 2:]
         self._spin[which] = ball[:, 2:] if self.settings.ball.placed_rolls else 0.0
@@ -171,9 +165,9 @@ class Arenas:
         count = self.contact.shape[1]
         self._wheels[arena, :, HELD] = 0.0
         self._buffer.read()
-        row = self._buffer.rows[arena * (count + 1) + count]
+        row = self._buffer.rows[arena * self._buffer.stride + count]
         row[:] = 0.0
-        row[:2] = self.origins[arena] + (x, y)
+        row[:2] = x, y
         row[3:5] = vx, vy
         self._velocity[arena] = vx, vy
         self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
@@ -190,11 +184,8 @@ class Arenas:
             robot: the robot's index in it.
             state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
         """
-        count = self.contact.shape[1]
         self._buffer.read()
-        row = self._buffer.rows[arena * (count + 1) + robot]
-        row[:] = state
-        row[:2] += self.origins[arena]
+        self._buffer.rows[arena * self._buffer.stride + robot] = state
         self._cooldown[arena, robot] = 0.0
         self._wheels[arena, robot] = 0.0
         self._buffer.write()
@@ -202,8 +193,7 @@ class Arenas:
 
     def weigh(self, arena: int, mass: float) -> None:
         """Give the robots of one arena another mass [kg]."""
-        count = self.contact.shape[1]
-        for body in self._bodies[arena * (count + 1) : arena * (count + 1) + count]:
+        for body in self._bodies[arena][:-1]:
             body.mass = mass
             body.moment = moment_of_inertia(mass)
 
@@ -225,10 +215,10 @@ class Arenas:
         self._pipeline.append(oldest)
         buffer = self._buffer
         control_tick(
+            buffer.calls,
             buffer.handles,
-            buffer.cursor,
+            buffer.cursors,
             buffer.rows,
-            self.origins,
             self._walls,
             self.arena_parameters,
             self.robot_parameters,
@@ -253,14 +243,14 @@ class Arenas:
         )
 
     def step_bare(self) -> None:
-        """Step the space alone, by pymunk's own call: what benchmarks compare with."""
-        for _ in range(self.sub_steps):
-            self._space.step(self.dt)
+        """Step the spaces alone, by pymunk's own call: what benchmarks compare with."""
+        for space in self._spaces:
+            for _ in range(self.sub_steps):
+                space.step(self.dt)
 
     def _refresh(self) -> None:
         report(
             self._buffer.rows,
-            self.origins,
             self.arena_parameters,
             self._velocity,
             self.flight,

@@ -1,14 +1,19 @@
-"""How fast the simulator is: control steps a second with frames and commands, beside the bare space."""
+"""How fast the simulator is: a match with frames and commands beside the bare space, and many arenas."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, pi, sin
-from time import perf_counter
+from time import perf_counter, process_time
 
+import numpy as np
+
+from robobt.sim.arenas import Arenas
+from robobt.sim.columns import COMMAND
 from robobt.sim.settings import preset
 from robobt.sim.world import SimWorld
 from robobt.world.command import RobotCommand
-from robobt.world.field import DIVISION_A
+from robobt.world.field import DIVISION_A, DIVISION_B
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import Frame, RobotId, RobotState
@@ -18,6 +23,57 @@ CASES = {"one_v_one": 1, "six_v_six": 6, "eleven_v_eleven": 11}
 
 PERIOD = 0.025
 """Control period, five sub-steps [s]."""
+
+
+SIDES = (1, 2, 3, 6)
+"""Robots a team in the crowded arenas."""
+
+ARENAS = (64, 256, 1024)
+"""How many of them there are."""
+
+TRAINING_PERIOD, TRAINING_STEPS = 0.03, 4
+"""Control period of training and physics steps in it [s]."""
+
+
+def bench_arenas(
+    seconds: float = 2.0, sides: Sequence[int] = SIDES, arenas: Sequence[int] = ARENAS
+) -> dict[int, dict[int, float]]:
+    """Measure crowded play in many arenas on one core: everybody drives at the ball, dribbles and kicks.
+
+    Args:
+        seconds: CPU time for each figure, after a second of simulated time in which they meet; the median
+            step counts.
+        sides: robots a team.
+        arenas: how many of them.
+
+    Returns:
+        for each of ``sides`` and each of ``arenas``, control steps a second of CPU time, all arenas
+        together. Deciding what to do is not in the time.
+    """
+    return {side: {n: _crowded(side, n, seconds) for n in arenas} for side in sides}
+
+
+def _crowded(side: int, n: int, seconds: float) -> float:
+    settings = preset("default").model_copy(update={"sub_step": TRAINING_PERIOD / TRAINING_STEPS})
+    arenas = Arenas(DIVISION_B, [None] * (2 * side), settings, TRAINING_PERIOD, n)
+    angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(2 * side) * pi / side
+    arenas.place(
+        np.stack([0.8 * np.cos(angles), 0.8 * np.sin(angles), angles + pi], axis=-1), np.zeros((n, 4))
+    )
+    commands = np.zeros((n, 2 * side, COMMAND))
+    spent: list[float] = []
+    warming = round(1.0 / TRAINING_PERIOD)
+    while len(spent) < 2 * warming or sum(spent[warming:]) < seconds:
+        gap = arenas.balls[:, None, :2] - arenas.robots[..., :2]
+        error = np.arctan2(gap[..., 1], gap[..., 0]) - arenas.robots[..., 2]
+        commands[..., 0], commands[..., 1] = 2.0 * np.cos(error), 2.0 * np.sin(error)
+        commands[..., 2] = 5.0 * np.sin(error)
+        commands[..., 3] = np.where(arenas.contact, 2.0, 0.0)
+        commands[..., 5] = 1.0
+        begin = process_time()
+        arenas.step(commands)
+        spent.append(process_time() - begin)
+    return float(n / np.median(spent[warming:]))
 
 
 def bench_sim(seconds: float = 4.0) -> dict[str, dict[str, float]]:

@@ -1,4 +1,4 @@
-"""The bodies and walls of the fields in one pymunk space."""
+"""The bodies and walls of a field in its pymunk space."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from robobt.sim.columns import SOFT
 from robobt.sim.robot_settings import BodySettings
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _WALL = 0.02
@@ -58,11 +57,10 @@ def walls_of(field: FieldGeometry) -> list[tuple[Box, str]]:
 def fill(
     space: pymunk.Space,
     settings: SimSettings,
-    origins: FloatArray,
     robots: int,
     walls: Sequence[tuple[Box, str]],
 ) -> list[pymunk.Body]:
-    """Add every arena's walls, robots and ball; return the bodies, each arena's ball last."""
+    """Add the walls, robots and the ball; return the bodies, the ball last."""
     contact, body = settings.contact, settings.body
     material = {
         "wall": (contact.wall_restitution, contact.wall_friction),
@@ -72,40 +70,39 @@ def fill(
     hull = _hull(body.face - (_PLATE if body.jaws is None else _RECESS))
     plate = _plate(body.face, body.mouth_width / 2 if body.jaws is not None else None)
     bodies = []
-    for origin_x, origin_y in origins:
-        for (x0, y0, x1, y1), kind in walls:
-            corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-            box = pymunk.Poly(space.static_body, [(origin_x + x, origin_y + y) for x, y in corners])
-            _finish(box, *material[kind], _STATIC, _DISC | _BALL)
-            space.add(box)
-        for i in range(robots):
-            robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
-            # Somewhere of their own until placed, so that no two start inside each other.
-            robot.position = (origin_x, origin_y + 3 * ROBOT_RADIUS * (i + 1))
-            hull_parts: list[pymunk.Shape]
-            if settings.shell is None:
-                hull_parts = [pymunk.Poly(robot, hull), *_jaws(robot, body)]
-                for part in hull_parts:
-                    _finish(part, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
-                hull_parts.append(pymunk.Poly(robot, plate))
-                _finish(hull_parts[-1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
-            else:
-                # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
-                hull_parts = [pymunk.Circle(robot, settings.shell.core - SOFT)]
-                _finish(hull_parts[0], 0.0, contact.hull_friction, _HULL, _BALL)
-            # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
-            share = contact.robot_restitution**0.5, contact.robot_friction**0.5
-            disc = pymunk.Circle(robot, ROBOT_RADIUS)
-            _finish(disc, *share, _DISC, _DISC | _STATIC)
-            space.add(robot, disc, *hull_parts)
-            bodies.append(robot)
-        # Spin about the vertical axis matters to nobody: the ball cannot turn.
-        ball = pymunk.Body(settings.ball.mass, float("inf"))
-        ball.position = (origin_x, origin_y)
-        round_ = pymunk.Circle(ball, BALL_RADIUS)
-        _finish(round_, 1.0, 1.0, _BALL, _HULL | _STATIC)
-        space.add(ball, round_)
-        bodies.append(ball)
+    for (x0, y0, x1, y1), kind in walls:
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        box = pymunk.Poly(space.static_body, corners)
+        _finish(box, *material[kind], _STATIC, _DISC | _BALL)
+        space.add(box)
+    for i in range(robots):
+        robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
+        # Somewhere of their own until placed, so that no two start inside each other.
+        robot.position = (0.0, 3 * ROBOT_RADIUS * (i + 1))
+        hull_parts: list[pymunk.Shape]
+        if settings.shell is None:
+            hull_parts = [pymunk.Poly(robot, hull), *_jaws(robot, body)]
+            for part in hull_parts:
+                _finish(part, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
+            hull_parts.append(pymunk.Poly(robot, plate))
+            _finish(hull_parts[-1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
+        else:
+            # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
+            hull_parts = [pymunk.Circle(robot, settings.shell.core - SOFT)]
+            _finish(hull_parts[0], 0.0, contact.hull_friction, _HULL, _BALL)
+        # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
+        share = contact.robot_restitution**0.5, contact.robot_friction**0.5
+        disc = pymunk.Circle(robot, ROBOT_RADIUS)
+        _finish(disc, *share, _DISC, _DISC | _STATIC)
+        space.add(robot, disc, *hull_parts)
+        bodies.append(robot)
+    # Spin about the vertical axis matters to nobody: the ball cannot turn.
+    ball = pymunk.Body(settings.ball.mass, float("inf"))
+    ball.position = (0.0, 0.0)
+    round_ = pymunk.Circle(ball, BALL_RADIUS)
+    _finish(round_, 1.0, 1.0, _BALL, _HULL | _STATIC)
+    space.add(ball, round_)
+    bodies.append(ball)
     return bodies
 
 

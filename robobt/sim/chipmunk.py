@@ -70,72 +70,83 @@ call_each_body = cast(Callable[..., None], _call_each_body)
 
 
 class BodyBuffer:
-    """All bodies of a space as rows of one numpy array, shared with the C library.
+    """The bodies of equal spaces as rows of one numpy array, shared with the C library.
+
+    Args:
+        spaces: of an arena each.
+        bodies: how many each of them has.
 
     Attributes:
-        rows: (bodies, 6) x, y, angle, vx, vy, angular velocity of the bodies in
-            the order in which they were added [m, rad, m/s, rad/s].
-        handles: addresses for compiled code: step, each-body, the reading and
-            the writing callback, the space, the batch descriptor.
-        cursor: where the next batched call starts in the buffer; to be set to 0
-            before each.
+        rows: (spaces * stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
+            the order in which they were added, then spare rows [m, rad, m/s, rad/s].
+        stride: rows of a space.
+        calls: addresses for compiled code: step, each-body, the reading and the writing callback.
+        handles: (spaces, 2) addresses of each space and its batch descriptor.
+        cursors: (spaces, k); where in its rows a space's next batched call starts is the first number of
+            a row, to be set to 0 before each.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: int) -> None:
+    def __init__(self, spaces: Sequence[pymunk.Space], bodies: int) -> None:
         # The C side visits the static body last and checks for room after every
         # number it stores: one row for the static body, one spare so that it
         # never reallocates memory that numpy owns.
-        self._store: NDArray[np.float64] = np.zeros((bodies + 2, ROW))
-        self.rows = self._store[:bodies]
-        self._space = space
-        self._floats = ffi.new("pmFloatArray *")
+        self.stride = bodies + 2
+        count = len(spaces)
+        self.rows: NDArray[np.float64] = np.zeros((count * self.stride, ROW))
+        self._spaces, self._bodies = list(spaces), bodies
+        self._floats = ffi.new("pmFloatArray[]", count)
         self._ints = ffi.new("pmIntArray *")
-        self._memory = ffi.from_buffer("cpFloat[]", self._store)
-        self._floats.arr = self._memory
-        self._floats.max = self._store.size
-        self._floats.num = 0
-        self._batch = ffi.new("pmBatchedData *")
-        self._batch.fields = lib.POSITION | lib.ANGLE | lib.VELOCITY | lib.ANGULAR_VELOCITY
-        self._batch.floatArray = self._floats
-        self._batch.intArray = self._ints
-        size = ffi.sizeof("int")
-        self.cursor: NDArray[np.int32] = np.frombuffer(ffi.buffer(self._floats, size), dtype=np.int32)
-        self.handles: NDArray[np.uint64] = np.array(
+        self._memory = ffi.from_buffer("cpFloat[]", self.rows)
+        self._batches = ffi.new("pmBatchedData[]", count)
+        for k in range(count):
+            floats, batch = self._floats[k], self._batches[k]
+            floats.arr = self._memory + k * self.stride * ROW
+            floats.max = self.stride * ROW
+            floats.num = 0
+            batch.fields = lib.POSITION | lib.ANGLE | lib.VELOCITY | lib.ANGULAR_VELOCITY
+            batch.floatArray = self._floats + k
+            batch.intArray = self._ints
+        every = np.frombuffer(ffi.buffer(self._floats), dtype=np.int32)
+        self.cursors: NDArray[np.int32] = every.reshape(count, -1)
+        self.calls: NDArray[np.uint64] = np.array(
             [
                 _address(ffi.addressof(lib, "cpSpaceStep")),
                 _address(ffi.addressof(lib, "cpSpaceEachBody")),
                 _address(ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")),
                 _address(ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")),
-                _address(space._space),
-                _address(self._batch),
             ],
             dtype=np.uint64,
         )
-        self._check_order(bodies)
+        self.handles: NDArray[np.uint64] = np.array(
+            [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)],
+            dtype=np.uint64,
+        )
+        self._check_order()
 
     def read(self) -> None:
-        """Fill ``rows`` from the space."""
-        self.cursor[0] = 0
-        lib.cpSpaceEachBody(
-            self._space._space, ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched"), self._batch
-        )
+        """Fill ``rows`` from the spaces."""
+        self._each(ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched"))
 
     def write(self) -> None:
-        """Set the space's bodies from ``rows``."""
-        self.cursor[0] = 0
-        lib.cpSpaceEachBody(
-            self._space._space, ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched"), self._batch
-        )
+        """Set the spaces' bodies from ``rows``."""
+        self._each(ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched"))
 
-    def _check_order(self, bodies: int) -> None:
+    def _each(self, callback: object) -> None:
+        self.cursors[:, 0] = 0
+        for k, space in enumerate(self._spaces):
+            lib.cpSpaceEachBody(space._space, callback, self._batches + k)
+
+    def _check_order(self) -> None:
         self.read()
-        found = self.cursor[0] // ROW
-        expected = [tuple(body.position) for body in self._space.bodies]
-        if found != bodies + 1 or [tuple(row[:2]) for row in self.rows] != expected:
-            raise RuntimeError(
-                f"pymunk {pymunk.version} visits {found} bodies in another order than they were added: "
-                "its batch interface has changed"
-            )
+        rows = self.rows.reshape(len(self._spaces), self.stride, ROW)
+        for k, space in enumerate(self._spaces):
+            found = self.cursors[k, 0] // ROW
+            expected = [tuple(body.position) for body in space.bodies]
+            if found != self._bodies + 1 or [tuple(row[:2]) for row in rows[k, : self._bodies]] != expected:
+                raise RuntimeError(
+                    f"pymunk {pymunk.version} visits {found} bodies in another order than they were added: "
+                    "its batch interface has changed"
+                )
 
 
 def _address(pointer: object) -> int:

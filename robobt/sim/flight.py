@@ -49,7 +49,6 @@ def fly(
     rows: FloatArray,
     first: int,
     robots: int,
-    origin: FloatArray,
     walls: FloatArray,
     p: FloatArray,
     dt: float,
@@ -64,7 +63,6 @@ def fly(
         rows: of robots and balls.
         first: where the arena's robots begin in them.
         robots: how many there are; the ball's row follows theirs.
-        origin: (2,) centre of the arena [m].
         walls: (W, 4) of the arena, those around the field first [m].
         p: parameters of the arena.
         dt: time step [s].
@@ -78,7 +76,7 @@ def fly(
     after = before + (rise - 0.5 * GRAVITY * dt) * dt
     floor = 0.0
     if before >= ROBOT_HEIGHT > after:
-        x, y = ball[0] - origin[0], ball[1] - origin[1]
+        x, y = ball[0], ball[1]
         if _above_something(rows, first, robots, x, y, walls, p):
             floor = ROBOT_HEIGHT
     move[0], move[1] = velocity[0], velocity[1]
@@ -109,7 +107,6 @@ def fly(
 def pass_over(
     ball: FloatArray,
     velocity: FloatArray,
-    origin: FloatArray,
     walls: FloatArray,
     move: FloatArray,
     p: FloatArray,
@@ -118,9 +115,9 @@ def pass_over(
     """Move a high ball by ``move``, and back where it meets a wall around the field."""
     for k in range(2):
         limit = (walls[2, 0] if k == 0 else walls[0, 1]) - p[BALL_R]
-        place = ball[k] - origin[k] + move[k] * dt
+        place = ball[k] + move[k] * dt
         if abs(place) > limit:
             place = limit if place > 0.0 else -limit
             if velocity[k] * place > 0.0:
                 velocity[k] *= -p[BOUNCE_WALL]
-        ball[k] = origin[k] + place
+        ball[k] = place

@@ -53,15 +53,15 @@ _BACKING = -0.02
 """A robot slower than this along its heading backs away from the ball [m/s]."""
 
 _ELSEWHERE = 1e4
-"""Coordinate of the place, clear of all arenas, where the space has the balls that fly high [m]."""
+"""Coordinate of the place, clear of the arena, where its space has the balls that fly high [m]."""
 
 
 @compiled
 def control_tick(
+    calls: NDArray[np.uint64],
     handles: NDArray[np.uint64],
-    cursor: NDArray[np.int32],
+    cursors: NDArray[np.int32],
     rows: FloatArray,
-    origins: FloatArray,
     walls: FloatArray,
     arena_parameters: FloatArray,
     robot_parameters: FloatArray,
@@ -87,10 +87,10 @@ def control_tick(
     """Advance every arena by one control period of ``sub_steps`` physics steps.
 
     Args:
-        handles: of the :class:`~robobt.sim.chipmunk.BodyBuffer`.
-        cursor: of the same.
+        calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`.
+        handles: of the same.
+        cursors: of the same.
         rows: of the same.
-        origins: (N, 2) centre of each arena in the space [m].
         walls: (W, 4) boxes x0, y0, x1, y1 relative to an arena's centre [m].
         arena_parameters: (N, ARENA_PARAMETERS).
         robot_parameters: (N, R, ROBOT_PARAMETERS).
@@ -116,26 +116,26 @@ def control_tick(
             height and the rate of that where a robot's has the heading and its rate.
     """
     arenas, robots = contact.shape
-    width = robots + 1
+    width, stride = robots + 1, len(rows) // arenas
     move = np.zeros(2)
     pull = np.zeros(2)
     met = np.zeros(2)
     hit = np.zeros(3)
     driven = np.zeros(robots)
     contacts = np.zeros((robots, CONTACTS, SCRATCH))
-    target = np.zeros((arenas, 2))
-    # Where the balls are that pass over everything, for the time of a step.
-    aloft = np.zeros((arenas, 2))
-    high = np.zeros(arenas, dtype=np.bool_)
+    target = np.zeros(2)
+    # Where a ball is that passes over everything, for the time of a step.
+    aloft = np.zeros(2)
     kicked[:] = False
-    for step in range(sub_steps):
-        for a in range(arenas):
-            first = a * width
-            p = arena_parameters[a]
-            ball = rows[first + robots]
-            velocity, spin, twist, air = ball_velocity[a], ball_spin[a], ball_twist[a], flight[a]
+    for a in range(arenas):
+        first = a * stride
+        p = arena_parameters[a]
+        ball = rows[first + robots]
+        velocity, spin, twist, air = ball_velocity[a], ball_spin[a], ball_twist[a], flight[a]
+        high = False
+        for step in range(sub_steps):
             low = air[Z] < RECEIVED_HEIGHT
-            high[a] = False
+            high = False
             commands = new[a] if step >= switch[a] else old[a]
             glued = -1
             held = fired = False
@@ -197,8 +197,8 @@ def control_tick(
                     hold(ball, velocity, robot, p, p[IDLE_HOLD], dt, pull)
             if glued >= 0:
                 carry(ball, rows[first + glued], p, dt, move)
-                x = ball[0] + move[0] * dt - origins[a, 0]
-                y = ball[1] + move[1] * dt - origins[a, 1]
+                x = ball[0] + move[0] * dt
+                y = ball[1] + move[1] * dt
                 if in_a_wall(x, y, walls, p[BALL_R]):
                     # Glue knows no contacts and would carry the ball through; force gives way.
                     hold(ball, velocity, rows[first + glued], p, -1.0, dt, pull)
@@ -212,7 +212,7 @@ def control_tick(
             elif air[Z] > 0.0 or air[RISE] > 0.0:
                 velocity[0] += pull[0] * dt
                 velocity[1] += pull[1] * dt
-                high[a] = fly(air, velocity, spin, rows, first, robots, origins[a], walls, p, dt, move)
+                high = fly(air, velocity, spin, rows, first, robots, walls, p, dt, move)
             elif held:
                 velocity[0] += pull[0] * dt
                 velocity[1] += pull[1] * dt
@@ -222,56 +222,52 @@ def control_tick(
                 move[0], move[1] = velocity[0], velocity[1]
             else:
                 friction(velocity, spin, p, dt, move)
-            if glued < 0 and p[CORE] > 0.0 and not high[a]:
+            if glued < 0 and p[CORE] > 0.0 and not high:
                 before_x, before_y = velocity[0], velocity[1]
                 for i in range(robots):
                     meet(ball, velocity, spin, twist, rows[first + i], p, wheel_parameters[a], dt, hit)
                 if velocity[0] != before_x or velocity[1] != before_y:
                     # Pushed, it moves as it leaves the contact: what friction took is made up for.
                     move[0], move[1] = velocity[0], velocity[1]
-            if high[a]:
-                pass_over(ball, velocity, origins[a], walls, move, p, dt)
-                aloft[a, 0], aloft[a, 1] = ball[0], ball[1]
-                ball[0], ball[1] = _ELSEWHERE * (a + 1), _ELSEWHERE
+            if high:
+                pass_over(ball, velocity, walls, move, p, dt)
+                aloft[0], aloft[1] = ball[0], ball[1]
+                ball[0], ball[1] = _ELSEWHERE, _ELSEWHERE
                 move[0] = move[1] = 0.0
             elif glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
-                share = sweep(rows, first, robots, walls, origins[a], move, p, dt, met)
+                share = sweep(rows, first, robots, walls, move, p, dt, met)
                 if share < 1.0:
                     # From then on it goes with what it met, which may move away from it.
                     x, y = move[0] - met[0], move[1] - met[1]
                     back = max(1.0 - share - _OVERLAP / (hypot(x, y) * dt), 0.0)
                     ball[0] -= x * dt * back
                     ball[1] -= y * dt * back
-            ball[3] = target[a, 0] = move[0]
-            ball[4] = target[a, 1] = move[1]
-        cursor[0] = 0
-        call_each_body(handles[1], handles[4], handles[3], handles[5])
-        call_step(handles[0], handles[4], dt)
-        cursor[0] = 0
-        call_each_body(handles[1], handles[4], handles[2], handles[5])
-        for a in range(arenas):
-            first = a * width
-            p = arena_parameters[a]
-            ball = rows[first + robots]
-            if high[a]:
-                ball[0], ball[1] = aloft[a, 0], aloft[a, 1]
-                ball[3], ball[4] = ball_velocity[a, 0], ball_velocity[a, 1]
+            ball[3] = target[0] = move[0]
+            ball[4] = target[1] = move[1]
+            cursors[a, 0] = 0
+            call_each_body(calls[1], handles[a, 0], calls[3], handles[a, 1])
+            call_step(calls[0], handles[a, 0], dt)
+            cursors[a, 0] = 0
+            call_each_body(calls[1], handles[a, 0], calls[2], handles[a, 1])
+            if high:
+                ball[0], ball[1] = aloft[0], aloft[1]
+                ball[3], ball[4] = velocity[0], velocity[1]
             else:
                 # What contacts did to the mean velocity, they did to the velocity.
-                ball_velocity[a, 0] += ball[3] - target[a, 0]
-                ball_velocity[a, 1] += ball[4] - target[a, 1]
-                if flight[a, Z] < ROBOT_HEIGHT:
+                velocity[0] += ball[3] - target[0]
+                velocity[1] += ball[4] - target[1]
+                if air[Z] < ROBOT_HEIGHT:
                     note_touch(rows, first, robots, p, touch, a)
             if history.shape[0] > 0:
                 for i in range(width):
                     for k in range(6):
                         history[step, a, i, k] = rows[first + i, k]
-                history[step, a, robots, 3] = ball_velocity[a, 0]
-                history[step, a, robots, 4] = ball_velocity[a, 1]
-                history[step, a, robots, 2] = flight[a, Z]
-                history[step, a, robots, 5] = flight[a, RISE]
-    if high.any():
-        # The bodies of these are still elsewhere.
-        cursor[0] = 0
-        call_each_body(handles[1], handles[4], handles[3], handles[5])
-    report(rows, origins, arena_parameters, ball_velocity, flight, contact, robots_out, balls_out)
+                history[step, a, robots, 3] = velocity[0]
+                history[step, a, robots, 4] = velocity[1]
+                history[step, a, robots, 2] = air[Z]
+                history[step, a, robots, 5] = air[RISE]
+        if high:
+            # Its body is still elsewhere.
+            cursors[a, 0] = 0
+            call_each_body(calls[1], handles[a, 0], calls[3], handles[a, 1])
+    report(rows, arena_parameters, ball_velocity, flight, contact, robots_out, balls_out)

@@ -40,10 +40,10 @@ def note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: 
 
 
 @compiled
-def _report(row: FloatArray, origin: FloatArray, out: FloatArray) -> None:
-    """Copy a robot's row relative to its arena, heading in (-pi, pi]."""
-    out[0] = row[0] - origin[0]
-    out[1] = row[1] - origin[1]
+def _report(row: FloatArray, out: FloatArray) -> None:
+    """Copy a robot's row, heading in (-pi, pi]."""
+    out[0] = row[0]
+    out[1] = row[1]
     heading = row[2] % (2.0 * pi)
     out[2] = heading - 2.0 * pi if heading > pi else heading
     out[3] = row[3]
@@ -54,7 +54,6 @@ def _report(row: FloatArray, origin: FloatArray, out: FloatArray) -> None:
 @compiled
 def report(
     rows: FloatArray,
-    origins: FloatArray,
     arena_parameters: FloatArray,
     ball_velocity: FloatArray,
     flight: FloatArray,
@@ -64,15 +63,16 @@ def report(
 ) -> None:
     """Fill the outputs of :func:`robobt.sim.kernels.control_tick` from the rows."""
     arenas, robots = contact.shape
+    stride = len(rows) // arenas
     for a in range(arenas):
-        first = a * (robots + 1)
+        first = a * stride
         ball = rows[first + robots]
         for i in range(robots):
             row = rows[first + i]
             p = arena_parameters[a]
             contact[a, i] = flight[a, Z] < RECEIVED_HEIGHT and in_mouth(ball, row, p, p[SENSOR])
-            _report(row, origins[a], robots_out[a, i])
-        balls_out[a, 0] = ball[0] - origins[a, 0]
-        balls_out[a, 1] = ball[1] - origins[a, 1]
+            _report(row, robots_out[a, i])
+        balls_out[a, 0] = ball[0]
+        balls_out[a, 1] = ball[1]
         balls_out[a, 2] = ball_velocity[a, 0]
         balls_out[a, 3] = ball_velocity[a, 1]

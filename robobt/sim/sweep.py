@@ -93,7 +93,6 @@ def sweep(
     first: int,
     robots: int,
     walls: FloatArray,
-    origin: FloatArray,
     move: FloatArray,
     p: FloatArray,
     dt: float,
@@ -122,7 +121,7 @@ def sweep(
         if when < share:
             share = when
             met[0], met[1] = row[3], row[4]
-    x, y = ball[0] - origin[0], ball[1] - origin[1]
+    x, y = ball[0], ball[1]
     dx, dy = move[0] * dt, move[1] * dt
     for k in range(walls.shape[0]):
         when = _meets_box(x, y, dx, dy, walls[k], radius)
