@@ -55,7 +55,7 @@ def test_both_sides_have_the_same_goalkeeper_unless_an_entrant_brings_its_own() 
     new, old = read_entrant("team_player"), read_entrant("team_v_baseline:yellow")
     met = meeting(scenario, old, new)
     assert plays(met, "blue")[0] == "keeper_2026_11"
-    assert plays(met, "yellow")[0] == "keeper"
+    assert plays(met, "yellow")[0] == "team_keeper"
 
 
 def test_a_side_alone_with_its_goalkeeper_plays_what_the_entrant_plays() -> None:

@@ -57,7 +57,7 @@ def bench_arenas(
     with errors.status("measuring many arenas"):
         figures = measure(seconds=seconds)
     if as_json:
-        print_json(figures)
+        print_json({str(side): speeds for side, speeds in figures.items()})
         return
     listed = table("a team", *(f"{n:,} arenas" for n in ARENAS))
     for side, speeds in figures.items():
