@@ -34,6 +34,7 @@ program:
   command: [env, "PYTHONPATH={root}", {python}, {client}, "{name}", "{{team}}", "{port}"]
   ready_within: {ready}
   silent_for: {silent}
+  ends_within: 5
   {more}
 """
 

@@ -25,9 +25,6 @@ KEPT_OUTPUT = 1 << 20
 MOST_OUTPUT = 64 << 20
 """How much a program may print in a match [bytes]."""
 
-LEAVE = 5.0
-"""How long a program that is told to end may take [s]."""
-
 _MARK = "ROBOBT_PROGRAM"
 """Environment variable that everything a program starts inherits."""
 
@@ -131,9 +128,9 @@ class TeamProcess:
                 with suppress(OSError):
                     os.kill(process, signal.SIGTERM)
 
-    def leave(self) -> None:
-        """Wait for the end of it that it was told of, and find out whether it is stubborn."""
-        end = time.monotonic() + LEAVE
+    def leave(self, within: float) -> None:
+        """Wait ``within`` [s] for the end of it that it was told of, and find out whether it is stubborn."""
+        end = time.monotonic() + within
         while self._marked():
             if time.monotonic() > end:
                 self.stubborn = True

@@ -16,7 +16,7 @@ from pydantic import Field
 from robobt.config.errors import RobobtError
 from robobt.config.validation import Settings
 from robobt.league.programs.ports import MOST_PACKETS, MatchPorts
-from robobt.league.programs.process import LEAVE, MOST_OUTPUT, TeamProcess
+from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
 from robobt.league.programs.steps import StepPort
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.publishing import GEOMETRY_INTERVAL
@@ -56,6 +56,9 @@ class Program(Settings):
     )
     silent_for: float = Field(
         10.0, gt=0, le=600, description="how long it may then be silent until it has lost [s]"
+    )
+    ends_within: float = Field(
+        30.0, gt=0, le=600, description="how long it may take to end when it is told to by SIGTERM [s]"
     )
 
 
@@ -145,9 +148,10 @@ class ProgramWorld(WrappedWorld):
         for process in self._processes.values():
             process.tell()
         for team, process in self._processes.items():
-            process.leave()
+            within = self._programs[team].ends_within
+            process.leave(within)
             if process.stubborn:
-                problem = f"its program, or a child of it, did not end within {LEAVE:g} s of SIGTERM"
+                problem = f"its program, or a child of it, did not end within {within:g} s of SIGTERM"
                 raise ForfeitError(team, problem)
 
     def reset(self, placement: Placement, seed: int) -> None:

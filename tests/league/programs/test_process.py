@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from robobt.league.programs import process as process_module
 from robobt.league.programs.process import KEPT_OUTPUT, TeamProcess
 
 pytestmark = [
@@ -55,17 +54,14 @@ def test_children_that_ignore_signals_and_left_the_group_are_ended_too(tmp_path:
 
 
 @pytest.mark.parametrize("deaf", [False, True])
-def test_who_does_not_end_when_told_is_stubborn(
-    deaf: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(process_module, "LEAVE", 1.0 if deaf else 20.0)
+def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> None:
     obeys = ESCAPES.replace("signal.signal(signal.SIGTERM, signal.SIG_IGN)\n", "\n", 1)
     child = obeys if deaf else obeys.replace("signal.signal(signal.SIGTERM, signal.SIG_IGN); ", "")
     output = tmp_path / "out.txt"
     with TeamProcess([sys.executable, "-S", "-c", child], tmp_path, output) as program:
         wait_for_words(output)
         program.tell()
-        program.leave()
+        program.leave(1.0 if deaf else 20.0)
         assert program.stubborn is deaf
 
 
