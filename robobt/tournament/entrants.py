@@ -243,6 +243,7 @@ def _part(robot: RobotSetup) -> Part:
 def _unknown(name: str) -> str:
     bundled = ", ".join(bundled_scenarios())
     return PLAYS.problem_with(name) or (
-        f"no play is called {name!r}; there are {', '.join(PLAYS)}. An entrant is a play, a file (.yaml), "
-        f"or a scenario's side, as in six_v_six:blue ({bundled})"
+        f"no play is called {name!r}; an entrant is a play, a file (.yaml), or a scenario's side, as in "
+        f"six_v_six:blue; --import FILE.py makes a Python file's plays known. Plays are {', '.join(PLAYS)}; "
+        f"scenarios {bundled}"
     )

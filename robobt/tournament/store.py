@@ -246,7 +246,9 @@ class Store:
             held = self.played.get(name)
             if held != value:
                 what = f"the store holds a tournament of {short_repr(held)}, not of {short_repr(value)}"
-                if name == "digest":
+                if held is None:
+                    what = "the store says nothing of that, it is another command's"
+                elif name == "digest":
                     what = "the store holds a tournament of another version of the scenario"
                 raise StoreError(
                     self.path, f"{what}{f' as {other}' if other else ''}; give another file", name

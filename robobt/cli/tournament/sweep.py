@@ -60,7 +60,7 @@ def sweep(
         typer.Option(
             "--vary",
             metavar=_VARY,
-            help="A parameter and what is tried: rater=nn,open_angle, or for numbers a range, "
+            help="A parameter and what is tried: rater=nn_filtered,open_angle, or for numbers a range, "
             "shot_distance=2:6; may be given often.",
         ),
     ],
@@ -138,8 +138,9 @@ def sweep(
 
     Keys of --json: scenario, seed, referee, against; candidates in the order in which they were proposed:
     number, name (an entrant of 'robobt tournament'), params, rounds, score (0 to 1 in the mean), lead
-    (goals a match), stopped, problem; best, one of them or null; failed: what kept matches from being
-    played, by match; interrupted; sprt, null without: as of 'robobt tournament'.
+    (goals a match), stopped, problem, errors (ticks in which a tree failed), first_error; best, one of them
+    or null; failed: what kept matches from being played, by match; interrupted; sprt, null without: as of
+    'robobt tournament'.
     """
     from robobt.match import load_scenario
     from robobt.match.scenario.changes import changed
@@ -150,6 +151,11 @@ def sweep(
 
     import_files(imports)
     name, fixed = parse_play(play, "PLAY")
+    if name.endswith((".py", ".yaml", ".yml", ".xml")):
+        raise typer.BadParameter(
+            f"{name} is a file; a sweep tunes a play by its name, which --import FILE.py makes known",
+            param_hint="PLAY",
+        )
     if name not in PLAYS:
         raise unknown(name, PLAYS)
     test = asked_test(sprt, alpha, beta)
@@ -195,6 +201,10 @@ def sweep(
             interrupted = played.interrupted
     for fixture, problem in failed.items():
         warn(f"{fixture} could not be played: {problem}")
+    for one in swept.candidates:
+        if one.first_error is not None:
+            failed_in = f"trees failed in {one.errors} ticks; the first" if one.errors else "lost by rule"
+            warn(f"{one.name}: {failed_in}: {one.first_error}")
     tell_code(matches)
     if interrupted:
         kept = "without --out nothing is kept" if out is None else "the same command goes on with it"

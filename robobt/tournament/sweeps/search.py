@@ -32,6 +32,8 @@ class Candidate:
         lead: goals by which it wins a match in the mean.
         stopped: whether it was stopped because it surely is worse than the other, or than the best before it.
         problem: why it could not play; None where it could.
+        errors: ticks in which one of its trees failed.
+        first_error: the first such failure, or why it lost a match by rule; None without one.
     """
 
     number: int
@@ -42,6 +44,8 @@ class Candidate:
     lead: float | None = None
     stopped: bool = False
     problem: str | None = None
+    errors: int = 0
+    first_error: str | None = None
 
 
 @dataclass(slots=True)
@@ -106,7 +110,7 @@ def search(
                 tell(1, swept)
 
             plan = sweep.plan([sweep.entrant(one.params) for one in new], sweep.rounds)
-            with plan.open_store(path, sweep=sweep.says()) as store:
+            with plan.open_store(path, **sweep.says()) as store:
                 played = play(
                     plan, store, workers, on_match=on_match, needless=race.needless, on_wait=on_wait
                 )
@@ -158,6 +162,9 @@ def _judge(one: Candidate, scores: Mapping[int, float], race: Race, swept: Swept
         return
     one.score = fmean(scores.values())
     one.lead = fmean(match.lead(one.name) for match in matches)
+    sides = [match.side(one.name) for match in matches]
+    one.errors = sum(side.errors for side in sides)
+    one.first_error = next((side.first_error for side in sides if side.first_error is not None), None)
 
 
 def _tell(study: Study, trial: Trial, one: Candidate, scores: Mapping[int, float]) -> None:

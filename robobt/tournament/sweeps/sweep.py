@@ -10,7 +10,7 @@ from typing import Any
 
 from robobt.match.loop import WorldFactory
 from robobt.match.refereeing import RefereeFactory, own_referee
-from robobt.match.scenario.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario, ScenarioError
 from robobt.tournament.entrants import Entrant, meeting, read_entrant
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.plan import Plan
@@ -43,8 +43,8 @@ class Sweep:
         world: makes the world of a match.
 
     Raises:
-        SweepError: a parameter is varied twice, or fixed as well.
-        ScenarioError, EntrantError: the play does not fit the scenario with some of the values.
+        SweepError: a parameter is varied twice, or fixed as well, or the play refuses some of the values.
+        EntrantError: whom all play does not fit the scenario.
     """
 
     scenario: Scenario
@@ -67,10 +67,16 @@ class Sweep:
         for name in names:
             if names.count(name) > 1 or name in self.params:
                 raise SweepError(f"{name}: is given twice")
+        try:
+            meeting(self.scenario, self.against, self.against)
+        except ScenarioError as error:
+            raise self.against.error(str(error)) from error
         for one in self.varied:
             for value in one.extremes():
-                entrant = self.entrant({one.name: value})
-                meeting(self.scenario, entrant, self.against)
+                try:
+                    meeting(self.scenario, self.entrant({one.name: value}), self.against)
+                except ScenarioError as error:
+                    raise SweepError(f"{one.name}={_text(value)}: {error}") from error
 
     def entrant(self, params: Mapping[str, object]) -> Entrant:
         """Return the play with these values of what is varied."""
@@ -95,14 +101,17 @@ class Sweep:
             first_round=first_round,
         )
 
-    def says(self) -> str:
-        """Return what the store keeps: two sweeps of which it is equal propose the same candidates."""
-        varied = ", ".join(f"{one.name}={one.text}" for one in self.varied)
-        fixed = "".join(f", {name}={_text(value)}" for name, value in self.params.items())
-        return (
-            f"{self.play}{fixed} by {varied} against {self.against.name}: {self.rounds} rounds, "
-            f"{self.at_once} at once, error {self.error:g}, Optuna {load_optuna().__version__}"
-        )
+    def says(self) -> dict[str, str]:
+        """Return what the store keeps, by field: two sweeps that say the same propose the same candidates."""
+        return {
+            "sweep": self.named({}) if self.params else self.play,
+            "vary": ", ".join(f"{one.name}={one.text}" for one in self.varied),
+            "against": self.against.name,
+            "rounds": str(self.rounds),
+            "at_once": str(self.at_once),
+            "error": f"{self.error:g}",
+            "optuna": load_optuna().__version__,
+        }
 
 
 def confirm(
@@ -137,7 +146,7 @@ def confirm(
             on_progress(running)
         return decided
 
-    with plan.open_store(path, sweep=sweep.says()) as store:
+    with plan.open_store(path, **sweep.says()) as store:
         return running, play(plan, store, workers, enough=enough)
 
 

@@ -103,9 +103,8 @@ def _choices(parameter: Parameter, text: str) -> Varied:
     except ConfigError as error:
         raise ParameterError(parameter.name, f"{error.problem}, in {short_repr(text)}") from error
     assert isinstance(values, list)
-    for value in values:
-        parameter.convert(value)
-    if len({repr(value) for value in values}) < max(2, len(values)):
+    # As the play gets them: 1 and 1.0 are one speed.
+    if len({repr(parameter.convert(value)) for value in values}) < max(2, len(values)):
         ranges = " or a range, LOW:HIGH" if members_of(parameter.hint) & {int, float} else ""
         raise ParameterError(
             parameter.name, f"needs two or more different values, VALUE,VALUE,...{ranges}, not {text!r}"

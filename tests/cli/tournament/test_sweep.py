@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,8 @@ from typer.testing import CliRunner, Result
 from robobt.cli import app
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.job import Job
-from robobt.tournament.played import PlayedMatch
+from robobt.tournament.played import PlayedMatch, SideResult
+from robobt.world.game import Team
 from tests.tournament.made_up import played
 
 QUICK = ("--scenario", "striker_vs_goalie", "--candidates", "6", "--at-once", "2", "--rounds", "3")
@@ -57,6 +59,23 @@ def test_where_no_candidate_does_better_nothing_is_tested() -> None:
     assert "No candidate did better." in invoke("attack_main", "--vary", "speed=0.5:0.6", *QUICK).output
 
 
+@pytest.mark.parametrize(
+    ("errors", "told"),
+    [(3, "trees failed in 6 ticks; the first: it fails"), (0, "lost by rule: it fails")],
+)
+def test_what_goes_wrong_in_candidates_is_told(
+    monkeypatch: pytest.MonkeyPatch, errors: int, told: str
+) -> None:
+    def decided(_: Job, fixture: Fixture, __: object) -> PlayedMatch:
+        side = SideResult(errors=errors, first_error="it fails")
+        return replace(played(*fixture), sides={team.value: side for team in Team})
+
+    monkeypatch.setattr(Job, "play", decided)
+    shown = invoke("attack_main", "--vary", "rater=open_angle,nn_filtered", *QUICK, "--rounds", "1", "--json")
+    assert f"attack_main:rater=open_angle: {told}" in " ".join(shown.stderr.split())
+    assert {one["first_error"] for one in json.loads(shown.stdout)["candidates"]} == {"it fails"}
+
+
 @pytest.mark.integration
 def test_a_sweep_is_played() -> None:
     quick = (*QUICK, "--set", "ends.time_limit=0.3", "--candidates", "2", "--rounds", "1")
@@ -72,6 +91,8 @@ def test_a_sweep_is_played() -> None:
     ("options", "problem"),
     [
         (("attack_mian", "--vary", "speed=1,2"), "no play is called 'attack_mian'"),
+        (("mine.yaml", "--vary", "speed=1,2"), "mine.yaml is a file; a sweep tunes a play by its name"),
+        (("my_plays.py", "--vary", "speed=1,2"), "--import FILE.py"),
         (("attack_main", "--vary", "sped=1,2"), "sped: attack_main has no such parameter"),
         (("attack_main", "--vary", "speed=2:1"), "speed: a range goes from a number to a larger one"),
         (("attack_main", "--vary", "rater=nn_filtered,nm"), "no shot rater is called 'nm'"),

@@ -9,11 +9,10 @@ from typing import Any
 
 import pytest
 
-from robobt.match.scenario.scenario import ScenarioError
 from robobt.tournament.entrants import Entrant, EntrantError
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.job import Job
-from robobt.tournament.played import PlayedMatch
+from robobt.tournament.played import PlayedMatch, SideResult
 from robobt.tournament.sequential import SequentialTest, Verdict
 from robobt.tournament.store import Store, StoreError
 from robobt.tournament.sweeps.race import Race
@@ -21,7 +20,7 @@ from robobt.tournament.sweeps.search import Candidate, Swept, search
 from robobt.tournament.sweeps.sweep import Sweep, confirm
 from robobt.tournament.sweeps.vary import SweepError, read_varied
 from tests.match.scripted import PlainWorld
-from tests.tournament.made_up import drill, played, runner
+from tests.tournament.made_up import drill, plan, played, runner
 
 
 def tuned(**changes: Any) -> Sweep:
@@ -129,8 +128,32 @@ def test_the_best_is_confirmed_on_seeds_that_the_search_never_used(tmp_path: Pat
 def test_a_store_goes_on_with_more_candidates_but_no_other_sweep(tmp_path: Path) -> None:
     search(tuned(candidates=4), tmp_path / "a")
     assert told(search(tuned(), tmp_path / "a")) == told(search(tuned(), tmp_path / "b"))
-    with pytest.raises(StoreError, match="sweep: the store holds a tournament of"):
-        search(tuned(rounds=19), tmp_path / "a")
+    for field, value in {"rounds": 19, "at_once": 3, "params": {"kick": 5.0}}.items():
+        name = "sweep" if field == "params" else field
+        with pytest.raises(StoreError, match=f"a: {name}: the store holds a tournament of"):
+            search(tuned(**{field: value}), tmp_path / "a")
+
+
+@pytest.mark.usefixtures("made_up")
+def test_a_tournaments_store_is_no_sweeps(tmp_path: Path) -> None:
+    plan(1).open_store(tmp_path / "a").close()
+    with pytest.raises(StoreError, match="a: sweep: the store says nothing of that"):
+        search(replace(tuned(), scenario=plan(1).scenario), tmp_path / "a")
+
+
+@pytest.mark.usefixtures("made_up")
+def test_what_went_wrong_in_a_candidates_trees_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def decided(_: Job, fixture: Fixture, __: object) -> PlayedMatch:
+        match = played(*fixture, (0, 0))
+        return replace(
+            match, sides={**match.sides, "blue": SideResult(errors=3, first_error=f"{fixture.blue} failed")}
+        )
+
+    monkeypatch.setattr(Job, "play", decided)
+    for one in search(tuned(candidates=2, rounds=2), tmp_path / "a").candidates:
+        assert (one.errors, one.first_error) == (6, f"{one.name} failed")
 
 
 def test_a_candidate_proposed_again_is_not_played_again(made_up: list[Fixture], tmp_path: Path) -> None:
@@ -228,6 +251,7 @@ class TestVaried:
             ("speed=1:nan", "speed: a range goes from a number"),
             ("speed=1", "speed: needs two or more different values, VALUE,VALUE,... or a range"),
             ("speed=1,1", "speed: needs two or more different values"),
+            ("speed=1,1.0", "speed: needs two or more different values"),
             ("speed=fast,slow", "speed: .*not 'fast'"),
             ("speed=[1", "speed: "),
             ("breaks=1:2", "breaks: .*"),
@@ -238,8 +262,12 @@ class TestVaried:
             read_varied("scripted", text)
 
     def test_a_range_that_the_play_refuses_is_told_before_anything_is_played(self) -> None:
-        with pytest.raises(ScenarioError, match="speed must not be negative"):
+        with pytest.raises(SweepError, match=r"^speed=-1\.0: .*speed must not be negative"):
             tuned(varied=(read_varied("scripted", "speed=-1:3"),))
+
+    def test_whom_all_play_is_not_blamed_on_what_is_varied(self) -> None:
+        with pytest.raises(EntrantError, match=r"^scripted: .*speed must not be negative"):
+            tuned(against=runner(-1.0))
 
     def test_a_parameter_is_given_once(self) -> None:
         speed = read_varied("scripted", "speed=1,2")
