@@ -2,8 +2,9 @@
 
 from math import hypot, pi
 
+import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from robobt.skills.aim.raters import RATERS, NNFiltered, SegmentClearance, ShotRater, make_rater
@@ -187,6 +188,7 @@ def reflected(robots: tuple[RobotState, ...]) -> tuple[RobotState, ...]:
     others=st.lists(robots, max_size=5),
     delay=st.floats(0, 1),
 )
+@example(origin=(0.0, 0.15625), heading=0.0, others=[RobotState(0, 0.0, 0.0, 0.0)], delay=0.0)
 def test_a_mirrored_scene_has_the_mirrored_shot(
     name: str, origin: Point, heading: float, others: list[RobotState], delay: float
 ) -> None:
@@ -204,9 +206,14 @@ def test_a_mirrored_scene_has_the_mirrored_shot(
     assert [shot.score for shot in mirrored] == pytest.approx([shot.score for shot in shots], abs=1e-5)
     assume(shots and (len(shots) == 1 or shots[0].score - shots[1].score > 1e-5))
     # A Gaussian's flat top is aimed at to within a step of its grid.
-    assert mirrored[0].target[1] == pytest.approx(
-        -shots[0].target[1], abs=0.021 if name == "gaussian" else 1e-7
-    )
+    within = 0.021 if name == "gaussian" else 1e-7
+    here_aim, there_aim = shots[0].target[1], -mirrored[0].target[1]
+    if abs(here_aim - there_aim) > within:
+        # Of two summits that are as good, either may be aimed at.
+        _, line = rater.judge(here, here.ball.position, here.own[0], delay=delay)
+        assert line is not None
+        as_good = np.interp([here_aim, there_aim], line[0][:, 1], line[1])
+        assert as_good[0] == pytest.approx(as_good[1], abs=1e-3)
 
 
 @pytest.mark.integration
