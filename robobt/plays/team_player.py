@@ -36,7 +36,7 @@ PASS_TOLERANCE = 0.06
 """Angle by which a pass may be off [rad]."""
 
 SURE = 0.5
-"""Least chance with which a pass has to arrive where the ball is safe: at a restart, and in the own area."""
+"""Least chance with which a pass has to arrive at a restart, where the ball is safe."""
 
 
 @PLAYS.register("team_player")
