@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from robobt.motion.ball_model import DEFAULT_BALL, BallModel
+from robobt.world.compiled import compilable
 from robobt.world.state import Frame
 
 _OLDEST = 0.2
@@ -13,6 +14,31 @@ _KICKED = 2.0
 """A ball that speeds up faster than this has been hit [m/s^2]."""
 _GUESS = 0.8
 """Share of its speed at which a ball will roll that was not seen being kicked."""
+
+
+@compilable
+def rolling_after(
+    elapsed: float, before: float, rolling: float, speed: float, slide: float, roll: float, share: float
+) -> float:
+    """Return the speed at which a ball will roll, or its own when it seems to roll already [m/s].
+
+    Args:
+        elapsed: since the frame before [s].
+        before: its speed in that frame [m/s].
+        rolling: what was returned for that frame [m/s].
+        speed: its speed now [m/s].
+        slide: its deceleration while it slides [m/s^2].
+        roll: the same while it rolls [m/s^2].
+        share: of a kick's speed at which the ball rolls.
+    """
+    if not 0.0 < elapsed < _OLDEST:
+        return speed
+    deceleration = (before - speed) / elapsed
+    if deceleration < -_KICKED:
+        return share * speed
+    if deceleration < 0.5 * (slide + roll):
+        return speed
+    return _GUESS * speed if rolling >= speed else rolling
 
 
 class BallWatch:
@@ -34,15 +60,14 @@ class BallWatch:
         elapsed = frame.time - self._time
         if elapsed == 0.0:
             return min(self._rolling, speed)
-        if not 0.0 < elapsed < _OLDEST:
-            self._rolling = speed
-        else:
-            deceleration = (self._speed - speed) / elapsed
-            if deceleration < -_KICKED:
-                self._rolling = model.switch_share * speed
-            elif deceleration < 0.5 * (model.slide_deceleration + model.roll_deceleration):
-                self._rolling = speed
-            elif self._rolling >= speed:
-                self._rolling = _GUESS * speed
+        self._rolling = rolling_after(
+            elapsed,
+            self._speed,
+            self._rolling,
+            speed,
+            model.slide_deceleration,
+            model.roll_deceleration,
+            model.switch_share,
+        )
         self._time, self._speed = frame.time, speed
         return min(self._rolling, speed)

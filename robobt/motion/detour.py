@@ -67,17 +67,19 @@ def detour(
     gy: float,
     circle: FloatArray,
     side: float,
+    others_side: float,
     circles: FloatArray,
     depth: int,
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, bool]:
     """Compute the first waypoint from (x, y) to (gx, gy) round ``circle`` on one side.
 
-    A ``side`` of 1 leaves the circle to the right, -1 to the left; ``depth`` is how many more of ``circles``
-    to go round on the first leg.
+    A ``side`` of 1 leaves the circle to the right, -1 to the left, and ``others_side`` is the same for what
+    is in the way to it; ``depth`` is how many more of ``circles`` to go round on the first leg.
 
     Returns:
         The point where the tangents from start and end meet, x and y, the length of the
-        path plus a penalty for what else is in it, and the angle turned there.
+        path plus a penalty for what else is in it, the angle turned there, and whether anything
+        was in the way to the circle.
     """
     # In a loop, not by calling itself: numba loads functions that do so from its cache broken.
     costs, reaches, arcs = np.empty(depth + 1), np.empty(depth + 1), np.empty(depth + 1)
@@ -107,9 +109,9 @@ def detour(
         # Something is in the way to the corner: round that first.
         costs[n], reaches[n], arcs[n] = cost, reach, arc
         n += 1
-        gx, gy = corner_x, corner_y
+        gx, gy, side = corner_x, corner_y, others_side
         circle = np.array((others[blocking, 0], others[blocking, 1], shrunk))
     for k in range(n - 1, -1, -1):
         cost = costs[k] + cost - reaches[k] + 0.1
         arc = arcs[k] + arc
-    return corner_x, corner_y, cost, arc
+    return corner_x, corner_y, cost, arc, n > 0

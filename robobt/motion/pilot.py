@@ -20,6 +20,7 @@ import numpy as np
 
 from robobt.motion.speeds import command_numbers, drive_numbers, numbers, stop_time, turn_rate_numbers
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import compilable
 from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotState
@@ -78,6 +79,7 @@ def command(
     return RobotCommand(*command_numbers(_state(me), vx, vy, omega, *_limits(me, limits), period))
 
 
+@compilable
 def roughly(heading: float, wanted: float, slack: float) -> float:
     """Return the heading nearest to the present one that is within ``slack`` of the wanted one [rad].
 

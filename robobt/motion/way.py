@@ -48,6 +48,8 @@ _LOOK_AHEAD = 0.4
 """Longest time an obstacle is moved ahead along its velocity [s]."""
 _HEADSTRONG = 0.5
 """How much longer the way round on that side may be [m]."""
+_STANDS = 0.25
+"""A slower robot is not under way yet [m/s]."""
 _CORNER_SLACK = 0.05
 """How far a waypoint may be cut or overshot [m]; decides the speed there."""
 
@@ -131,8 +133,14 @@ def waypoint_numbers(
     best_x, best_y, passing = goal_x, goal_y, 0.0
     least = inf
     speed = max(1.0, hypot(vx, vy))
+    stands = hypot(vx, vy) < _STANDS and scene[KEEP_OFF] > 0.0
     for side in (1.0, -1.0):
-        px, py, cost, arc = detour(x, y, goal_x, goal_y, first, side, circles, 4)
+        px, py, cost, arc, blocked = detour(x, y, goal_x, goal_y, first, side, side, circles, 4)
+        if blocked and stands:
+            # What is in the way may be passed on its other side: else the choice turns on which is met first.
+            between = detour(x, y, goal_x, goal_y, first, side, -side, circles, 4)
+            if between[2] < cost:
+                px, py, cost, arc, blocked = between
         if side == scene[INSISTS]:
             cost -= _HEADSTRONG
         gap = hypot(px - x, py - y)

@@ -11,6 +11,7 @@ from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.aim.shot_is_open import ShotIsOpen
 from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.settle_ball import SettleBall
@@ -89,6 +90,7 @@ def attack(choose: Callable[[], ChooseKick]) -> Behaviour:
     return first_of(
         "attack",
         when("let go", CarriedFar(limit=0.9), Stop()),
+        KickLoose(),
         ReceivePass(),
         SettleBall(),
         when("kick", choose(), kick()),

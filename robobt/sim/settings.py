@@ -147,6 +147,7 @@ _GRSIM = SimSettings(
         receive_speed=3.0,
         hold_acceleration=50.0,
         reaction=1 / 60,
+        kick_rebound=0.2,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(
@@ -174,6 +175,7 @@ PRESETS: dict[str, SimSettings] = {
             turn_acceleration=50.0,
             catch_speed=4.0,
             hold_acceleration=50.0,
+            kick_rebound=0.2,
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
         kicker=KickerSettings(

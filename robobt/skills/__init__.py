@@ -20,6 +20,7 @@ from robobt.skills.ball.face_ball import FaceBall as FaceBall
 from robobt.skills.ball.fetch_ball import FetchBall as FetchBall
 from robobt.skills.ball.go_to_ball import GoToBall as GoToBall
 from robobt.skills.ball.intercept import Intercept as Intercept
+from robobt.skills.ball.kick_loose import KickLoose as KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget as KickToTarget
 from robobt.skills.ball.learned_skill import LearnedSkill as LearnedSkill
 from robobt.skills.ball.pick_up_ball import PickUpBall as PickUpBall

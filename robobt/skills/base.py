@@ -14,7 +14,7 @@ from robobt.world.geometry import Point, direction, distance
 from robobt.world.limits import RobotLimits
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
-_FACING = radians(15.0)
+FACING = radians(15.0)
 """How far off a robot looks at most that has to look there roughly."""
 
 
@@ -70,7 +70,7 @@ class Skill(Leaf[Store]):
         avoid_ball: bool = False,
         goalkeeper: bool = False,
         thereabouts: bool = False,
-        slack: float = _FACING,
+        slack: float = FACING,
         spare_mates: bool = False,
     ) -> None:
         """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.

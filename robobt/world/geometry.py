@@ -31,6 +31,7 @@ def wrap_angles(angles: ArrayLike) -> FloatArray:
     return np.where(wrapped > pi, wrapped - _TAU, wrapped)
 
 
+@compilable
 def direction(origin: Point, target: Point) -> float:
     """Return the angle of the ray from ``origin`` to ``target``; 0 when they coincide."""
     return atan2(target[1] - origin[1], target[0] - origin[0])
@@ -79,6 +80,7 @@ def _side(start: Point, end: Point, point: Point) -> float:
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 
+@compilable
 def line_crossing_x(start: Point, angle: float, x: float) -> float | None:
     """Return the y at which the ray from ``start`` along ``angle`` crosses the vertical line at ``x``.
 

@@ -37,6 +37,10 @@ class RobotLimits(Settings):
         0.0, ge=0, le=0.05, description="time that the robot itself takes from a command to its effect [s]"
     )
 
+    kick_rebound: float = Field(
+        0.0, ge=0, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
+    )
+
     @property
     def lateral_acceleration(self) -> float:
         """Acceleration sideways [m/s^2]."""

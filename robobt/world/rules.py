@@ -65,7 +65,7 @@ MOUTH_SECTOR = radians(45.0)
 ALL_AROUND = pi
 """The sector of a goalkeeper, which holds the ball on any side of its hull [rad]."""
 
-_ALONG = 1.0
+ALONG = 1.0
 """Difference of velocities up to which the ball moves along [m/s]; a turning robot swings it."""
 
 
@@ -218,15 +218,24 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
     dx, dy = ball.x - robot.x, ball.y - robot.y
     if dx > _REACH or dx < -_REACH or dy > _REACH or dy < -_REACH or ball.z > RECEIVED_HEIGHT:
         return False
+    return before_mouth(dx, dy, robot.heading, sector)
+
+
+@compilable
+def before_mouth(dx: float, dy: float, heading: float, sector: float = MOUTH_SECTOR) -> bool:
+    """Return whether a ball so far from a robot's centre [m] is held, whatever the sensor says.
+
+    ``sector`` is on which side of the ``heading`` that may be [rad].
+    """
     gap = hypot(dx, dy)
     if gap >= _REACH:
         return False
-    return sector >= pi or cos(robot.heading) * dx + sin(robot.heading) * dy > cos(sector) * gap
+    return sector >= pi or cos(heading) * dx + sin(heading) * dy > cos(sector) * gap
 
 
 def carries(robot: RobotState, ball: BallState) -> bool:
     """Return whether the robot has the ball and it moves along: neither kicked nor bouncing off."""
-    return has_ball(robot, ball) and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < _ALONG
+    return has_ball(robot, ball) and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
 
 
 def keeps_ball(robot: RobotState, ball: BallState) -> bool:

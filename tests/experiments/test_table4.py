@@ -61,7 +61,9 @@ def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: p
     whole = table4(3, **kinds)
     played: list[int] = []
 
-    def killed_at_the_second(scenario: Scenario, seed: int, world: WorldFactory, trial: int = 0) -> Attempt:
+    def killed_at_the_second(
+        scenario: Scenario, seed: int, world: WorldFactory, trial: int = 0, show: None = None
+    ) -> Attempt:
         if trial == 1 and len(played) == 1:
             raise KeyboardInterrupt
         played.append(trial)

@@ -31,6 +31,9 @@ STOPPED = GameState(command=RefereeCommand.STOP)
 THEIR_FREE_KICK = GameState(
     command=RefereeCommand.DIRECT_FREE_YELLOW, restart=Restart.FREE_KICK, restart_team=Team.YELLOW
 )
+THEIR_KICKOFF = GameState(
+    command=RefereeCommand.PREPARE_KICKOFF_YELLOW, restart=Restart.KICKOFF, restart_team=Team.YELLOW
+)
 FAR_BALL = (0.0, 2.9)
 
 
@@ -173,6 +176,27 @@ def test_during_a_stop_it_is_slow_and_goes_round_the_ball() -> None:
     assert hypot(order.vx, order.vy) <= 1.5 + 1e-9
     point, _ = next_waypoint(world, me, (2.0, 0.0))
     assert segment_distance((0.0, 0.0), me.position, point) > 0.5 + ROBOT_RADIUS
+
+
+@pytest.mark.parametrize(
+    ("start", "target", "theirs"),
+    [
+        ((0.06, -1.18), (0.6, 2.05), [(0.3, -0.87), (-0.39, -1.53), (0.04, 1.73), (-0.84, -0.28)]),
+        ((-0.13, -1.43), (-0.88, 1.86), [(-0.98, -0.99), (-0.36, -1.1), (-0.3, 1.47), (-1.65, -0.42)]),
+        ((-0.75, -1.96), (0.32, -0.9), [(0.08, -1.14), (-0.23, -0.78), (-0.35, -1.86)]),
+    ],
+)
+def test_it_gets_out_from_between_a_robot_and_the_circle_round_the_ball(
+    start: Point, target: Point, theirs: list[Point]
+) -> None:
+    """It wavered for ever: whichever it met first decided on which side to pass the other."""
+    others = tuple(robot(*place, number=number) for number, place in enumerate(theirs))
+    me, time = robot(*start), 0.0
+    while time < 6.0 and hypot(me.x - target[0], me.y - target[1]) > 0.02:
+        seen = frame(me, (0.0, 0.0), opponents=others, time=time, game=THEIR_KICKOFF)
+        me = moved(me, travel(seen, me, target, 0.0, me.limits), 1 / 60)
+        time += 1 / 60
+    assert time < 5.0
 
 
 def test_near_their_area_it_keeps_more_distance_in_a_restart() -> None:

@@ -59,6 +59,9 @@ _START = (0.01, 0.01, 20.0, 20.0, 0.004, 20.0)
 _ANYWHERE = (1.0, 1.0, 20.0, 20.0, 1.0, 20.0)
 """The same of a ball of which is not known when it was kicked."""
 
+_HIGHEST = 2.0
+"""No ball that is chipped by the rules, at 6.5 m/s and 70 degrees, rises higher [m]."""
+
 _FASTER = 0.3
 """A ball that is seen to gain so much with no robot near does not roll [m/s]."""
 
@@ -204,6 +207,7 @@ class FlightWatch:
             can_be = (
                 along > _LEAST_RISE and 2.0 * GRAVITY * max(hop.ball.z, 0.0) + rise * rise > _LEAST_RISE**2
             )
+        can_be = can_be and hop.apex() < _HIGHEST
         if can_be and misfit < min(_BETTER * flat, _FITS * rest):
             self.hop, self._lost, self._expected = hop, 0, None
 

@@ -26,6 +26,11 @@ class Hop:
         rise, height = self.ball.vz, max(self.ball.z, 0.0)
         return max((rise + sqrt(rise * rise + 2.0 * GRAVITY * height)) / GRAVITY, 0.0)
 
+    def apex(self) -> float:
+        """Return how high it is at most from now on [m]."""
+        rise = max(self.ball.vz, 0.0)
+        return self.ball.z + 0.5 * rise * rise / GRAVITY
+
     def at(self, time: float) -> BallMotion:
         """Return the ball at a time up to where it touches down."""
         start, t = self.ball, time - self.time

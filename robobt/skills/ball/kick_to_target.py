@@ -54,6 +54,8 @@ _AHEAD = radians(75.0)
 _REACHABLE = 0.03
 _LEFT_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
+_LEAST_KICK = 0.1
+"""A kick is never slower [m/s]."""
 _CARRY_SPEED = 2.0
 _CARRY_ACCELERATION = 1.0
 
@@ -260,14 +262,18 @@ class KickToTarget(DrivingSkill):
         me, ball = self.me, self.ball
         if gap > _NEAR or (order.pass_ is not None and order.pass_.wait > 0.0):
             return False
-        sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
+        c, s = cos(me.heading), sin(me.heading)
+        sideways, ahead = c * ball.vy - s * ball.vx, c * ball.vx + s * ball.vy
         leaving = me.heading + atan2(sideways, order.along)
         off = abs(wrap_angle(direction(ball.position, order.target) - leaving))
         # At a restart a touch is the kick, however it is aimed: another one would be a foul.
         touched = me.ball_contact and not self.frame.game.in_play
         if off > order.tolerance and not touched:
             return False
-        self.store.command.kick_speed = order.speed
+        # What comes at the robot leaves faster than it is kicked, where the kicker lets it.
+        self.store.command.kick_speed = max(
+            _LEAST_KICK, order.speed + me.limits.kick_rebound * min(ahead, 0.0)
+        )
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
         if has_ball(me, ball):

@@ -5,17 +5,21 @@ from __future__ import annotations
 from dataclasses import field
 from math import cos, sin, sqrt
 
-from robobt.motion.ball_model import DEFAULT_BALL
+from robobt.motion.ball_model import DEFAULT_BALL, time_for
 from robobt.motion.ball_watch import BallWatch
-from robobt.motion.pilot import drive, travel_time
+from robobt.motion.pilot import drive
+from robobt.motion.speeds import stop_time
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.limits import RobotLimits
 
 _SLOW = 0.5
 """The robot does not dive for a slower ball [m/s]."""
+
+_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
 
 _THERE = 0.04
 """A robot this near to the line stops the ball with its front [m]."""
@@ -66,34 +70,74 @@ class BlockShot(DrivingSkill):
     def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
         """Return the least speed at ``place`` with which the robot is there before the ball [m/s]."""
         me, ball = self.me, self.ball
-        speed = ball.speed
-        rolling = self._watch.rolling_speed(self.frame)
-        gap = distance(me.position, place)
-        if speed < _SLOW or gap < _THERE:
-            return 0.0
-        time = DEFAULT_BALL.time_for(distance(ball.position, place), speed, rolling)
-        towards = (me.vx * (place[0] - me.x) + me.vy * (place[1] - me.y)) / gap
-        least, most = 0.0, limits.max_speed
-        if _in_time_braking(gap - _THERE, towards, time, limits) or (
-            _time_through(gap, towards, least, limits) <= time
-        ):
-            return 0.0
-        for _ in range(6):
-            middle = 0.5 * (least + most)
-            if _time_through(gap, towards, middle, limits) <= time:
-                most = middle
-            else:
-                least = middle
-        return most
+        return dive_speed(
+            me.position,
+            (me.vx, me.vy),
+            place,
+            ball.position,
+            ball.speed,
+            self._watch.rolling_speed(self.frame),
+            limits.max_speed,
+            limits.acceleration,
+            limits.braking,
+        )
 
 
-def _time_through(gap: float, towards: float, final_speed: float, limits: RobotLimits) -> float:
+@compilable
+def dive_speed(
+    here: Point,
+    velocity: Point,
+    place: Point,
+    ball: Point,
+    speed: float,
+    rolling: float,
+    top: float,
+    acceleration: float,
+    braking: float,
+) -> float:
+    """Return the least speed at ``place`` with which a robot is there before the ball [m/s].
+
+    Args:
+        here: where the robot is [m].
+        velocity: its velocity [m/s].
+        place: where it is to be [m].
+        ball: where the ball is [m].
+        speed: of the ball [m/s].
+        rolling: below which the ball rolls [m/s].
+        top: how fast the robot drives at most [m/s].
+        acceleration: how fast it speeds up [m/s^2].
+        braking: how fast it slows down [m/s^2].
+    """
+    gap = distance(here, place)
+    if speed < _SLOW or gap < _THERE:
+        return 0.0
+    time = time_for(distance(ball, place), speed, rolling, _SLIDE, _ROLL)
+    towards = (velocity[0] * (place[0] - here[0]) + velocity[1] * (place[1] - here[1])) / gap
+    least, most = 0.0, top
+    if _in_time_braking(gap - _THERE, towards, time, braking) or (
+        _time_through(gap, towards, least, top, acceleration, braking) <= time
+    ):
+        return 0.0
+    for _ in range(6):
+        middle = 0.5 * (least + most)
+        if _time_through(gap, towards, middle, top, acceleration, braking) <= time:
+            most = middle
+        else:
+            least = middle
+    return most
+
+
+@compilable
+def _time_through(
+    gap: float, towards: float, final_speed: float, top: float, acceleration: float, braking: float
+) -> float:
     """Compute the time to cover ``gap`` and arrive at ``final_speed`` [s]."""
-    braking = final_speed / limits.braking
-    return travel_time(gap + 0.5 * final_speed * braking, towards, limits) - braking
+    slowing = final_speed / braking
+    return stop_time(gap + 0.5 * final_speed * slowing, towards, acceleration, braking, top) - slowing
 
 
-def _in_time_braking(gap: float, towards: float, time: float, limits: RobotLimits) -> bool:
+@compilable
+def _in_time_braking(gap: float, towards: float, time: float, braking: float) -> bool:
     """Return whether a robot that brakes from now on covers ``gap`` within ``time``."""
-    left = towards * towards - 2.0 * limits.braking * gap
-    return towards > 0.0 and left >= 0.0 and towards - sqrt(left) <= limits.braking * time
+    left = towards * towards - 2.0 * braking * gap
+    return towards > 0.0 and left >= 0.0 and towards - sqrt(left) <= braking * time

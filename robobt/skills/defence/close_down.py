@@ -41,7 +41,7 @@ class CloseDown(DrivingSkill):
             return self.fail("the ball is behind the goal line")
         foot, doing = self._aim(), "on the line of the aim"
         if foot is None or abs(foot) > half_goal:
-            foot, doing = bisector_foot(field, ball.position), "covering the angle"
+            foot, doing = bisector_foot(ball.position, field.half_length, half_goal), "covering the angle"
         dx, dy = ball.x - line, ball.y - foot
         way = hypot(dx, dy)
         hides = (ROBOT_RADIUS + BALL_RADIUS) / half_goal * way

@@ -7,7 +7,7 @@ from math import hypot
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
-from robobt.world.field import FieldGeometry
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point
 from robobt.world.rules import in_own_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -34,19 +34,15 @@ class CoverAngle(DrivingSkill):
         field, me, ball = self.frame.field, self.me, self.ball
         if ball.x <= -field.half_length:
             return self.fail("the ball is behind the goal line")
-        half_goal = field.goal_width / 2
-        line = -field.half_length
-        foot = bisector_foot(field, ball.position)
-        dx, dy = ball.x - line, ball.y - foot
-        gap = hypot(dx, dy)
-        hides = ROBOT_RADIUS / half_goal * gap
-        out = min(self.stand_out, max(gap - hides, ROBOT_RADIUS), gap - ROBOT_RADIUS - BALL_RADIUS)
-        out = max(out, 0.0)
-        x = max(line + out * dx / gap, line + ROBOT_RADIUS)
-        most_y = field.defense_width / 2 - ROBOT_RADIUS
-        y = min(most_y, max(-most_y, foot + out * dy / gap))
         self.drive_to(
-            (min(x, line + field.defense_depth - ROBOT_RADIUS), y),
+            cover_place(
+                ball.position,
+                self.stand_out,
+                field.half_length,
+                field.goal_width / 2,
+                field.defense_depth,
+                field.defense_width,
+            ),
             ball.position,
             # Inside nobody else may stand; a new goalkeeper from outside goes round its own wall.
             avoid_robots=not in_own_defense_area(field, me.x, me.y, ROBOT_RADIUS),
@@ -56,9 +52,34 @@ class CoverAngle(DrivingSkill):
         return self.run("covering the angle")
 
 
-def bisector_foot(field: FieldGeometry, ball: Point) -> float:
-    """Return where the bisector of the angle between our posts, as the ball sees them, meets the line [m]."""
-    half_goal, ahead = field.goal_width / 2, ball[0] + field.half_length
+@compilable
+def cover_place(
+    ball: Point, stand_out: float, half_length: float, half_goal: float, depth: float, width: float
+) -> Point:
+    """Return where to stand against a ball before the goal line; ``depth`` and ``width`` are the area's [m].
+
+    Arguments as for :class:`CoverAngle` and :func:`bisector_foot`.
+    """
+    line = -half_length
+    foot = bisector_foot(ball, half_length, half_goal)
+    dx, dy = ball[0] - line, ball[1] - foot
+    gap = hypot(dx, dy)
+    hides = ROBOT_RADIUS / half_goal * gap
+    out = min(stand_out, max(gap - hides, ROBOT_RADIUS), gap - ROBOT_RADIUS - BALL_RADIUS)
+    out = max(out, 0.0)
+    x = max(line + out * dx / gap, line + ROBOT_RADIUS)
+    most_y = width / 2 - ROBOT_RADIUS
+    y = min(most_y, max(-most_y, foot + out * dy / gap))
+    return (min(x, line + depth - ROBOT_RADIUS), y)
+
+
+@compilable
+def bisector_foot(ball: Point, half_length: float, half_goal: float) -> float:
+    """Return where the bisector of the angle between our posts, as the ball sees them, meets the line [m].
+
+    The line is ``half_length`` behind the middle of the field, a post ``half_goal`` beside that of the goal.
+    """
+    ahead = ball[0] + half_length
     to_left, to_right = hypot(ahead, half_goal - ball[1]), hypot(ahead, half_goal + ball[1])
     # The bisector of an angle divides the opposite side as the other two sides.
     return half_goal * (to_right - to_left) / (to_right + to_left)

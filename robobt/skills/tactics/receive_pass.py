@@ -143,7 +143,10 @@ class ReceivePass(Skill):
         gap = hypot(dx, dy)
         if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
             v = max(0.0, speed - 0.3 * min(time, 0.3))
-            order.kick_speed = redirect_kick((cos(me.heading) * uy - sin(me.heading) * ux) * v)
+            c, s = cos(me.heading), sin(me.heading)
+            order.kick_speed = (
+                redirect_kick((c * uy - s * ux) * v) + me.limits.kick_rebound * (c * ux + s * uy) * v
+            )
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time
         store.command = order

@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from robobt.league.bench_chips import bench_chips
+from robobt.league.estimate.ball_track import BallMotion
 from robobt.league.estimate.filter import VisionFilter
+from robobt.league.estimate.flight import FlightWatch
+from robobt.league.estimate.hop import Hop
 from robobt.league.serve.cameras import Cameras
+from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame
 from robobt.sim import SimWorld, preset, settings_from
 from robobt.sim.settings import REALISM
@@ -85,6 +89,21 @@ def test_a_tracker_s_ball_is_as_high_as_it_says() -> None:
     shown = watch.frame_at(5 * PERIOD).ball
     assert (shown.z, shown.vz) == (0.5, 1.0)
     assert watch.frame_at(5 * PERIOD + 0.1).ball.z == pytest.approx(0.5 + 0.1 - 9.81 * 0.005)
+
+
+@pytest.mark.parametrize(("height", "flies"), [(1.5, True), (2.6, False)])
+def test_no_ball_is_taken_to_fall_from_higher_than_robots_chip(height: float, flies: bool) -> None:
+    """In the real grSim a ball that came off a wall once looked like one that fell from 2.6 m."""
+    camera = CameraPlace(2.25, 1.5, 4.0)
+    watch = FlightWatch(preset("grsim").ball, 0.002, {0: camera})
+    hop, seen = Hop(0.0, BallMotion(1.8, 2.1, 2.0, -1.0, 0.0, height, 3.0)), False
+    for tick in range(20):
+        ball = hop.at(tick * PERIOD)
+        stretch = (camera.z - BALL_RADIUS) / (camera.z - BALL_RADIUS - ball.z)
+        x, y = (place + stretch * (at - place) for at, place in ((ball.x, camera.x), (ball.y, camera.y)))
+        watch.update(tick * PERIOD, 0, x, y)
+        seen = seen or watch.hop is not None
+    assert seen is flies
 
 
 @pytest.mark.integration

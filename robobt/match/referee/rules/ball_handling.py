@@ -10,6 +10,7 @@ from robobt.match.referee.rules.base import Rule, event
 from robobt.match.referee.scene import Phase, Scene
 from robobt.world.game import RefereeCommand, Team
 from robobt.world.geometry import Point, distance
+from robobt.world.rules import HELD_GAP, hull_gap
 from robobt.world.state import RobotId
 
 _SPEED_TOLERANCE = 0.01
@@ -104,6 +105,12 @@ class DoubleTouch(Rule):
         kicker, touches = self._kicker, scene.touches
         if scene.phase is Phase.KICK:
             self._touched.update(touches.now)
+            # Between two frames a taker may kick whom neither shows to touch the ball.
+            self._touched.update(
+                robot
+                for robot, state in scene.frame.robots().items()
+                if robot.team is self._team and hull_gap(state, scene.frame.ball) < HELD_GAP
+            )
             if touches.last is not None and touches.last != self._before:
                 self._touched.add(touches.last)
             return ()

@@ -103,6 +103,14 @@ def test_a_second_robot_that_has_touched_it_before_may_go_on(us: Team) -> None:
     assert game.events == []
 
 
+def test_a_mate_that_stops_a_kick_between_two_frames_did_not_take_it(us: Team) -> None:
+    # Seen in a match: no frame showed the taker in touch with the ball, and the mate kept it.
+    game = Watching(us, game=STOP, stop_distance=None)
+    game.ours(1, -0.11, 0.0).ours(2, 0.1 + MOUTH, 0.0, heading=pi).kick_of(us).wait(0.05)
+    game.touch(2).roll(0.1, 0.0).in_play().wait(0.1)
+    assert game.events == []
+
+
 def free_ball(us: Team) -> Watching:
     game = kicked(us, Restart.FREE_KICK, 0.04)
     game = Watching(us, game=STOP, stop_distance=None).ours(1, -MOUTH, 0.0).kick_of(us).touch(1)

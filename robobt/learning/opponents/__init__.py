@@ -1,0 +1,1 @@
+"""Opponents to train against, compiled for many arenas: what plays decide, without their trees."""

@@ -1,0 +1,59 @@
+"""Kick a ball loose that two robots hold against each other."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from math import cos, inf
+
+from robobt.skills.base import Skill, skill
+from robobt.tree import Status
+from robobt.world.command import KickTrigger
+from robobt.world.rules import has_ball
+
+_PAUSE = 0.1
+"""A hold that is interrupted for longer begins anew [s]."""
+
+_SPEED = 2.0
+"""Of the kick: the ball comes out to the side and is to stay in the field [m/s]."""
+
+_FOLLOW = 0.3
+"""How fast the robot goes after the ball [m/s]."""
+
+
+@skill
+class KickLoose(Skill):
+    """Let go of a ball that an opponent holds too, and kick it.
+
+    Two dribblers can hold a ball between them for as long as both turn: grSim joins a ball to each robot
+    that holds it, so that neither gets away with it, however it drives. FAILURE while there is no such hold,
+    and until it has lasted for ``patience``, or twice that where the robot looks towards its own goal.
+
+    Args:
+        patience: how long it tries to get away with the ball first [s].
+
+    Raises:
+        ValueError: ``patience`` is not positive.
+    """
+
+    patience: float = 0.6
+    _since: float = field(default=-inf, init=False)
+    _seen: float = field(default=-inf, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.patience > 0.0:
+            raise ValueError(f"patience must be positive, not {self.patience}")
+
+    def on_running(self) -> Status:
+        """Look for a hold, and kick once it has lasted."""
+        frame, me, ball, now = self.frame, self.me, self.ball, self.frame.time
+        if not has_ball(me, ball) or not any(has_ball(other, ball) for other in frame.opponents):
+            return self.fail("no opponent holds the ball too")
+        if not 0.0 <= now - self._seen < _PAUSE:
+            self._since = now
+        self._seen = now
+        if now - self._since < self.patience * (1.0 if cos(me.heading) > 0.0 else 2.0):
+            return self.fail("it may get away with the ball yet")
+        command = self.store.command
+        command.vx, command.kick_speed, command.kick_trigger = _FOLLOW, _SPEED, KickTrigger.ON_CONTACT
+        return self.run("kicking it loose")
