@@ -69,7 +69,7 @@ def refereed(
     """Return the scenario as these options change it, and who makes its referee.
 
     Raises:
-        GameControllerError: the official controller is asked for and is not there.
+        GameControllerError: the official controller is asked for and is not there, or does not start.
     """
     from robobt.match.referee.settings import RefereeSettings
     from robobt.match.refereeing import own_referee
@@ -89,6 +89,8 @@ def refereed(
     if who is not Who.OFFICIAL:
         return scenario, own_referee
     from robobt.league.referee.official import OfficialRefereeFactory
-    from robobt.league.referee.process import find_game_controller
+    from robobt.league.referee.process import check_game_controller, find_game_controller
 
-    return scenario, OfficialRefereeFactory(find_game_controller(controller))
+    program = find_game_controller(controller)
+    check_game_controller(program)
+    return scenario, OfficialRefereeFactory(program)

@@ -74,7 +74,10 @@ class RayEngine:
             self.workers = max(1, int(ray.cluster_resources().get("CPU", 1.0) / cpus))
         except Exception as error:
             self.close()
-            raise ClusterError(f"{address}: {one_line(str(error), 300)}") from error
+            problem = one_line(str(error), 300)
+            if "connection timeout" in problem:
+                problem += '; is it the client port of a head that has "ray[client]"?'
+            raise ClusterError(f"{address}: {problem}") from error
 
     def __enter__(self) -> Self:
         return self

@@ -277,6 +277,11 @@ class LeagueWorld(World):
         self.send_times.append(self._clock())
         self._sent_at = now
 
+    @property
+    def paced(self) -> bool:
+        """See :attr:`robobt.world.World.paced`; in lock step the field waits."""
+        return self._link.clock is None
+
     def _wait(self) -> None:
         """Wait for the next control period: for the next frame, if it comes at about that time."""
         feed, pace = self._feed, self._pace

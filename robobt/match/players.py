@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from robobt.config.errors import one_line, short_repr
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeError, TreeRunner, node_path
+from robobt.tree.namespace import Namespace, within
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import Frame, RobotId, RobotState
@@ -20,14 +22,17 @@ _log = logging.getLogger(__name__)
 class Player:
     """One robot on the field.
 
-    Skills share ``store``; ``problem`` is why its tree failed at the last tick that it did: the node's path
-    and what happened.
+    Skills share ``store``; ``names`` come first where they look something up; ``problem`` is why its tree
+    failed at the last tick that it did: the node's path and what happened. Where a person drives it,
+    ``driver`` says what to do in place of the tree, which rests.
     """
 
     robot: RobotId
     runner: TreeRunner
     store: Store
     problem: str = ""
+    names: Namespace | None = None
+    driver: Callable[[Frame, RobotState], RobotCommand] | None = None
 
     def decide(self, view: Frame, me: RobotState) -> RobotCommand | None:
         """Tick the tree once and return its command, or None where the tree failed.
@@ -35,10 +40,16 @@ class Player:
         Raises:
             TreeError: the tree failed, and ``on_error`` is "raise"; robot and node are named.
         """
+        if self.driver is not None:
+            return self.driver(view, me)
         store, runner = self.store, self.runner
         store.frame, store.me, store.command = view, me, RobotCommand()
         try:
-            runner.tick()
+            if self.names is None:
+                runner.tick()
+            else:
+                with within(self.names):
+                    runner.tick()
         except TreeError as error:
             raise TreeError(f"{self.robot}: {error}") from error.__cause__
         if runner.error is not None:
@@ -61,7 +72,8 @@ def make_players(scenario: Scenario, start: Frame) -> list[Player]:
     players = []
     for robot, setup in scenario.robots:
         store = Store(start, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
-        players.append(Player(robot, TreeRunner(setup.build_tree(), store, scenario.on_error), store))
+        runner = TreeRunner(setup.build_tree(), store, scenario.on_error)
+        players.append(Player(robot, runner, store, names=setup.owner()))
     return players
 
 

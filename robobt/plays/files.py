@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
+from robobt.config.errors import short_repr
 from robobt.plays.base import PLAYS, Play
+from robobt.plays.private_files import join_play, private_files, split_play
+from robobt.plays.sources import PythonFileError
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS, ShotRater
 from robobt.skills.defence.avoid_crash import AvoidCrash
@@ -23,6 +27,7 @@ from robobt.tree.interop import (
     write_xml,
     write_yaml,
 )
+from robobt.tree.namespace import Namespace, within
 
 VOCABULARY = Vocabulary(
     SKILLS, PLAYS, (RefereeSwitch, StayOut, AvoidCrash, TaskSwitch), {ShotRater: RATERS}, Store
@@ -44,32 +49,70 @@ def is_play_file(name: str) -> bool:
     return name.endswith(FILE_ENDINGS)
 
 
+def problem_with_play(name: str) -> str | None:
+    """Return why no play has this name, None where one has, or where it is a tree file's."""
+    files, inner = split_play(name)
+    where = f" in {', '.join(files)}" if files else ""
+    if not files and name.endswith(".py"):
+        files, inner = (name,), "NAME"
+    try:
+        owner = private_files(join_play(files, inner))
+    except PythonFileError as error:
+        return str(error)
+    if owner is not None and not where:
+        its = [f"{name}:{play}" for play in owner.of(PLAYS)]
+        return f"{name} is a Python file; name a play of it: {', '.join(its) or 'it registers none'}"
+    with within(owner):
+        if is_play_file(inner) or inner in PLAYS:
+            return None
+        return PLAYS.problem_with(inner) or (
+            f"no play is called {short_repr(inner)}{where}; there are {', '.join(PLAYS)}"
+        )
+
+
 def find_play(name: str, folder: str | Path = ".") -> Play:
     """Return a play by its name, or a file's play where the name ends in .yaml, .yml or .xml.
 
-    A file is read again only when it has changed.
+    A tree file is read again only when it has changed. A play of a Python file, ``my_team.py:striker``, has
+    to be called within its :func:`~robobt.plays.private_files.private_files`.
 
     Args:
         name: of a play, or of a file.
-        folder: what the paths of files are relative to.
+        folder: what the paths of tree files are relative to.
 
     Raises:
         KeyError: no play has that name.
         TreeFileError: the file does not hold a play.
+        PythonFileError: the Python file cannot be run.
     """
-    if not is_play_file(name):
-        return PLAYS[name]
-    path = Path(folder) / name
-    try:
-        stat = path.stat()
-    except (OSError, ValueError):
-        return load_play(path)
-    return _load_once(path, stat.st_mtime_ns, stat.st_size)
+    owner, (_, inner) = private_files(name), split_play(name)
+    with within(owner):
+        if not is_play_file(inner):
+            return PLAYS[inner]
+        path = Path(folder) / inner
+        try:
+            stat = path.stat()
+        except (OSError, ValueError):
+            return load_play(path)
+        return _load_once(path, stat.st_mtime_ns, stat.st_size, owner)
 
 
 @lru_cache(maxsize=64)
-def _load_once(path: Path, _changed: int, _size: int) -> Play:
+def _load_once(path: Path, _changed: int, _size: int, _owner: Namespace | None) -> Play:
     return load_play(path)
+
+
+def contents_of(name: str) -> list[bytes]:
+    """Return what the files of a play's name hold, which is what it plays: nothing for a common name."""
+    owner, (_, inner) = private_files(name), split_play(name)
+    tree = [Path(inner).read_bytes()] if is_play_file(inner) else []
+    return [*tree, *([] if owner is None else [owner.sources.digest().encode()])]
+
+
+def rename_play(name: str, rename: Callable[[str], str]) -> str:
+    """Return a play's name with its files renamed."""
+    files, inner = split_play(name)
+    return join_play([rename(file) for file in files], rename(inner) if is_play_file(inner) else inner)
 
 
 def tree_yaml(root: Behaviour, name: str) -> str:

@@ -11,17 +11,13 @@ from pathlib import Path
 from types import ModuleType
 from zlib import crc32
 
-from robobt.config.errors import ConfigError
 from robobt.plays.base import PLAYS
+from robobt.plays.sources import PythonFileError, read_python
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
 
 _imported: dict[Path, ModuleType] = {}
-
-
-class PythonFileError(ConfigError):
-    """A Python file that cannot be used."""
 
 
 def import_file(path: str | Path) -> ModuleType:
@@ -35,20 +31,10 @@ def import_file(path: str | Path) -> ModuleType:
     Raises:
         PythonFileError: it cannot be read, or raises as it runs.
     """
-    shown, path = str(path), Path(path)
-    try:
-        path = path.resolve()
-        if path in _imported:
-            return _imported[path]
-        source = path.read_bytes()
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise PythonFileError(shown, f"cannot be read: {reason}") from error
-    if path.suffix != ".py":
-        raise PythonFileError(shown, "is not a Python file; its name must end in .py")
-    module = _run(path, source, shown)
-    _imported[path] = module
-    return module
+    real, source = read_python(path)
+    if real not in _imported:
+        _imported[real] = _run(real, source, str(path))
+    return _imported[real]
 
 
 def import_files(paths: Iterable[str | Path]) -> None:
@@ -79,7 +65,7 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
         del sys.modules[module.__name__]
         for take_back in undo:
             take_back()
-        raise _problem(error, path, shown) from error
+        raise problem_of(error, path, shown) from error
     return module
 
 
@@ -88,8 +74,8 @@ def _own_name(path: Path) -> str:
     return f"file_{path.stem.replace('.', '_')}_{crc32(bytes(path)):08x}"
 
 
-def _problem(error: BaseException, path: Path, shown: str) -> PythonFileError:
-    """Return the error with the line of the file that raised it, or that led to it."""
+def problem_of(error: BaseException, path: Path, shown: str) -> PythonFileError:
+    """Return the error of running a file, with the line of the file that raised it, or that led to it."""
     if isinstance(error, SyntaxError) and error.filename == str(path):
         line, reason = error.lineno or None, error.msg
     else:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
@@ -16,14 +16,14 @@ from robobt.config.errors import ConfigError, FieldError
 from robobt.config.resources import bundled_scenarios, models_folder
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
-from robobt.league.programs.world import Program
+from robobt.league.programs.program import Program
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.models.file import ModelError
 from robobt.models.find import find_model
 from robobt.plays import PLAYS
-from robobt.plays.files import is_play_file
-from robobt.plays.python_files import import_file
+from robobt.plays.files import contents_of, is_play_file, problem_with_play, rename_play
+from robobt.plays.private_files import join_play, split_play
 from robobt.world.game import Team
 
 _MARK = "entrant"
@@ -37,7 +37,11 @@ class EntrantError(ConfigError):
 class Part(Settings):
     """What one robot plays."""
 
-    play: str = Field(max_length=400, description="a play's name, or a tree file beside the entrant's file")
+    play: str = Field(
+        max_length=4000,
+        description="a play's name, or a file beside the entrant's: a tree, or a play in Python, as "
+        "my_team.py:striker",
+    )
     params: dict[str, object] = Field(default_factory=dict, description="parameters of the play")
 
 
@@ -56,7 +60,9 @@ class EntrantFile(Settings):
         None, description="instead of players: a program that commands the robots over the league's protocols"
     )
     imports: tuple[str, ...] = Field(
-        (), strict=False, description="Python files beside this one, for the plays and skills they register"
+        (),
+        strict=False,
+        description="Python files beside this one; what they register is this entrant's alone",
     )
 
     @field_validator("entrant")
@@ -84,7 +90,6 @@ class Entrant:
         source: the file or text it comes from.
         players: what the field players play, in the scenario's order; the last is also all that follow.
         goalkeeper: what the goalkeeper plays; None for what blue's plays in the scenario.
-        imports: Python files that its plays and skills come from.
         program: the program that commands its robots; None where they play trees.
     """
 
@@ -92,21 +97,31 @@ class Entrant:
     source: str
     players: tuple[Part, ...]
     goalkeeper: Part | None = None
-    imports: tuple[Path, ...] = ()
     program: Program | None = None
 
     def error(self, problem: str, field: str = "") -> EntrantError:
         """Make an error about this entrant."""
         return EntrantError(self.source, problem, field)
 
+    @property
+    def parts(self) -> list[Part]:
+        """Return what each of its robots plays, the goalkeeper last."""
+        return [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
+
     def digest(self) -> str:
         """Hash what it plays, files by their contents: an edited tree or another model is another team."""
-        parts = [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
-        says = [part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)]
+        parts = self.parts
+        says: list[Any] = [
+            part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)
+        ]
+        for said, part in zip(says, parts, strict=False):
+            # Python files count by what they hold, wherever they lie.
+            said["play"] = split_play(part.play)[1]
         digest = hashlib.blake2b(json.dumps(says, sort_keys=True).encode(), digest_size=16)
-        trees = [Path(part.play) for part in parts if is_play_file(part.play)]
-        for path in (*trees, *self.imports):
-            digest.update(path.read_bytes())
+        for part in parts:
+            for content in contents_of(part.play):
+                digest.update(content)
+        trees = [Path(tree) for part in parts if is_play_file(tree := split_play(part.play)[1])]
         named = [word for part in parts for word in _words(part.params)]
         named += [
             word for path in trees for word in re.findall(r"[\w./\\-]+", path.read_text(errors="replace"))
@@ -120,8 +135,8 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
     """Return the entrant that a text names.
 
     Args:
-        text: a play's name, a file of a play, an entrant's file (YAML with the field ``entrant``),
-            or a scenario's side as in ``six_v_six:blue``.
+        text: a play's name, a file of a play, a play of a Python file as in ``my_team.py:striker``, an
+            entrant's file (YAML with the field ``entrant``), or a scenario's side as in ``six_v_six:blue``.
         params: parameters of the play; for plays only.
         name: what the entrant is called; by default the text, or as its file says.
 
@@ -130,6 +145,10 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
         ScenarioError: the scenario of a side cannot be read.
     """
     given = dict(params or {})
+    if split_play(text)[0] or text.endswith(".py"):
+        if problem := problem_with_play(text):
+            raise EntrantError(text, problem)
+        return Entrant(name or text, text, (Part(play=text, params=given),))
     scenario, colon, side = text.rpartition(":")
     if colon and side in list(Team):
         if given:
@@ -184,22 +203,22 @@ def _from_file(path: Path, data: dict[str, object]) -> Entrant:
     for number, name in enumerate(read.imports):
         if not (path.parent / name).is_file():
             raise EntrantError(str(path), f"there is no file {path.parent / name}", f"imports.{number}")
-        import_file(path.parent / name)
-        imports.append(path.parent / name)
+        imports.append(str(path.parent / name))
 
     def beside(part: Part, field: str) -> Part:
-        if is_play_file(part.play):
-            return part.model_copy(update={"play": str(path.parent / part.play)})
-        if part.play not in PLAYS:
-            raise EntrantError(str(path), _unknown(part.play), f"{field}.play")
-        return part
+        play = rename_play(part.play, lambda file: str(path.parent / file))
+        if not split_play(play)[0]:
+            play = join_play(imports, play)
+        if problem := problem_with_play(play):
+            raise EntrantError(str(path), problem, f"{field}.play")
+        return part.model_copy(update={"play": play})
 
     players = tuple([beside(part, f"players.{number}") for number, part in enumerate(read.players)])
     goalkeeper = None if read.goalkeeper is None else beside(read.goalkeeper, "goalkeeper")
     if read.program is not None:
         still = Part(play="stand_still")
-        return Entrant(read.entrant, str(path), (still,), still, tuple(imports), read.program)
-    return Entrant(read.entrant, str(path), players, goalkeeper, tuple(imports))
+        return Entrant(read.entrant, str(path), (still,), still, read.program)
+    return Entrant(read.entrant, str(path), players, goalkeeper)
 
 
 def _from_side(name: str, text: str, scenario: Scenario, team: Team) -> Entrant:
@@ -244,6 +263,6 @@ def _unknown(name: str) -> str:
     bundled = ", ".join(bundled_scenarios())
     return PLAYS.problem_with(name) or (
         f"no play is called {name!r}; an entrant is a play, a file (.yaml), or a scenario's side, as in "
-        f"six_v_six:blue; --import FILE.py makes a Python file's plays known. Plays are {', '.join(PLAYS)}; "
+        f"six_v_six:blue, or a Python file's, as in my_team.py:striker. Plays are {', '.join(PLAYS)}; "
         f"scenarios {bundled}"
     )

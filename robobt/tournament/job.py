@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,15 +14,16 @@ from typing import Self
 import robobt
 from robobt.config.errors import one_line
 from robobt.config.resources import models_folder
-from robobt.league.programs.world import ForfeitError, ProgramWorld
+from robobt.league.programs.program import ForfeitError
+from robobt.league.programs.world import ProgramWorld
 from robobt.league.referee.process import GameControllerError
 from robobt.league.wire.stream import StreamError
 from robobt.match.loop import Match
 from robobt.match.runner import trial_seed
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
-from robobt.plays.python_files import import_files, imported_files
-from robobt.tournament.entrants import Entrant, Part, meeting
+from robobt.plays.python_files import imported_files
+from robobt.tournament.entrants import Entrant, meeting
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.guard import guarded, noted
 from robobt.tournament.plan import Plan
@@ -66,12 +67,15 @@ class Job:
     plan: Plan
     notes: Path
     outputs: Path
+    tell_outputs: bool
     recordings: Recordings | None
     plays: tuple[Play, ...]
     code: str
 
     @classmethod
-    def of(cls, plan: Plan, notes: Path, outputs: Path, recordings: Recordings | None) -> Self:
+    def of(
+        cls, plan: Plan, notes: Path, outputs: Path, recordings: Recordings | None, tell_outputs: bool = True
+    ) -> Self:
         """Return the job of a plan.
 
         Args:
@@ -79,9 +83,10 @@ class Job:
             notes: folder for notes on who is deciding.
             outputs: folder for what programs print.
             recordings: which matches are recorded.
+            tell_outputs: whether a match that is lost by rule says where that is.
         """
-        plays = tuple({PLAYS[part.play] for part in _parts(plan) if part.play in PLAYS})
-        return cls(plan, notes, outputs, recordings, plays, code_digest())
+        plays = tuple({PLAYS[name] for name in plan.plays if name in PLAYS})
+        return cls(plan, notes, outputs, tell_outputs, recordings, plays, code_digest())
 
     def play(self, fixture: Fixture, _report: object) -> PlayedMatch | Failure:
         """Play a match."""
@@ -94,11 +99,10 @@ class Job:
             with ExitStack() as opened:
                 world = plan.world(scenario)
                 if programs:
-                    folder = self.outputs / file_name(fixture)
-                    folder.mkdir(parents=True, exist_ok=True)
+                    outputs = {team: self._printed(fixture, team) for team in programs}
                     places = {team: Path(sides[team].source).parent for team in programs}
                     world = opened.enter_context(
-                        ProgramWorld(world, scenario, programs, places, folder, plan.speed)
+                        ProgramWorld(world, scenario, programs, places, outputs, plan.speed)
                     )
                 match = Match(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
                 with guarded(match, self._note(fixture), plan.silence):
@@ -108,7 +112,9 @@ class Job:
         except OSError:
             raise
         except ForfeitError as error:
-            return self._forfeit(fixture, error.team, str(error))
+            printed = self._printed(fixture, error.team)
+            kept = f"; its output: {printed}" if self.tell_outputs and printed.exists() else ""
+            return self._forfeit(fixture, error.team, f"{error}{kept}")
         except Exception as error:
             return Failure(fixture, one_line(f"{type(error).__name__}: {error}"))
         return PlayedMatch.of_result(fixture, result, self.code, _now())
@@ -142,23 +148,24 @@ class Job:
             sides={team.value: SideResult(first_error=said if team is loser else None) for team in Team},
         )
 
+    def _printed(self, fixture: Fixture, team: Team) -> Path:
+        """Return the file for what a team's program prints."""
+        return self.outputs / file_name(fixture) / f"{team.value}.txt"
+
     def _note(self, fixture: Fixture) -> Path:
         return self.notes / hashlib.blake2b(repr(fixture).encode(), digest_size=8).hexdigest()
 
 
-def _parts(plan: Plan) -> Iterator[Part]:
-    for entrant in plan.entrants:
-        yield from entrant.players
-        if entrant.goalkeeper is not None:
-            yield entrant.goalkeeper
+def set_up(know: Callable[[], None]) -> None:
+    """Get a worker ready: what plays print is nobody's, and must not end up among the figures.
 
-
-def set_up(files: tuple[Path, ...]) -> None:
-    """Get a worker ready: what plays print is nobody's, and must not end up among the figures."""
+    Args:
+        know: tells it the users' Python files.
+    """
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
-    import_files(files)
+    know()
 
 
 def _now() -> str:

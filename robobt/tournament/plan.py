@@ -76,6 +76,12 @@ class Plan:
         return [entrant.name for entrant in self.entrants]
 
     @property
+    def plays(self) -> list[str]:
+        """Return the names of the plays of all robots, those that the scenario gives them too."""
+        own = [part.play for entrant in self.entrants for part in entrant.parts]
+        return list(dict.fromkeys([*own, *[setup.play for _, setup in self.scenario.robots]]))
+
+    @property
     def pairings(self) -> list[tuple[str, str]]:
         """Return who meets whom."""
         return pairings(self.names, self.against)

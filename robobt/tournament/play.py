@@ -13,7 +13,7 @@ from pathlib import Path
 
 from robobt.engines.run import engine, run_tasks
 from robobt.engines.work import Work
-from robobt.plays.python_files import imported_files
+from robobt.plays.private_files import sender
 from robobt.signals import uninterrupted
 from robobt.tournament.claims import Claims
 from robobt.tournament.fixtures import Fixture
@@ -59,6 +59,7 @@ def play(
     enough: Enough | None = None,
     needless: Needless | None = None,
     on_wait: Callable[[int], object] | None = None,
+    tell_outputs: bool = True,
     job: type[Job] = Job,
 ) -> Played:
     """Play what is missing in the store.
@@ -78,6 +79,8 @@ def play(
         needless: says of a match, before it begins, whether nobody has to know its result any more.
         on_wait: called once when nothing is left but matches that another program has claimed, and it has not
             ended one for a while, with their number.
+        tell_outputs: whether a match that a program has lost by rule says where what it printed lies, which
+            is beside the store.
         job: plays a match.
 
     Raises:
@@ -95,14 +98,15 @@ def play(
         return Failure(fixture, problem, again=True)
 
     with tempfile.TemporaryDirectory(prefix="robobt-notes-") as notes, Claims(store.path) as claims:
-        works = job.of(plan, Path(notes), store.path.with_suffix(".output"), recordings)
+        outputs = store.path.with_suffix(".output")
+        works = job.of(plan, Path(notes), outputs, recordings, tell_outputs)
         try:
             while missing := driver.missing():
                 tasks = run_tasks(
                     Work(works.play, "match", TournamentError, (OSError,)),
                     driver.claimed(missing, claims),
                     min(workers, len(missing)),
-                    setup=partial(set_up, imported_files()),
+                    setup=partial(set_up, sender(plan.plays)),
                     lost=lost if workers else None,
                 )
                 waits = True

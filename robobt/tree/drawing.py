@@ -16,6 +16,7 @@ from py_trees.composites import Composite, Parallel, Selector, Sequence
 from py_trees.decorators import Decorator
 
 from robobt.tree.runner import preorder
+from robobt.tree.signatures import signature_of
 
 NodeKind = Literal["composite", "decorator", "leaf"]
 
@@ -84,7 +85,7 @@ def describe(node: Behaviour) -> NodeDescription:
 
 def _parameters(node: Behaviour) -> Iterator[str]:
     """Return the constructor's parameters that differ from their defaults."""
-    for parameter in _signature(type(node)):
+    for parameter in _constructor(type(node)):
         if parameter.name in ("name", "child", "children") or not hasattr(node, parameter.name):
             continue
         value = getattr(node, parameter.name)
@@ -93,8 +94,8 @@ def _parameters(node: Behaviour) -> Iterator[str]:
 
 
 @lru_cache(maxsize=1024)
-def _signature(kind: type) -> tuple[inspect.Parameter, ...]:
-    return tuple(inspect.signature(kind.__init__).parameters.values())[1:]  # type: ignore[misc]
+def _constructor(kind: type) -> tuple[inspect.Parameter, ...]:
+    return tuple(signature_of(kind).parameters.values())
 
 
 def _same(value: object, default: object) -> bool:

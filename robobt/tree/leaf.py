@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping
 from math import isfinite
 from numbers import Real
@@ -12,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from robobt.config.errors import short_repr
+from robobt.tree.signatures import signature_of
 
 StoreT = TypeVar("StoreT")
 
@@ -35,7 +35,7 @@ class Bound(Generic[StoreT]):
     def parameters(self) -> dict[str, object]:
         """Return every parameter of the node's constructor by name, with the values it was made from."""
         args, kwargs = self._given
-        bound = inspect.signature(type(self)).bind(*args, **kwargs)
+        bound = signature_of(type(self)).bind(*args, **kwargs)
         bound.apply_defaults()
         return dict(bound.arguments)
 

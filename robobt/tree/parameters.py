@@ -16,6 +16,7 @@ from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
 from robobt.config.errors import RobobtError, short_repr
+from robobt.tree.signatures import signature_of
 
 
 class ParameterError(RobobtError, ValueError):
@@ -106,7 +107,7 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return [
         Parameter(name, hints.get(name, Any), entry.default)
-        for name, entry in inspect.signature(builder).parameters.items()
+        for name, entry in signature_of(builder).parameters.items()
         if entry.kind in kinds
     ]
 

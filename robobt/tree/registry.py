@@ -6,7 +6,9 @@ import logging
 from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint, entry_points
 from types import ModuleType
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
+
+from robobt.tree.namespace import current_namespace, within
 
 T = TypeVar("T")
 
@@ -23,7 +25,8 @@ class Registry(Generic[T]):
     first keeps its name: the package's own things, then those of the
     distributions in alphabetical order. A distribution that cannot be loaded, or
     claims a name that is taken, harms nobody else: what is wrong with it is in
-    :attr:`problems`.
+    :attr:`problems`. Inside :func:`~robobt.tree.namespace.within` things are entered in
+    that namespace, and found there first.
 
     Args:
         kind: what it holds, for messages ("play").
@@ -51,11 +54,17 @@ class Registry(Generic[T]):
         """
 
         def enter(entry: T) -> T:
-            if name in self._entries:
+            namespace = current_namespace()
+            entries = self._entries if namespace is None else namespace.of(self)
+            if name in entries:
+                source = self._sources.get(name) if namespace is None else None
                 raise ValueError(
                     f"{self.kind} {name!r} is registered twice: "
-                    f"{self._where(name, self._entries[name])} and {_say(entry, self._loading)}"
+                    f"{_say(entries[name], source)} and {_say(entry, self._loading)}"
                 )
+            if namespace is not None:
+                entries[name] = entry
+                return entry
             self._entries[name] = entry
             if self._loading is not None:
                 self._sources[name] = self._loading
@@ -95,6 +104,10 @@ class Registry(Generic[T]):
             KeyError: no such name; the message lists the names there are, or says
                 why the entry of another package could not be loaded.
         """
+        own = self._own()
+        if name in own:
+            found: T = own[name]
+            return found
         if name not in self._entries:
             self._load()
         if name not in self._entries:
@@ -104,21 +117,31 @@ class Registry(Generic[T]):
         return self._entries[name]
 
     def __contains__(self, name: object) -> bool:
+        if name in self._own():
+            return True
         if name not in self._entries:
             self._load()
         return name in self._entries
 
     def __iter__(self) -> Iterator[str]:
         self._load()
-        return iter(sorted(self._entries))
+        return iter(sorted({*self._entries, *self._own()}))
 
     def __len__(self) -> int:
         self._load()
-        return len(self._entries)
+        return len({*self._entries, *self._own()})
+
+    def _own(self) -> dict[str, Any]:
+        namespace = current_namespace()
+        return {} if namespace is None else namespace.of(self)
 
     def _load(self) -> None:
-        if self._loaded:
-            return
+        if not self._loaded:
+            # Other packages' things are everybody's, whoever asks first.
+            with within(None):
+                self._load_packages()
+
+    def _load_packages(self) -> None:
         # Set first: what is being loaded may look names up itself.
         self._loaded = True
         found = entry_points(group=self.group) if self.group is not None else ()
@@ -155,9 +178,6 @@ class Registry(Generic[T]):
         key = point.name if point.name not in self._problems else f"{point.name} of {_distribution(point)}"
         self._problems[key] = problem
         _log.warning("%s", problem)
-
-    def _where(self, name: str, entry: T) -> str:
-        return _say(entry, self._sources.get(name))
 
 
 def _distribution(point: EntryPoint) -> str:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -12,6 +15,9 @@ from robobt.engines.run import run_tasks, running_on
 from robobt.engines.work import Work
 
 pytestmark = [pytest.mark.integration, pytest.mark.filterwarnings("ignore")]
+
+
+_MODULES: dict[str, Any] = sys.modules
 
 
 class SquareError(Exception):
@@ -93,6 +99,16 @@ def test_a_wrong_address_is_told(address: str, problem: str) -> None:
 
 
 def test_without_ray_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "ray", None)
+    monkeypatch.setitem(_MODULES, "ray", None)
     with pytest.raises(ClusterError, match=r"pip install \"robobt\[ray\]\""):
         RayEngine("ray")
+
+
+def test_a_head_that_does_not_answer_is_told_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unreachable(**_: object) -> None:
+        raise ConnectionError("ray client connection timeout")
+
+    silent = SimpleNamespace(is_initialized=lambda: False, init=unreachable, shutdown=lambda: None)
+    monkeypatch.setitem(_MODULES, "ray", silent)
+    with pytest.raises(ClusterError, match=r"client port of a head that has \"ray\[client\]\"\?"):
+        RayEngine("ray://127.0.0.1:10001?ship=no")

@@ -17,7 +17,6 @@ from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.geometry import write_geometry
 from robobt.league.wire.grsim import write_grsim, write_grsim_replacement
 from robobt.league.wire.messages import (
@@ -32,6 +31,7 @@ from robobt.league.wire.messages import (
     grSim_Packet,
 )
 from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.simulation import write_teleport
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_vision

@@ -13,8 +13,8 @@ from robobt.league.factory import LeagueFactory
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.wire.commands import Teleport
 from robobt.league.wire.endpoints import Endpoints
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.gameevents import write_event
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.sockets import Sender
 from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario, run_trials

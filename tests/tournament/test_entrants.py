@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
 
 from robobt.config.errors import ConfigError
 from robobt.match import load_scenario
-from robobt.plays import PLAYS, python_files
+from robobt.plays import PLAYS
 from robobt.tournament.entrants import Entrant, EntrantError, Part, meeting, read_entrant
-from tests.registries import temporarily
 from tests.tournament.made_up import drill
 
 pytestmark = pytest.mark.integration
@@ -78,19 +76,16 @@ def test_an_edited_tree_is_another_team(tmp_path: Path) -> None:
     assert read_entrant(str(tree)).digest() != before
 
 
-def test_python_files_come_with_the_entrant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(python_files, "_imported", {})
-    monkeypatch.setattr(sys, "path", list(sys.path))
+def test_python_files_come_with_the_entrant(tmp_path: Path) -> None:
     (tmp_path / "own.py").write_text(
         "from robobt import PLAYS\nfrom robobt.skills import Stop\n"
         "PLAYS.register('own_stop')(lambda: Stop())\n"
     )
     file = tmp_path / "own.yaml"
     file.write_text("entrant: own\nimports: [own.py]\nplayers: [{play: own_stop}]\n")
-    with temporarily(PLAYS):
-        entrant = read_entrant(str(file))
-        assert plays(meeting(drill(), entrant, entrant), "blue") == ["own_stop"]
-    assert entrant.imports == (tmp_path / "own.py",)
+    entrant = read_entrant(str(file))
+    assert plays(meeting(drill(), entrant, entrant), "blue") == [f"{tmp_path / 'own.py'}:own_stop"]
+    assert "own_stop" not in PLAYS
 
 
 @pytest.mark.parametrize(

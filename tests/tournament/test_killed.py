@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from robobt.tournament.played import MAY_DIFFER, PlayedMatch
-from robobt.tournament.store import Store
+from robobt.tournament.store import Store, StoreError
 
 KILLS = 10
 COMMAND = [
@@ -34,8 +34,12 @@ def start(store: Path, workers: int = 2) -> subprocess.Popen[bytes]:
 def held(path: Path) -> list[PlayedMatch]:
     if not path.exists():
         return []
-    with Store(path) as store:
-        return store.matches()
+    try:
+        with Store(path) as store:
+            return store.matches()
+    except StoreError:
+        # Its driver is about to make it. What it held before would be missed.
+        return []
 
 
 def same(matches: list[PlayedMatch]) -> list[dict[str, Any]]:
@@ -52,10 +56,11 @@ def test_a_driver_killed_ten_times_leaves_the_store_of_an_unbroken_run(tmp_path:
     while kills < KILLS:
         before = held(broken)
         driver = start(broken)
-        # Once it plays, at any moment of the next two seconds: every start takes some seconds itself.
-        while driver.poll() is None and len(held(broken)) == len(before):
+        # By what it has played, as nobody knows how fast that is; then at any moment.
+        more = rng.randint(1, 2)
+        while driver.poll() is None and len(held(broken)) < len(before) + more:
             time.sleep(0.05)
-        time.sleep(rng.uniform(0.0, 2.0))
+        time.sleep(rng.uniform(0.0, 0.5))
         kills += driver.poll() is None
         driver.send_signal(signal.SIGKILL)
         driver.wait()

@@ -163,7 +163,7 @@ def test_what_cannot_be_played_is_told_before(
 
 def test_an_entrant_that_does_not_fit_the_scenario_is_told_before() -> None:
     with pytest.raises(
-        Exception, match=r"scripted: .*robots\.blue\.0\.params: blue 0: speed must not be negative"
+        Exception, match=r"scripted: .*robots\.blue\.0\.params\.speed: blue 0: speed must not be negative"
     ):
         plan(entrants=(runner(1.0), runner(-1.0)))
 

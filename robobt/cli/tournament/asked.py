@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -23,6 +24,30 @@ EXITS = ("better", "not better", "undecided")
 Alpha = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")]
 
 Beta = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")]
+
+ScenarioOption = Annotated[
+    str, typer.Option(help="A scenario file, or the name of a bundled one, for field, starts and rules.")
+]
+
+OutOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        help="Keep every match in this file (SQLite); the same command goes on with what it lacks, also "
+        "while another one does.",
+    ),
+]
+
+WorkersOption = Annotated[
+    int | None,
+    typer.Option(
+        "--workers",
+        "-w",
+        min=0,
+        max=256,
+        help="Worker processes; by default one a core. 0 plays in the command's own process.",
+    ),
+]
 
 
 def asked_test(sprt: tuple[float, float], alpha: float, beta: float) -> SequentialTest:

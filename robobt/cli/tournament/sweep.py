@@ -24,7 +24,6 @@ from robobt.cli.common import (
     print_json,
     say,
     table,
-    unknown,
     warn,
 )
 from robobt.cli.compare import Set, parse_play
@@ -34,6 +33,9 @@ from robobt.cli.tournament.asked import (
     EXITS,
     Alpha,
     Beta,
+    OutOption,
+    ScenarioOption,
+    WorkersOption,
     asked_test,
     parse_entrant,
     tell_code,
@@ -68,9 +70,7 @@ def sweep(
         str | None,
         typer.Option(metavar=ENTRANT, help="Whom all play; by default the play as it is without --vary."),
     ] = None,
-    scenario: Annotated[
-        str, typer.Option(help="A scenario file, or the name of a bundled one, for field, starts and rules.")
-    ] = "six_v_six",
+    scenario: ScenarioOption = "six_v_six",
     candidates: Annotated[
         int, typer.Option(min=1, max=10_000, help="How many sets of parameters are tried.")
     ] = 24,
@@ -103,24 +103,9 @@ def sweep(
             "--confirm-rounds", min=0, max=100_000, help="Rounds of that test at most; 0 leaves it out."
         ),
     ] = 5000,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            help="Keep every match in this file (SQLite); the same command goes on with what it lacks.",
-        ),
-    ] = None,
+    out: OutOption = None,
     seed: Seed = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers",
-            "-w",
-            min=0,
-            max=256,
-            help="Worker processes; by default one a core. 0 plays in the command's own process.",
-        ),
-    ] = None,
+    workers: WorkersOption = None,
     settings: Set = None,
     imports: Imports = None,
     referee: RefereeOption = None,
@@ -144,20 +129,17 @@ def sweep(
     """
     from robobt.match import load_scenario
     from robobt.match.scenario.changes import changed
-    from robobt.plays import PLAYS
+    from robobt.plays.files import is_play_file, problem_with_play
     from robobt.tournament.sweeps.search import search
     from robobt.tournament.sweeps.sweep import Sweep, confirm
     from robobt.tournament.sweeps.vary import read_varied
 
     import_files(imports)
     name, fixed = parse_play(play, "PLAY")
-    if name.endswith((".py", ".yaml", ".yml", ".xml")):
-        raise typer.BadParameter(
-            f"{name} is a file; a sweep tunes a play by its name, which --import FILE.py makes known",
-            param_hint="PLAY",
-        )
-    if name not in PLAYS:
-        raise unknown(name, PLAYS)
+    if is_play_file(name):
+        raise typer.BadParameter(f"{name} is a file; a sweep tunes a play by its name", param_hint="PLAY")
+    if problem := problem_with_play(name):
+        raise typer.BadParameter(problem, param_hint="PLAY")
     test = asked_test(sprt, alpha, beta)
     if referee is Who.NONE:
         raise typer.BadParameter("must be own or official", param_hint="--referee")
@@ -179,14 +161,14 @@ def sweep(
     running = None
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
         store = Path(folder) / "sweep.sqlite" if out is None else out
-        with Progress("sweep", 2 * rounds * candidates) as progress:
+        with Progress("sweep", 2 * rounds * asked.tries) as progress:
 
             def on_progress(steps: int, found: Swept) -> None:
                 progress.advance(steps)
                 if found.best is not None:
                     progress.name(f"sweep, best {found.best.score:.3f}")
 
-            swept = search(asked, store, crew, on_progress, tell_waiting)
+            swept = search(asked, store, crew, on_progress, tell_waiting, out is not None)
         best, matches, failed = swept.best, swept.matches, swept.failed
         interrupted = swept.interrupted
         if best is not None and (best.score or 0.0) > 0.5 and confirm_rounds and not interrupted:
@@ -196,9 +178,15 @@ def sweep(
                     progress.advance(1)
                     progress.name(test.brief())
 
-                running, played = confirm(asked, best.params, test, confirm_rounds, store, crew, on_match)
-            matches, failed = [*matches, *played.matches], {**failed, **played.failed}
-            interrupted = played.interrupted
+                try:
+                    running, played = confirm(
+                        asked, best.params, test, confirm_rounds, store, crew, on_match, out is not None
+                    )
+                    matches, failed = [*matches, *played.matches], {**failed, **played.failed}
+                    interrupted = played.interrupted
+                except KeyboardInterrupt:
+                    # Before its first match.
+                    interrupted = True
     for fixture, problem in failed.items():
         warn(f"{fixture} could not be played: {problem}")
     for one in swept.candidates:

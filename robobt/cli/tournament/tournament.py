@@ -33,6 +33,9 @@ from robobt.cli.tournament.asked import (
     EXITS,
     Alpha,
     Beta,
+    OutOption,
+    ScenarioOption,
+    WorkersOption,
     asked_test,
     parse_entrant,
     tell_code,
@@ -64,8 +67,8 @@ def tournament(
         list[str],
         typer.Argument(
             metavar=f"{ENTRANT}...",
-            help="A play with parameters (team_player:shoot_at=0.4), an entrant's file (.yaml), or a "
-            "scenario's side (team_v_baseline:yellow).",
+            help="A play with parameters (team_player:shoot_at=0.4), also of a Python file "
+            "(my_team.py:striker), an entrant's file (.yaml), or a scenario's side (team_v_baseline:yellow).",
         ),
     ],
     against: Annotated[
@@ -74,9 +77,7 @@ def tournament(
             metavar=ENTRANT, help="Let all meet this one only; by default everybody meets everybody."
         ),
     ] = None,
-    scenario: Annotated[
-        str, typer.Option(help="A scenario file, or the name of a bundled one, for field, starts and rules.")
-    ] = "six_v_six",
+    scenario: ScenarioOption = "six_v_six",
     rounds: Annotated[
         int | None,
         typer.Option(
@@ -98,14 +99,7 @@ def tournament(
     ] = None,
     alpha: Alpha = 0.05,
     beta: Beta = 0.05,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            help="Keep every match in this file (SQLite); the same command goes on with what it lacks, also "
-            "while another one does.",
-        ),
-    ] = None,
+    out: OutOption = None,
     html: Annotated[
         Path | None, typer.Option("--html", help="Write the report, one page, to this file.")
     ] = None,
@@ -118,16 +112,7 @@ def tournament(
         ),
     ] = None,
     seed: Seed = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers",
-            "-w",
-            min=0,
-            max=256,
-            help="Worker processes; by default one a core. 0 plays in the command's own process.",
-        ),
-    ] = None,
+    workers: WorkersOption = None,
     speed: Annotated[
         float,
         typer.Option(min=0.05, max=20.0, help="Simulated time over real time in matches with programs."),
@@ -205,6 +190,7 @@ def tournament(
                 on_match=lambda _: progress.advance(),
                 enough=enough,
                 on_wait=tell_waiting,
+                tell_outputs=out is not None,
             )
     for fixture, problem in played.failed.items():
         warn(f"{fixture} could not be played: {problem}")

@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from contextlib import ExitStack
 from typing import Self
 
+from robobt.league.programs.program import SHOWN
 from robobt.league.wire.endpoints import REFEREE_GROUP, VISION_GROUP
 from robobt.league.wire.grsim import read_grsim
 from robobt.league.wire.messages import RobotControlResponse
@@ -16,7 +17,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import Frame, RobotId
 
-_GROUPS = {"vision": VISION_GROUP, "tracker": VISION_GROUP, "referee": REFEREE_GROUP}
+_LEAGUE = {"vision": VISION_GROUP, "tracker": VISION_GROUP, "referee": REFEREE_GROUP}
 
 MOST_PACKETS = 50
 """Packets of a team in a control period: each of eleven robots may be commanded four times."""
@@ -28,11 +29,13 @@ _TOLERATED = 60 * MOST_PACKETS
 class MatchPorts:
     """Ports that no other match on this machine has. A context manager.
 
-    What is sent goes to the league's multicast groups over the loopback. Every team has ports of its own
-    for grSim's packets and the simulation protocol, at which only its own robots can be commanded.
+    What is sent goes over the loopback to multicast groups that are this match's alone as well. Every team
+    has ports of its own for grSim's packets and the simulation protocol, at which only its own robots can
+    be commanded.
 
     Args:
         teams: whose programs command robots.
+        league_groups: what of vision, tracker and referee is sent to the league's group instead.
 
     Attributes:
         senders: of vision, tracker and referee, by these names.
@@ -42,17 +45,18 @@ class MatchPorts:
         OSError: there is no free port.
     """
 
-    def __init__(self, teams: Collection[Team]) -> None:
+    def __init__(self, teams: Collection[Team], league_groups: Collection[str] = ()) -> None:
         self.senders: dict[str, Sender] = {}
         self._places: dict[str, str] = {}
         self._receivers: dict[tuple[Team, str], Receiver] = {}
         self._beyond = dict.fromkeys(teams, 0)
         self.flooded: Team | None = None
         with ExitStack() as opened:
-            for name, group in _GROUPS.items():
-                port = opened.enter_context(_reserved())
-                self.senders[name] = opened.enter_context(Sender(group, port.getsockname()[1]))
-                self._places[name] = f"{group}:{port.getsockname()[1]}"
+            for name in SHOWN:
+                port: int = opened.enter_context(_reserved()).getsockname()[1]
+                group = _LEAGUE[name] if name in league_groups else _own_group(port)
+                self.senders[name] = opened.enter_context(Sender(group, port))
+                self._places |= {f"{name}_group": group, f"{name}_port": str(port), name: f"{group}:{port}"}
             for team in teams:
                 for kind in ("grsim", "protocol", "control"):
                     self._receivers[team, kind] = opened.enter_context(Receiver(LOOPBACK, 0))
@@ -122,6 +126,11 @@ def _answer(port: Receiver, packet: Packet, commanded: Mapping[RobotId, object],
         if robot in robots:
             response.feedback.add(id=robot.number, dribbler_ball_contact=robots[robot].ball_contact)
     port.answer(response.SerializeToString(), packet.sender)
+
+
+def _own_group(port: int) -> str:
+    """Return the group of a port that only one match on this machine has, in the local scope (RFC 2365)."""
+    return f"239.255.{port >> 8}.{port & 255}"
 
 
 def _reserved() -> socket.socket:

@@ -11,17 +11,15 @@ from typing import Self
 from uuid import UUID
 
 import numpy as np
-from pydantic import Field
 
-from robobt.config.errors import RobobtError
-from robobt.config.validation import Settings
 from robobt.league.programs.ports import MOST_PACKETS, MatchPorts
 from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
+from robobt.league.programs.program import ForfeitError, Program
 from robobt.league.programs.steps import StepPort
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.publishing import GEOMETRY_INTERVAL
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.geometry import write_geometry
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.simulation import read_control
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import CameraFrame, write_vision
@@ -39,41 +37,6 @@ _TIMEOUT = 0.1
 """A robot that gets no command for this long stops [s]. Source: ER-Force's standby time."""
 
 
-class Program(Settings):
-    """How a team's program is started, and what it may do."""
-
-    command: tuple[str, ...] = Field(
-        strict=False,
-        min_length=1,
-        description="program and arguments; {team}, {host}, {vision}, {tracker}, {referee} and the ports "
-        "{grsim}, {protocol} and, in lock step, {steps} are filled in",
-    )
-    lockstep: bool = Field(
-        False, description="whether it asks for time to pass, by SimulationSyncRequest at {steps}"
-    )
-    ready_within: float = Field(
-        60.0, gt=0, le=600, description="how long it may take until it first commands its robots [s]"
-    )
-    silent_for: float = Field(
-        10.0, gt=0, le=600, description="how long it may then be silent until it has lost [s]"
-    )
-    ends_within: float = Field(
-        30.0, gt=0, le=600, description="how long it may take to end when it is told to by SIGTERM [s]"
-    )
-
-
-class ForfeitError(RobobtError, RuntimeError):
-    """A team's program crashed, is silent, was never ready, or does what no match can bear.
-
-    Attributes:
-        team: whose it is.
-    """
-
-    def __init__(self, team: Team, problem: str) -> None:
-        super().__init__(problem)
-        self.team = team
-
-
 class ProgramWorld(WrappedWorld):
     """Another world in which programs command the robots of one or both teams. A context manager.
 
@@ -88,7 +51,7 @@ class ProgramWorld(WrappedWorld):
         scenario: what is played.
         programs: by the team.
         folders: where they run, likewise.
-        output: where what they print is kept, by team.
+        outputs: files for what they print, likewise.
         speed: simulated time over real time.
 
     Raises:
@@ -101,11 +64,11 @@ class ProgramWorld(WrappedWorld):
         scenario: Scenario,
         programs: Mapping[Team, Program],
         folders: Mapping[Team, Path],
-        output: Path,
+        outputs: Mapping[Team, Path],
         speed: float = 1.0,
     ) -> None:
         super().__init__(world)
-        self._programs, self._folders, self._output = programs, folders, output
+        self._programs, self._folders, self._outputs = programs, folders, outputs
         self._step, self._period = scenario.period / speed, scenario.period
         self._publisher = RefereePublisher(scenario.goalkeepers())
         self._uuid = str(UUID(bytes=np.random.default_rng(0).bytes(16), version=4))
@@ -116,8 +79,9 @@ class ProgramWorld(WrappedWorld):
         self._judged: Frame | None = None
         self._seen: CameraFrame | None = None
         self._frames, self._stamped_from, self._began, self._due = 0, 0.0, 0.0, 0.0
+        shared = {name for program in programs.values() for name in program.league_groups}
         with ExitStack() as opened:
-            self._ports = opened.enter_context(MatchPorts(programs))
+            self._ports = opened.enter_context(MatchPorts(programs, shared))
             self._steps = {
                 team: opened.enter_context(StepPort(scenario.period))
                 for team, program in programs.items()
@@ -165,9 +129,10 @@ class ProgramWorld(WrappedWorld):
             addresses = self._ports.addresses(team)
             if team in self._steps:
                 addresses["steps"] = str(self._steps[team].port)
-            command = [_filled(word, addresses) for word in program.command]
+            command = program.words(addresses)
             try:
-                process = TeamProcess(command, self._folders[team], self._output / f"{team.value}.txt")
+                self._outputs[team].parent.mkdir(parents=True, exist_ok=True)
+                process = TeamProcess(command, self._folders[team], self._outputs[team])
             except OSError as error:
                 raise ForfeitError(team, f"{command[0]}: {error.strerror or error}") from error
             self._processes[team] = self._opened.enter_context(process)
@@ -295,9 +260,3 @@ class ProgramWorld(WrappedWorld):
         # Last, as who plays in lock step then finds all else that is of this instant.
         for team, port in self._steps.items():
             self._answer(team, port, frame)
-
-
-def _filled(word: str, addresses: Mapping[str, str]) -> str:
-    for name, value in addresses.items():
-        word = word.replace(f"{{{name}}}", value)
-    return word

@@ -73,6 +73,15 @@ def find_game_controller(path: str | Path | None = None) -> Path:
     )
 
 
+def check_game_controller(program: Path) -> None:
+    """Start a program once, to find out at once whether it is the official game controller.
+
+    Raises:
+        GameControllerError: it does not start as one.
+    """
+    GameControllerProcess(program).close()
+
+
 class GameControllerProcess:
     """The program in its simulation mode, in a fresh folder, publishing nothing. A context manager.
 
@@ -136,7 +145,10 @@ class GameControllerProcess:
                     return MessageStream(socket.create_connection((LOOPBACK, port)), "the game controller")
                 except OSError:
                     time.sleep(0.005)
+            refused = self._refused()
             self._stop()
+            if not refused:
+                break
         raise GameControllerError(f"{program}: the game controller does not start{self._last_words()}")
 
     def _spawn(self, program: Path, port: int) -> subprocess.Popen[bytes]:

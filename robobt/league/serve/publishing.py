@@ -10,8 +10,8 @@ import numpy as np
 
 from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.endpoints import Endpoints
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.geometry import write_geometry
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.sockets import Sender
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_vision
@@ -61,6 +61,11 @@ class PublishedWorld(WrappedWorld):
             if ahead > 0.0:
                 time.sleep(ahead)
         self.world.act(commands)
+
+    @property
+    def paced(self) -> bool:
+        """See :attr:`robobt.world.protocol.World.paced`."""
+        return True
 
     def close(self) -> None:
         """Stop publishing."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from robobt.league.serve.served_field import ServedField
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import GameEvent
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.tracker import SOURCE
 from robobt.match.referee.referee import Referee
 from robobt.match.referee.settings import RefereeSettings

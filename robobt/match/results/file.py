@@ -18,7 +18,7 @@ from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError, naming
 from robobt.match.results.results import MatchResult, result_from
 from robobt.match.scenario.scenario import Scenario
-from robobt.plays.files import is_play_file
+from robobt.plays.files import contents_of
 
 FORMAT = "robobt-results"
 
@@ -185,8 +185,8 @@ def scenario_digest(scenario: Scenario) -> str:
     digest = hashlib.blake2b(text.encode(), digest_size=16)
     for _, setup in scenario.robots:
         # The contents, not only the names: an edited tree is another match.
-        if is_play_file(setup.play):
-            digest.update(Path(setup.play).read_bytes())
+        for part in contents_of(setup.play):
+            digest.update(part)
         if isinstance(setup.substitute, str):
             digest.update(Path(setup.substitute).read_bytes())
     return digest.hexdigest()

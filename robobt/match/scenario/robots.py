@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Self
 
 from pydantic import BaseModel, Field, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import FieldError, RobobtError, message_of, short_repr
+from robobt.config.errors import FieldError, RobobtError, message_of
 from robobt.config.validation import first_problem
 from robobt.match.scenario.starts import Part, RobotStart
-from robobt.plays import PLAYS
-from robobt.plays.files import find_play, is_play_file
+from robobt.plays.files import find_play, problem_with_play
+from robobt.plays.private_files import private_files
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
 from robobt.tree.devtools import substitute
 from robobt.tree.interop import TreeFileError
+from robobt.tree.namespace import Namespace, within
 from robobt.tree.parameters import ParameterError, check_parameters, parameters_of
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
@@ -26,7 +28,11 @@ class RobotSetup(Part):
     """One robot: its number, what it plays and where it starts."""
 
     number: int = Field(ge=0, le=15, description="number on its team")
-    play: str = Field(max_length=400, description="its play: a name, or a tree file beside the scenario")
+    play: str = Field(
+        max_length=4000,
+        description="its play: a name, a tree file beside the scenario, or one of a Python file there, as "
+        "my_team.py:striker",
+    )
     params: dict[str, object] = Field(default_factory=dict, description="parameters of the play")
     goalkeeper: bool = Field(False, description="whether it is its team's goalkeeper")
     limits: RobotLimits | None = Field(
@@ -42,9 +48,8 @@ class RobotSetup(Part):
     @field_validator("play")
     @classmethod
     def _known(cls, play: str) -> str:
-        if not is_play_file(play) and play not in PLAYS:
-            there = f"no play is called {short_repr(play)}; there are {', '.join(PLAYS)}"
-            raise ValueError(PLAYS.problem_with(play) or there)
+        if problem := problem_with_play(play):
+            raise ValueError(problem)
         return play
 
     @model_validator(mode="after")
@@ -62,19 +67,30 @@ class RobotSetup(Part):
             # Settings of an object that the play makes of its parameters, such as a rater.
             field, problem = first_problem(error, BaseModel)
             if field.partition(".")[0] not in self.params:
-                raise FieldError("params", f"{field}: {problem}") from error
+                raise FieldError(self._blamed(), f"{field}: {problem}") from error
             raise FieldError(f"params.{field}", problem) from error
         except Exception as error:
-            raise FieldError("params", message_of(error)) from error
+            raise FieldError(self._blamed(), message_of(error)) from error
         if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
             problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
             raise FieldError("play", f"{self.play} {problem}")
         return self
 
+    def _blamed(self) -> str:
+        """Return the field of the parameter without which the tree can be built, if it is one alone."""
+        blamed = []
+        for name in self.params:
+            others = {other: value for other, value in self.params.items() if other != name}
+            with suppress(Exception):
+                self.model_copy(update={"params": others}).build_tree()
+                blamed.append(name)
+        return f"params.{blamed[0]}" if len(blamed) == 1 else "params"
+
     def build_tree(self) -> Behaviour:
         """Build a new tree of this robot's play."""
-        builder = find_play(self.play)
-        tree = builder(**check_parameters(self.play, builder, self.params))
+        with within(self.owner()):
+            builder = find_play(self.play)
+            tree = builder(**check_parameters(self.play, builder, self.params))
         if not self.substitute:
             return tree
         try:
@@ -83,6 +99,10 @@ class RobotSetup(Part):
             # Rules in the scenario itself are in no file of their own.
             problem = str(error) if isinstance(self.substitute, str) else error.problem
             raise _SubstitutionError(problem) from error
+
+    def owner(self) -> Namespace | None:
+        """Return whose names its tree finds first: those of its play's Python files, if it has some."""
+        return private_files(self.play)
 
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
         """Return the setup with other values; of another play, the parameters that it has too stay."""
@@ -97,7 +117,7 @@ class RobotSetup(Part):
 
     def _params_in(self, play: object) -> dict[str, object]:
         """Return the parameters that another play has too; of none that can be read, all."""
-        if play == self.play or not isinstance(play, str) or not (is_play_file(play) or play in PLAYS):
+        if play == self.play or not isinstance(play, str) or problem_with_play(play):
             return self.params
         try:
             known = {parameter.name for parameter in parameters_of(find_play(play))}

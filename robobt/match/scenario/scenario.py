@@ -18,7 +18,7 @@ from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_inside, check_starts
 from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
-from robobt.plays.files import is_play_file
+from robobt.plays.files import rename_play
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
@@ -271,14 +271,14 @@ def scenario_from(data: object, source: str) -> Scenario:
 
 
 def rename_files(data: object, rename: Callable[[str], str]) -> None:
-    """Rename the robots' files (trees, substitution rules) in a scenario's plain data."""
+    """Rename the robots' files (trees, Python files, substitution rules) in a scenario's plain data."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
             if not isinstance(robot, dict):
                 continue
             play, rules = robot.get("play"), robot.get("substitute")
-            if isinstance(play, str) and is_play_file(play):
-                robot["play"] = rename(play)
+            if isinstance(play, str):
+                robot["play"] = rename_play(play, rename)
             if isinstance(rules, str):
                 robot["substitute"] = rename(rules)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -73,6 +74,7 @@ def search(
     workers: int = 0,
     on_progress: Callable[[int, Swept], object] | None = None,
     on_wait: Callable[[int], object] | None = None,
+    tell_outputs: bool = True,
 ) -> Swept:
     """Try candidates, and go on where a search that was stopped has left off.
 
@@ -85,17 +87,41 @@ def search(
         on_progress: called with a number of matches that are played, or need not be played any more, and
             what is known so far.
         on_wait: called when another program holds this one up, as by :func:`robobt.tournament.play.play`.
+        tell_outputs: likewise.
 
     Raises:
         SweepError: Optuna is not installed.
         StoreError: the store is of something else, or cannot be written.
     """
-    study, swept = _study(sweep.seed), Swept()
+    swept = Swept()
+    try:
+        _search(sweep, path, swept, on_progress or (lambda *_: None), workers, on_wait, tell_outputs)
+    except KeyboardInterrupt:
+        # While no match was played; those that were are in the store.
+        swept.interrupted = True
+    return swept
+
+
+def _search(
+    sweep: Sweep,
+    path: Path,
+    swept: Swept,
+    tell: Callable[[int, Swept], object],
+    workers: int,
+    on_wait: Callable[[int], object] | None,
+    tell_outputs: bool,
+) -> None:
+    """Enter in ``swept`` what is found, batch by batch."""
+    study = _study(sweep.seed)
     known: dict[str, Candidate] = {}
     scores: dict[str, dict[int, float]] = {}
-    tell = on_progress or (lambda *_: None)
-    while (asked := len(study.trials)) < sweep.candidates:
-        trials = [study.ask() for _ in range(min(sweep.at_once, sweep.candidates - asked))]
+    waiting = deque(sweep.combinations())
+    for begun in range(0, sweep.tries, sweep.at_once):
+        trials = []
+        for _ in range(min(sweep.at_once, sweep.tries - begun)):
+            if waiting:
+                study.enqueue_trial(waiting.popleft())
+            trials.append(study.ask())
         batch = [_proposed(sweep, trial, known) for trial in trials]
         new = [one for one in known.values() if one.problem is None and one.name not in scores]
         best = {} if swept.best is None else scores[swept.best.name]
@@ -112,13 +138,19 @@ def search(
             plan = sweep.plan([sweep.entrant(one.params) for one in new], sweep.rounds)
             with plan.open_store(path, **sweep.says()) as store:
                 played = play(
-                    plan, store, workers, on_match=on_match, needless=race.needless, on_wait=on_wait
+                    plan,
+                    store,
+                    workers,
+                    on_match=on_match,
+                    needless=race.needless,
+                    on_wait=on_wait,
+                    tell_outputs=tell_outputs,
                 )
             swept.matches += played.matches
             swept.failed |= played.failed
             if played.interrupted:
                 swept.interrupted = True
-                break
+                return
         for one in new:
             scores[one.name] = race.scores(one.name, swept.failed)
             _judge(one, scores[one.name], race, swept)
@@ -127,7 +159,6 @@ def search(
         swept.candidates = list(known.values())
         swept.best = max(filter(_finished, swept.candidates), key=_rank, default=None)
         tell(2 * sweep.rounds * len(batch) - done, swept)
-    return swept
 
 
 def _study(seed: int) -> Study:

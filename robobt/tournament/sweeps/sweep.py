@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +36,7 @@ class Sweep:
         params: those that stay as they are.
         varied: those that are varied.
         against: whom every candidate plays.
-        candidates: how many are tried.
+        candidates: how many are tried; where there are no more, all in turn.
         at_once: how many of them are proposed, and play, at a time.
         rounds: how many a candidate plays that is not stopped.
         seed: of the rounds and of what is proposed.
@@ -77,6 +79,20 @@ class Sweep:
                     meeting(self.scenario, self.entrant({one.name: value}), self.against)
                 except ScenarioError as error:
                     raise SweepError(f"{one.name}={_text(value)}: {error}") from error
+
+    @property
+    def tries(self) -> int:
+        """Return how often Optuna is asked."""
+        return len(self.combinations()) or self.candidates
+
+    def combinations(self) -> list[dict[str, int]]:
+        """Return all that Optuna may propose if it is no more than is to be tried, else nothing."""
+        size = prod(one.count() or self.candidates + 1 for one in self.varied)
+        if size > self.candidates:
+            return []
+        places = [one.proposals() for one in self.varied]
+        names = [one.name for one in self.varied]
+        return [dict(zip(names, values, strict=True)) for values in product(*places)]
 
     def entrant(self, params: Mapping[str, object]) -> Entrant:
         """Return the play with these values of what is varied."""
@@ -122,6 +138,7 @@ def confirm(
     path: Path,
     workers: int = 0,
     on_progress: Callable[[RunningTest], object] | None = None,
+    tell_outputs: bool = True,
 ) -> tuple[RunningTest, Played]:
     """Test sequentially whether a candidate is better than whom all have met, on seeds that nobody has seen.
 
@@ -133,6 +150,7 @@ def confirm(
         path: the store of the search, which keeps these matches too.
         workers: processes; 0 is this process itself.
         on_progress: called after each match.
+        tell_outputs: as for :func:`~robobt.tournament.play.play`.
 
     Raises:
         StoreError: the store cannot be written.
@@ -147,7 +165,7 @@ def confirm(
         return decided
 
     with plan.open_store(path, **sweep.says()) as store:
-        return running, play(plan, store, workers, enough=enough)
+        return running, play(plan, store, workers, enough=enough, tell_outputs=tell_outputs)
 
 
 def load_optuna() -> Any:

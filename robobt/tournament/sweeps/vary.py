@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robobt.config.errors import ConfigError, RobobtError, short_repr
 from robobt.config.yaml import parse_marked
-from robobt.plays import PLAYS
+from robobt.plays.files import find_play
 from robobt.tree.parameters import Parameter, ParameterError, check_names, members_of, parameters_of
 
 if TYPE_CHECKING:
@@ -51,6 +51,17 @@ class Varied:
         value = trial.suggest_float(self.name, self.low, self.high)
         return min(max(float(f"{value:.{_DIGITS}g}"), self.low), self.high)
 
+    def count(self) -> int | None:
+        """Return how many values there are, None for those between any two of which is another."""
+        if self.choices:
+            return len(self.choices)
+        return int(self.high) - int(self.low) + 1 if self.whole else None
+
+    def proposals(self) -> list[int]:
+        """Return all that Optuna may propose, where it can be counted: a choice by its place."""
+        first = 0 if self.choices else int(self.low)
+        return list(range(first, first + (self.count() or 0)))
+
     def extremes(self) -> tuple[object, ...]:
         """Return values of which all are possible if these are."""
         if self.choices:
@@ -62,7 +73,7 @@ def read_varied(play: str, text: str) -> Varied:
     """Read ``NAME=VALUE,VALUE,...`` or, for numbers, ``NAME=LOW:HIGH``.
 
     Args:
-        play: a play's name; its parameters' types say what fits.
+        play: a play's name, or that of one in a Python file; its parameters' types say what fits.
         text: what is varied.
 
     Raises:
@@ -71,7 +82,7 @@ def read_varied(play: str, text: str) -> Varied:
     name, equals, values = text.partition("=")
     if not equals or not name:
         raise SweepError(f"{text!r}: what is varied is NAME=VALUE,VALUE,... or NAME=LOW:HIGH")
-    known = {parameter.name: parameter for parameter in parameters_of(PLAYS[play])}
+    known = {parameter.name: parameter for parameter in parameters_of(find_play(play))}
     try:
         if name not in known:
             check_names(play, known, {name: None})

@@ -104,17 +104,14 @@ def substitute(
     chosen = list(rules)
     matched: set[int] = set()
     # Chosen before anything is replaced, so that a broken rule leaves the tree as it was.
-    replaced = _choose(root, chosen, matched)
+    picked = _choose(root, chosen, matched)
     for number, rule in enumerate(chosen):
         if number not in matched:
             raise TreeFileError(
                 rule.source, f"no node of the tree is left for {rule.pattern!r}", line=rule.line
             )
-    for node, rule in replaced:
-        leaf = ScriptedLeaf(node.name, rule.script)
-        if node is root:
-            return leaf
-        _replace(node, leaf)
+    for node, rule in picked:
+        root = replaced(root, node, ScriptedLeaf(node.name, rule.script))
     return root
 
 
@@ -129,7 +126,10 @@ def _choose(
     return [pair for child in node.children for pair in _choose(child, rules, matched)]
 
 
-def _replace(node: Behaviour, leaf: Behaviour) -> None:
+def replaced(root: Behaviour, node: Behaviour, leaf: Behaviour) -> Behaviour:
+    """Put a leaf in the place of a node; return the tree's root, which may be the leaf."""
+    if node is root:
+        return leaf
     parent = node.parent
     if isinstance(parent, Composite):
         parent.replace_child(node, leaf)
@@ -137,6 +137,7 @@ def _replace(node: Behaviour, leaf: Behaviour) -> None:
         parent.decorated, parent.children, leaf.parent = leaf, [leaf], parent
     if isinstance(parent, Parallel) and isinstance(parent.policy, ParallelPolicy.SuccessOnSelected):
         parent.policy.children = [leaf if child is node else child for child in parent.policy.children]
+    return root
 
 
 def _rules(marked: Marked, source: str) -> list[Substitution]:

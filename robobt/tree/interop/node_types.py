@@ -17,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from robobt.tree import nodes
 from robobt.tree.leaf import Bound
 from robobt.tree.parameters import Parameter, members_of, parameters_of
+from robobt.tree.signatures import signature_of
 
 Arguments: TypeAlias = dict[str, Any]
 """Values or children by the names of a constructor's parameters."""
@@ -70,7 +71,7 @@ def node_type(cls: type[Behaviour], name: str = "") -> NodeType:
         ValueError: a parameter has no name, or its annotations cannot be read.
     """
     name = name or cls.__name__
-    signature = inspect.signature(cls)
+    signature = signature_of(cls)
     kinds = {parameter.kind for parameter in signature.parameters.values()}
     if kinds & {inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD}:
         raise ValueError(f"{name} takes more than named parameters, so that files cannot name it")

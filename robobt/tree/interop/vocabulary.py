@@ -45,7 +45,7 @@ class Vocabulary:
     controls: tuple[type[Behaviour], ...] = ()
     values: Mapping[type, Named] = field(default_factory=dict)
     store: type | None = None
-    _types: dict[str, NodeType] = field(default_factory=dict, repr=False)
+    _types: dict[object, NodeType] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         own = {cls.__name__: node_type(cls) for cls in self.controls}
@@ -58,9 +58,13 @@ class Vocabulary:
         Raises:
             ValueError: the class cannot be used in files; the message says why.
         """
-        known = self._control.get(name) or self._types.get(name)
+        known = self._control.get(name)
         if known is None and name in self.leaves:
-            known = self._types[name] = node_type(self.leaves[name], name)
+            # By its class: what a name stands for may depend on who asks.
+            cls = self.leaves[name]
+            known = self._types.get(cls)
+            if known is None or known.name != name:
+                known = self._types[cls] = node_type(cls, name)
         return known
 
     def type_of(self, node: Behaviour) -> NodeType | None:

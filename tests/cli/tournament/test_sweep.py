@@ -92,7 +92,7 @@ def test_a_sweep_is_played() -> None:
     [
         (("attack_mian", "--vary", "speed=1,2"), "no play is called 'attack_mian'"),
         (("mine.yaml", "--vary", "speed=1,2"), "mine.yaml is a file; a sweep tunes a play by its name"),
-        (("my_plays.py", "--vary", "speed=1,2"), "--import FILE.py"),
+        (("my_plays.py", "--vary", "speed=1,2"), "my_plays.py: cannot be read"),
         (("attack_main", "--vary", "sped=1,2"), "sped: attack_main has no such parameter"),
         (("attack_main", "--vary", "speed=2:1"), "speed: a range goes from a number to a larger one"),
         (("attack_main", "--vary", "rater=nn_filtered,nm"), "no shot rater is called 'nm'"),
@@ -104,3 +104,21 @@ def test_what_cannot_be_swept_is_told_in_one_line(options: tuple[str, ...], prob
     shown = invoke(*options, "--scenario", "striker_vs_goalie")
     assert shown.exit_code in (1, 2)
     assert problem in " ".join(shown.output.replace("│", " ").split())
+
+
+@pytest.mark.usefixtures("_decided")
+@pytest.mark.parametrize(
+    "where", ["robobt.tournament.sweeps.search._judge", "robobt.tournament.sweeps.sweep.play"]
+)
+def test_ctrl_c_while_nothing_is_played_tells_what_was_kept(
+    where: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(where, stopped)
+    given = ("attack_main", "--vary", "speed=0.5,0.9", *QUICK)
+    shown = invoke(*given, "--out", tmp_path / "a.sqlite", "--json")
+    assert shown.exit_code == 130
+    assert "matches; the same command goes on with it" in " ".join(shown.stderr.split())
+    assert json.loads(shown.stdout)["interrupted"]

@@ -157,3 +157,19 @@ def test_a_stopped_tournament_says_what_is_kept(monkeypatch: pytest.MonkeyPatch)
     shown = invoke("take_shot", "attack_nn", *QUICK)
     assert shown.exit_code == 130
     assert "stopped after 0 of 2 matches; without --out nothing is kept" in plain(shown)
+
+
+def test_a_program_that_is_no_game_controller_is_told_before_any_match(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from robobt.tournament.job import Job
+
+    monkeypatch.setattr(Job, "play", lambda *_: pytest.fail("a match was tried"))
+    wrong = tmp_path / "wrong"
+    wrong.write_text("#!/bin/sh\nexit 3\n")
+    wrong.chmod(0o755)
+    given = ("take_shot", "attack_nn", *QUICK, "--referee", "official", "--game-controller", wrong)
+    shown = invoke(*given, "--out", tmp_path / "a.sqlite")
+    assert shown.exit_code == 1
+    assert "wrong: the game controller does not start" in plain(shown)
+    assert not (tmp_path / "a.sqlite").exists()

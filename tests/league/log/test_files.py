@@ -15,10 +15,10 @@ from robobt.league.log.files import LogError, LogKind, LogRecord, LogWriter, is_
 from robobt.league.log.world import LogWorld, record_log
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_line_up
-from robobt.league.wire.gamecontroller import RefereePublisher
 from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import Referee
 from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match import Match, load_scenario

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import select
 import socket
+from contextlib import ExitStack
 
 import pytest
 
@@ -48,6 +49,43 @@ def test_what_is_sent_reaches_the_own_match_only() -> None:
             assert select.select([near], [], [], 5.0)[0]
             assert [packet.data for packet in near.receive()] == [b"seen"]
             assert list(far.receive()) == []
+
+
+@pytest.mark.parametrize("shared", [(), ("vision",)])
+@pytest.mark.parametrize("listens", ["everywhere", "group"])
+def test_a_program_never_hears_the_match_beside_it(shared: tuple[str, ...], listens: str) -> None:
+    with MatchPorts(Team, shared) as one, MatchPorts(Team, shared) as other, ExitStack() as opened:
+        near, far = [listening(opened, ports.addresses(Team.BLUE), listens) for ports in (one, other)]
+        for _ in range(3):
+            other.senders["vision"].send(b"theirs")
+        assert select.select([far], [], [], 5.0)[0]
+        assert not select.select([near], [], [], 0.05)[0]
+        one.senders["vision"].send(b"seen")
+        assert select.select([near], [], [], 5.0)[0]
+        assert near.recv(100) == b"seen"
+
+
+def listening(opened: ExitStack, addresses: dict[str, str], listens: str) -> socket.socket:
+    """Join a match's vision as a careless program does, or bound to the group."""
+    sock = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    group, port = addresses["vision_group"], int(addresses["vision_port"])
+    sock.bind(("" if listens == "everywhere" else group, port))
+    member = socket.inet_aton(group) + socket.inet_aton("127.0.0.1")
+    sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+    return sock
+
+
+def test_a_match_has_groups_of_its_own_unless_a_program_takes_ports_only() -> None:
+    with MatchPorts(Team) as one, MatchPorts(Team, ["vision"]) as other:
+        own, shared = one.addresses(Team.BLUE), other.addresses(Team.BLUE)
+        groups = [
+            each[f"{name}_group"] for each in (own, shared) for name in ("vision", "tracker", "referee")
+        ]
+        assert groups[3] == "224.5.23.2"
+        assert len({*groups}) == 6
+        assert all(group.startswith("239.255.") for group in groups[:3] + groups[4:])
+        assert own["vision"] == f"{own['vision_group']}:{own['vision_port']}"
 
 
 def test_a_team_commands_by_either_protocol() -> None:

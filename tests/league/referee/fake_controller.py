@@ -176,7 +176,8 @@ def main(flags: list[str]) -> None:
     if settings["network"]["publish-address"] or "-backendOnly" not in flags:
         raise SystemExit("panic: it would be heard")
     host, port = flags[flags.index("-ciAddress") + 1].split(":")
-    controller = FakeController(float(settings["game"]["normal"]["half-duration"].removesuffix("s")))
+    normal = settings["game"].get("normal", {"half-duration": "300s"})
+    controller = FakeController(float(normal["half-duration"].removesuffix("s")))
     with socket.create_server((host, int(port))) as server:
         connection, _ = server.accept()
     serve(connection, controller.handle)

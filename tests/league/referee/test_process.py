@@ -16,6 +16,7 @@ from robobt.league.referee.process import (
     VARIABLE,
     GameControllerError,
     GameControllerProcess,
+    check_game_controller,
     find_game_controller,
 )
 
@@ -92,6 +93,15 @@ def test_what_is_not_the_controller_is_an_error_that_names_it(tmp_path: Path) ->
     wrong.chmod(0o755)
     with pytest.raises(GameControllerError, match="wrong: the game controller does not start: panic"):
         GameControllerProcess(wrong)
+
+
+def test_what_is_not_the_controller_is_started_once(tmp_path: Path) -> None:
+    wrong, starts = tmp_path / "wrong", tmp_path / "starts"
+    wrong.write_text(f"#!/bin/sh\necho again >> {starts}; exit 3\n")
+    wrong.chmod(0o755)
+    with pytest.raises(GameControllerError, match="wrong: the game controller does not start"):
+        check_game_controller(wrong)
+    assert starts.read_text() == "again\n"
 
 
 @pytest.mark.integration

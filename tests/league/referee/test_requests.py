@@ -41,7 +41,7 @@ def match() -> Iterator[Match]:
 
 
 def ask(match: Match, change: Change) -> None:
-    referee = match._referee
+    referee = match.referee
     assert isinstance(referee, OfficialReferee)
     referee.tell(change)
 

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from robobt.league.wire.gamecontroller import RefereeFollower, RefereePublisher
+from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import Referee
+from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.world.field import DIVISION_B
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus

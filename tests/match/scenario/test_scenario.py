@@ -217,7 +217,7 @@ class TestFields:
             ({"speed": float("nan")}, "params.speed: input should be a finite number, not nan"),
             ({"corner": [1]}, "params.corner.1: field required, not [1]"),
             ({"corner": [1, "b"]}, "params.corner.1: input should be a valid number, not 'b'"),
-            ({"speed": -1}, "params: speed must not be negative"),
+            ({"speed": -1}, "params.speed: speed must not be negative"),
             ([], "params: input should be a mapping"),
         ],
         ids=str,

@@ -275,3 +275,25 @@ class TestVaried:
             tuned(varied=(speed, speed))
         with pytest.raises(SweepError, match="speed: is given twice"):
             tuned(varied=(speed,), params={"speed": 1.0})
+
+
+def test_few_combinations_are_all_tried_once(made_up: list[Fixture], tmp_path: Path) -> None:
+    varied = (read_varied("scripted", "speed=1.8,2.2"), read_varied("scripted", "kick=3,4,5"))
+    swept = search(tuned(varied=varied, params={}, candidates=6, rounds=1), tmp_path / "a")
+    tried = [(one.params["speed"], one.params["kick"]) for one in swept.candidates]
+    assert tried == [(speed, kick) for speed in (1.8, 2.2) for kick in (3, 4, 5)]
+    assert len(made_up) == 12
+
+
+def test_a_search_that_is_stopped_while_nothing_is_played_says_so(
+    made_up: list[Fixture], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from robobt.tournament.sweeps import search as module
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_judge", stopped)
+    swept = search(tuned(rounds=1), tmp_path / "a")
+    assert swept.interrupted
+    assert len(swept.matches) == len(made_up) == 8

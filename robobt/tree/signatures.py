@@ -1,0 +1,20 @@
+"""How nodes and plays are made: the signatures of functions and classes."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+
+
+def signature_of(maker: Callable[..., object]) -> inspect.Signature:
+    """Return what a function, or a class's constructor, takes.
+
+    The first releases of Python 3.11 read an inherited ``__new__`` in place of a class's own ``__init__``.
+
+    Raises:
+        ValueError: it has no signature.
+    """
+    if not isinstance(maker, type):
+        return inspect.signature(maker)
+    own = inspect.signature(maker.__init__)  # type: ignore[misc]
+    return own.replace(parameters=list(own.parameters.values())[1:])
