@@ -20,6 +20,7 @@ from robobt.signals import leave_after_signal
 
 _COMMANDS = {
     "match": "match:match",
+    "live": "live:live",
     "compare": "compare:compare",
     "tournament": "tournament.tournament:tournament",
     "sweep": "tournament.sweep:sweep",
@@ -73,6 +74,7 @@ _GROUPS = {
             "policy": "bench.parts:bench_policy",
             "env": "bench.parts:bench_env",
             "match": "bench.match:bench_match",
+            "live": "bench.live:bench_live",
             "shots": "bench.shots:bench_shots",
             "sprt": "bench.sprt:bench_sprt",
             "engines": "bench.engines:bench_engines",

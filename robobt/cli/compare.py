@@ -133,7 +133,9 @@ def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
 
 def parse_play(text: str, option: str) -> tuple[str, dict[str, object]]:
     """Return the play and its parameters in ``PLAY[:NAME=VALUE,...]``; the option is named in errors."""
-    play, _, given = text.partition(":")
+    # A play of a Python file has a colon of its own.
+    own = re.match(r"([^=]+?\.py:[^:=]+)(?::(.*))?$", text)
+    play, given = (own[1], own[2] or "") if own else text.partition(":")[::2]
     # A comma inside a value is not followed by NAME=.
     parts = re.split(r",(?=\s*\w+=)", given) if given else []
     params = parse_assignments([part.strip() for part in parts], option)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
+from contextlib import ExitStack
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -32,12 +33,15 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.live import Host, Open, Port, page_server
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from robobt.match import Run, Scenario, Summary
-    from robobt.match.results.results import Spread
+    from robobt.match.results.results import MatchResult, Spread
 
 
 class OnError(StrEnum):
@@ -119,6 +123,13 @@ def match(
     referee: RefereeOption = None,
     game_controller: ControllerOption = None,
     stages: StagesOption = None,
+    live: Annotated[
+        bool,
+        typer.Option("--live", help="Play in real time and show it in the browser (one worker)."),
+    ] = False,
+    host: Host = "127.0.0.1",
+    port: Port = 0,
+    open_page: Open = None,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print the results.
@@ -136,7 +147,7 @@ def match(
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
     """
-    from robobt.match import load_scenario, run_trials
+    from robobt.match import Match, load_scenario, run_trials
     from robobt.match.scenario.changes import changed
     from robobt.worlds import SIM, scenario_settings
 
@@ -146,9 +157,10 @@ def match(
     loaded, referees = refereed(loaded, referee, game_controller, stages)
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
-    if world != SIM or publish:
+    if world != SIM or publish or live:
         if workers not in (None, 1):
-            raise typer.BadParameter("must be 1 to play or publish over the network", param_hint="--workers")
+            there = "must be 1 to play or publish over the network, or live"
+            raise typer.BadParameter(there, param_hint="--workers")
         workers = 1
     count = loaded.trials if trials is None else trials
     recorded = 0 if record is None else record
@@ -166,7 +178,14 @@ def match(
     with tempfile.TemporaryDirectory() as folder:
         page = replay is not None and replay.suffix.lower() == PAGE
         recording = Path(folder) / f"trial{RECORDING}" if page else replay
-        with Progress(loaded.name, count) as progress, world_of(world, publish) as factory:
+        with ExitStack() as stack:
+            play: Callable[[Match], MatchResult] = Match.play
+            if live:
+                from robobt.live.session import Live
+
+                play = Live(stack.enter_context(page_server(host, port, open_page))).conduct
+            progress = stack.enter_context(Progress(loaded.name, count))
+            factory = stack.enter_context(world_of(world, publish))
             run = run_trials(
                 loaded,
                 factory,
@@ -177,13 +196,14 @@ def match(
                 {} if recording is None else {recorded: recording},
                 lambda _: progress.advance(),
                 referees,
+                play,
             )
         if not run.results:
             errors.print("robobt: stopped before the first trial was finished")
             raise typer.Exit(130)
         written = replay if any(result.trial == recorded for result in run.results) else None
         if page and written is not None:
-            from robobt.match.recording.replay_html import write_html
+            from robobt.live.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
     summary = run.summary()

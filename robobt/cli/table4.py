@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,6 +20,7 @@ from robobt.cli.common import (
     table,
     world_of,
 )
+from robobt.cli.live import Host, Open, Port, page_server
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -70,6 +72,17 @@ def table4(
     picture: Annotated[
         Path | None, typer.Option("--picture", help="Draw the times into this file (.png).")
     ] = None,
+    human: Annotated[
+        bool,
+        typer.Option(
+            "--human",
+            help="Drive the robot yourself in the live page, by game controller, keyboard or touch: one more "
+            "row; without --only no other, without --limits those of the paper.",
+        ),
+    ] = False,
+    host: Host = "127.0.0.1",
+    port: Port = 0,
+    open_page: Open = None,
     world: Where = "sim",
     as_json: Json = False,
 ) -> None:
@@ -106,8 +119,18 @@ def table4(
     one_of(limits or [], LIMITS, "--limits")
     one_of([starts], ("drawn", "paper"), "--starts")
     combinations, chosen = tuple(only or COMBINATIONS), tuple(limits or LIMITS)
-    total = (runs + 1) * len(combinations) * len(chosen) * len(TRIALS)
-    with Progress("table 4", total) as progress, world_of(world) as factory:
+    if human:
+        combinations, chosen = tuple(only or ()), tuple(limits or ("paper",))
+    total = (runs + 1) * (len(combinations) + human) * len(chosen) * len(TRIALS)
+    with ExitStack() as stack:
+        show = None
+        if human:
+            from robobt.experiments.table4_human import HumanRuns
+            from robobt.live.session import Live
+
+            show = HumanRuns(Live(stack.enter_context(page_server(host, port, open_page))))
+        factory = stack.enter_context(world_of(world))
+        progress = stack.enter_context(Progress("table 4", total))
         result = run(
             runs,
             seed,
@@ -119,6 +142,7 @@ def table4(
             progress=progress.advance,
             world=factory,
             out=out,
+            human=show,
         )
     if picture is not None:
         draw_table4(result, picture)

@@ -19,7 +19,6 @@ from robobt.cli.common import (
     parse_assignments,
     print_json,
     say,
-    unknown,
     warn,
 )
 
@@ -96,15 +95,17 @@ def tree(
 
 
 def _build(play: str, params: list[str]) -> Behaviour:
-    from robobt.plays import PLAYS
-    from robobt.plays.files import find_play, is_play_file
+    from robobt.plays.files import find_play, problem_with_play
+    from robobt.plays.private_files import private_files
+    from robobt.tree.namespace import within
     from robobt.tree.parameters import ParameterError, check_parameters
 
-    if not is_play_file(play) and play not in PLAYS:
-        raise unknown(play, PLAYS)
+    if problem := problem_with_play(play):
+        raise typer.BadParameter(problem)
     builder = find_play(play)
     try:
-        return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))
+        with within(private_files(play)):
+            return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
 

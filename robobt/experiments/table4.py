@@ -64,6 +64,12 @@ dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
 LEARNED = "3-step ddpg, d4pg+td3"
 HAND_WRITTEN = ("robobulls", "geometric, kick", "geometric, kick, quick", "geometric, shoot")
 
+HUMAN = "human, game controller"
+"""The row of a person who drives the robot in the live page."""
+
+Show = Callable[[Match], Callable[[], bool]]
+"""Shows a match to somebody and returns what plays its next tick, False when it is over."""
+
 _GOAL = "goal_blue"
 
 
@@ -122,6 +128,7 @@ def table4(
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
     out: Path | None = None,
+    human: Show | None = None,
 ) -> Table4:
     """Play both trials with every combination.
 
@@ -140,6 +147,7 @@ def table4(
         progress: called after every run.
         world: where it is played.
         out: folder that keeps the runs as they finish; those that it holds are not played again.
+        human: lets a person drive, for one more row, which has no run from the paper's start.
 
     Raises:
         KeyError: no such preset, realism level, combination or limits.
@@ -152,13 +160,16 @@ def table4(
         for trial in trials:
             attempts: dict[str, list[Attempt]] = {}
             rows: dict[str, Row] = {}
-            for combination in combinations:
-                scenario = table4_scenario(trial, COMBINATIONS[combination], preset, realism, LIMITS[name])
+            for combination in (*combinations, *([] if human is None else [HUMAN])):
+                # A person needs no play, but the rest of the scenario.
+                params = COMBINATIONS.get(combination, COMBINATIONS["robobulls"])
+                show = human if combination == HUMAN else None
+                scenario = table4_scenario(trial, params, preset, realism, LIMITS[name])
                 first = scenario.seed if seed is None else seed
                 drawn = drawn_starts(scenario) if starts == "drawn" else scenario
                 kept = None if out is None else out / _file_name(name, trial, combination)
-                attempts[combination] = _attempts(drawn, first, runs, world, kept, progress)
-                beside = play_attempt(scenario, trial_seed(first, 0), world)
+                attempts[combination] = _attempts(drawn, first, runs, world, kept, progress, show)
+                beside = None if show else play_attempt(scenario, trial_seed(first, 0), world)
                 progress()
                 rows[combination] = _row_of(attempts[combination], beside)
             found[name][trial] = _trial_of(attempts, rows)
@@ -176,6 +187,7 @@ def _attempts(
     world: WorldFactory,
     kept: Path | None,
     progress: Callable[[], object],
+    show: Show | None = None,
 ) -> list[Attempt]:
     """Play a combination's runs, except for those that the file ``kept`` holds already."""
     where = getattr(world, "address", None)
@@ -184,7 +196,7 @@ def _attempts(
         for run in range(runs):
             attempt = None if file is None else file.done.get(run)
             if attempt is None:
-                attempt = play_attempt(scenario, trial_seed(seed, run), world, run)
+                attempt = play_attempt(scenario, trial_seed(seed, run), world, run, show)
                 if file is not None:
                     file.add(attempt)
             attempts.append(attempt)
@@ -192,8 +204,14 @@ def _attempts(
     return attempts
 
 
-def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world, trial: int = 0) -> Attempt:
-    """Play one run to its end."""
+def play_attempt(
+    scenario: Scenario,
+    seed: int,
+    world: WorldFactory = sim_world,
+    trial: int = 0,
+    show: Show | None = None,
+) -> Attempt:
+    """Play one run to its end, as fast as can be or as it is shown."""
     approach: float | None = None
     with Match(scenario, seed, world) as match:
         before = match.world.truth()
@@ -201,7 +219,8 @@ def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world,
         if before.own:
             least = minimum_times(before, settings_from(scenario.simulator))
             minimum = {"to_ball": least["to_ball"], "to_kick": least["to_kick"]}
-        while match.tick():
+        tick = match.tick if show is None else show(match)
+        while tick():
             now = match.world.truth()
             if not (now.own and before.own):
                 # Over a network robots may be out of sight.
@@ -218,7 +237,7 @@ def play_attempt(scenario: Scenario, seed: int, world: WorldFactory = sim_world,
     return Attempt(trial, approach, figures.go_to_ball, figures.shoot, goal, minimum, result.trace)
 
 
-def _row_of(attempts: Sequence[Attempt], beside: Attempt) -> Row:
+def _row_of(attempts: Sequence[Attempt], beside: Attempt | None) -> Row:
     traces = [attempt.trace for attempt in attempts]
     return Row(
         approach=_spread(attempt.approach for attempt in attempts),
@@ -231,7 +250,9 @@ def _row_of(attempts: Sequence[Attempt], beside: Attempt) -> Row:
         shots=Rate.of([attempt.shoot is not None for attempt in attempts], traces),
         ball_ratio=_ratio((one.to_ball, one.minimum["to_ball"]) for one in attempts if one.minimum),
         kick_ratio=_ratio((one.total, one.minimum["to_kick"]) for one in attempts if one.minimum),
-        paper_start=PaperStart(to_ball=beside.to_ball, total=beside.total, goal=beside.goal),
+        paper_start=PaperStart(to_ball=None, total=None, goal=False)
+        if beside is None
+        else PaperStart(to_ball=beside.to_ball, total=beside.total, goal=beside.goal),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -11,11 +11,11 @@ from typing import Self
 
 import numpy as np
 
+from robobt.match.capture import MatchCapture
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players
-from robobt.match.recorder import match_recorder
-from robobt.match.recording import Recorder
+from robobt.match.recording.capture import Capture
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.measures import Measures, Trace
@@ -23,7 +23,8 @@ from robobt.match.results.results import MatchResult
 from robobt.match.results.teams import TeamStatistics
 from robobt.match.scenario.scenario import Scenario
 from robobt.match.views import KeptView
-from robobt.signals import check, let_go, uninterrupted
+from robobt.signals import check, let_go
+from robobt.tree import Behaviour, TreeRunner
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -54,6 +55,7 @@ class Match:
         players: the robots in the order of teams and scenario.
         measures: figures so far.
         game: the state of the game as of the last frame.
+        referee: who decides it, None where nobody here does.
         outcome: how it ended, None while it is being played.
 
     Raises:
@@ -92,19 +94,16 @@ class Match:
             for team in Team
         }
         self._field = self.world.truth().field
-        self._referee = referee(scenario, self._field)
-        refereed = self._referee is not None or self.world.refereed
+        self.referee = referee(scenario, self._field)
+        refereed = self.referee is not None or self.world.refereed
         self._teams = TeamStatistics() if refereed else None
         self._judge = EndJudge(scenario, refereed, self.world.scenario_ends)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
         self._spoilers: set[RobotId] = set()
         self._time = 0.0
-        with uninterrupted:
-            self._recorder: Recorder | None = None
-            if record is not None:
-                first = self.world.truth()
-                self._recorder = match_recorder(Path(record), scenario, trial, seed, first, self.players)
+        path = None if record is None else Path(record)
+        self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path)
 
     def play(self) -> MatchResult:
         """Play to the end."""
@@ -113,6 +112,17 @@ class Match:
             while self.tick():
                 pass
             return self.result(perf_counter() - started - compiling())
+
+    def capture(self) -> Capture:
+        """Return what takes hold of every tick from now on, for recorders and viewers."""
+        return self._captured.get()
+
+    def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
+        """Let a robot play another tree from now on; ``play`` is what that is called."""
+        before = player.runner
+        before.stop()
+        player.runner = TreeRunner(tree, player.store, before.on_error)
+        self._captured.change_tree(before, player, play)
 
     def __enter__(self) -> Self:
         return self
@@ -123,20 +133,11 @@ class Match:
     def close(self) -> None:
         """Let go of the referee and finish the recording; or use it in ``with``."""
         let_go()
-        if self._referee is not None:
-            self._referee.close()
-        if self._recorder is not None:
-            with uninterrupted, self._recorder as recorder:
-                if self.outcome is not None:
-                    scores = self._judge.scores
-                    recorder.close(
-                        {
-                            "outcome": self.outcome.value,
-                            "blue": scores[Team.BLUE],
-                            "yellow": scores[Team.YELLOW],
-                        }
-                    )
-            self._recorder = None
+        if self.referee is not None:
+            self.referee.close()
+        scores = self._judge.scores
+        told: dict[str, object] = {"blue": scores[Team.BLUE], "yellow": scores[Team.YELLOW]}
+        self._captured.close(None if self.outcome is None else {"outcome": self.outcome.value, **told})
 
     def tick(self) -> bool:
         """Play one control period; False when the match is over, in which case nobody has acted.
@@ -148,7 +149,7 @@ class Match:
         truth = self.world.truth()
         self._time = truth.time
         events: Sequence[ReportedEvent]
-        if self._referee is not None:
+        if self.referee is not None:
             events = self._follow_referee(truth)
         else:
             # A world may have a referee of its own: the league's game controller.
@@ -170,9 +171,8 @@ class Match:
         else:
             self._trace.event(self.outcome)
             self._commands = {}
-        if self._recorder is not None:
-            with uninterrupted:
-                self._record(self._recorder, truth, packed, frame)
+        ended = None if self.referee is not None else self.outcome
+        self._captured.tick(truth, self._commands, frame, packed, self.measures.kicked, ended)
         if self.outcome is not None:
             return False
         self._carry(frame)
@@ -249,8 +249,8 @@ class Match:
         self._trace.event(f"error {player.robot}")
 
     def _follow_referee(self, truth: Frame) -> tuple[RefereeEvent, ...]:
-        assert self._referee is not None
-        decision = self._referee.update(truth)
+        assert self.referee is not None
+        decision = self.referee.update(truth)
         self.game = decision.game
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
@@ -259,20 +259,7 @@ class Match:
     def _note_events(self, events: Sequence[ReportedEvent]) -> None:
         for event in events:
             self._trace.event(f"{event.kind} {event.robot}")
-            if self._recorder is not None:
-                self._recorder.event(
-                    event.kind, event.time, team=event.team, robot=event.robot, text=event.text
-                )
-
-    def _record(self, recorder: Recorder, truth: Frame, packed: bytes, observed: Frame) -> None:
-        for robot in self.measures.kicked:
-            recorder.event("kick", truth.time, robot=robot)
-        if self.outcome is not None and self.outcome in _END_EVENTS and self._referee is None:
-            kind, team = _END_EVENTS[self.outcome]
-            recorder.event(kind, truth.time, team=team)
-        # What a world shows that may differ from the truth is compared when it is written.
-        shown = None if self.world.shows_truth else observed
-        recorder.tick(truth, self._commands, shown, packed)
+            self._captured.note(event)
 
 
 def play_match(
@@ -285,11 +272,3 @@ def play_match(
 ) -> MatchResult:
     """Play one match to its end; the arguments are those of :class:`Match`."""
     return Match(scenario, seed, world_factory, record, trial, referee).play()
-
-
-_END_EVENTS: Mapping[Outcome, tuple[str, Team | None]] = {
-    Outcome.GOAL_BLUE: ("goal", Team.BLUE),
-    Outcome.GOAL_YELLOW: ("goal", Team.YELLOW),
-    Outcome.SAVED: ("save", None),
-    Outcome.OUT: ("out", None),
-}

@@ -7,7 +7,7 @@ from pathlib import Path
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
-from robobt.plays.files import is_play_file
+from robobt.plays.files import rename_play
 from robobt.tree.devtools import NodeStatistics
 from robobt.world.state import RobotId
 
@@ -41,6 +41,7 @@ def node_statistics(
 
 
 def _same_play(one: str, other: str) -> bool:
-    if is_play_file(one) and is_play_file(other):
-        return Path(one).resolve() == Path(other).resolve()
-    return one == other
+    def whole(file: str) -> str:
+        return str(Path(file).resolve())
+
+    return rename_play(one, whole) == rename_play(other, whole)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,14 +12,14 @@ import numpy as np
 from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import MAX_WORKERS, Work
-from robobt.match.loop import WorldFactory, play_match
+from robobt.match.loop import Match, WorldFactory
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.file import ResultsFile
 from robobt.match.results.results import MatchResult, Summary, summarise
 from robobt.match.scenario.scenario import MAX_TRIALS, Scenario, ScenarioError
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
-from robobt.plays.python_files import import_files, imported_files
+from robobt.plays.private_files import sender
 
 
 class RunError(RobobtError, RuntimeError):
@@ -61,6 +60,7 @@ def run_trials(
     record: Mapping[int, str | Path] | None = None,
     on_result: Callable[[MatchResult], None] | None = None,
     referee: RefereeFactory = own_referee,
+    play: Callable[[Match], MatchResult] = Match.play,
 ) -> Run:
     """Play a scenario many times.
 
@@ -78,6 +78,7 @@ def run_trials(
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes, and with those of ``out`` first.
         referee: makes the referee of each trial; by default the scenario's own.
+        play: plays a match to its end; another than the usual one needs this process, and so one worker.
 
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
@@ -103,6 +104,7 @@ def run_trials(
         referee,
         {trial: Path(path) for trial, path in record.items()},
         tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
+        play,
     )
     results: dict[int, MatchResult] = {}
     interrupted = False
@@ -118,7 +120,7 @@ def run_trials(
             work: Work[int, object, MatchResult] = Work(
                 job.play, f"{scenario.source}: trial", RunError, (ScenarioError, OSError)
             )
-            setup = partial(import_files, imported_files())
+            setup = sender([setup.play for _, setup in scenario.robots])
             for result in run_tasks(work, todo, min(workers, len(todo)), setup=setup):
                 results[result.trial] = result
                 if file is not None:
@@ -145,8 +147,9 @@ class _Job:
     referee: RefereeFactory
     record: Mapping[int, Path]
     plays: tuple[Play, ...]
+    conduct: Callable[[Match], MatchResult]
 
     def play(self, trial: int, _report: object) -> MatchResult:
         seed = trial_seed(self.seed, trial)
         record = self.record.get(trial)
-        return play_match(self.scenario, seed, self.world_factory, record, trial, self.referee)
+        return self.conduct(Match(self.scenario, seed, self.world_factory, record, trial, self.referee))

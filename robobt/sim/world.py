@@ -58,6 +58,7 @@ class SimWorld(World):
         self._rng = np.random.default_rng(0)
         self._ticks = 0
         self.kicks: list[RobotId] = []
+        self._taken: set[RobotId] = set()
         # Robots' rows and the ball's, newest last; long enough to look back by the vision's delay.
         self._past: deque[FloatArray] = deque(maxlen=round(realism.vision_delay / self._arenas.dt) + 1)
         self._seen: FloatArray | None = None
@@ -83,6 +84,7 @@ class SimWorld(World):
         self._rng = np.random.default_rng(seed)
         self._ticks = 0
         self.kicks = []
+        self._taken.clear()
         self._seen = None
         self._past.clear()
         self._past.append(self._rows())
@@ -170,6 +172,29 @@ class SimWorld(World):
         heading = self._arenas.robots[0, index, 2]
         self._arenas.place_robot(0, index, (x, y, heading, 0.0, 0.0, 0.0))
 
+    @property
+    def movable(self) -> bool:
+        """See :attr:`robobt.world.World.movable`."""
+        return True
+
+    def put_ball(self, x: float, y: float, vx: float, vy: float) -> None:
+        """See :meth:`robobt.world.World.put_ball`."""
+        check_inside("the ball", (x, y, vx, vy), self.field)
+        self._arenas.place_ball(0, x, y, vx, vy)
+
+    def put_robot(self, robot: RobotId, x: float, y: float, heading: float) -> None:
+        """See :meth:`robobt.world.World.put_robot`."""
+        check_inside(str(robot), (x, y, heading), self.field)
+        self._arenas.place_robot(0, self._index[robot], (x, y, heading, 0.0, 0.0, 0.0))
+        self._taken.discard(robot)
+
+    def take_robot(self, robot: RobotId) -> None:
+        """See :meth:`robobt.world.World.take_robot`; its body lies far behind the walls."""
+        index = self._index[robot]
+        x, y = self.field.outer[0] + 1.0 + 0.5 * index, self.field.outer[1] + 1.0
+        self._arenas.place_robot(0, index, (x, y, 0.0, 0.0, 0.0, 0.0))
+        self._taken.add(robot)
+
     def _make_arenas(self) -> Arenas:
         return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
 
@@ -204,12 +229,17 @@ class SimWorld(World):
         contact = self._arenas.contact[0].tolist()
         blue = len(self._blue)
         touch = int(self._arenas.touch[0])
+        own = _states(self._blue, robots[:blue], contact[:blue])
+        opponents = _states(self._yellow, robots[blue:], contact[blue:])
+        if self._taken:
+            own = tuple([it for it in own if RobotId(Team.BLUE, it.id) not in self._taken])
+            opponents = tuple([it for it in opponents if RobotId(Team.YELLOW, it.id) not in self._taken])
         return Frame(
             self._ticks * self.period,
             self.field,
             BallState(*ball),
-            _states(self._blue, robots[:blue], contact[:blue]),
-            _states(self._yellow, robots[blue:], contact[blue:]),
+            own,
+            opponents,
             Team.BLUE,
             self.period,
             last_touch=self._ids[touch] if touch >= 0 else None,

@@ -9,8 +9,8 @@ from pathlib import Path
 from urllib.parse import quote
 
 from robobt.config.atomic import write_atomically
+from robobt.live.replay_html import write_html
 from robobt.match.recording import RecordingError
-from robobt.match.recording.replay_html import write_html
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Recordings
 from robobt.tournament.standings import Standing, Standings

@@ -1,8 +1,8 @@
 """What a tree does from tick to tick: statuses, the nodes that were ticked, their feedback.
 
 Looking at every node at every tick would cost a tenth of a match. A :class:`TreeWatch` looks
-only when the engine's :class:`~robobt.tree.engine.Marks` say that something may have changed,
-and works out what did later, for many ticks at once.
+only when the engine's :class:`~robobt.tree.engine.Marks` say that something may have changed;
+:class:`TreeChanges` works out later what did, for many ticks at once and for whoever asks.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ class TreeState:
         reached: nodes that the last tick reached, every one among them of which the statuses
             do not tell.
         error: what the last tick raised.
+        watch: who found it.
     """
 
     statuses: tuple[Status, ...] | None
@@ -47,6 +48,7 @@ class TreeState:
     ticked: bool = True
     reached: Sequence[Behaviour] = ()
     error: str | None = None
+    watch: TreeWatch | None = None
 
 
 @dataclass(slots=True)
@@ -67,20 +69,19 @@ class TreeChange:
 
 
 class TreeWatch:
-    """Finds out what has changed in a runner's tree since it was looked at last.
+    """Looks at a runner's tree for what may have changed, quickly enough to be done at every tick.
 
-    Looking is quick and can be done at every tick; :meth:`change` makes sense of what was
-    found, at any later time but in the same order.
+    A runner has one at a time.
     """
 
     def __init__(self, runner: TreeRunner) -> None:
         nodes = runner.nodes
         places = {id(node): place for place, node in enumerate(nodes)}
-        self._runner = runner
-        self._places = places
-        self._parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
-        self._reach = [ticked_children(node) for node in nodes]
-        doubtful = [node for i, node in enumerate(nodes[1:], 1) if self._reach[self._parents[i]] == "some"]
+        self.runner = runner
+        self.places = places
+        self.parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
+        self.reach = [ticked_children(node) for node in nodes]
+        doubtful = [node for i, node in enumerate(nodes[1:], 1) if self.reach[self.parents[i]] == "some"]
         self._marks = runner.mark(doubtful)
         self._speakers = [place for place, node in enumerate(nodes) if type(node) not in _SILENT]
         self._statuses = _reader(range(len(nodes)), "status", nodes)
@@ -88,37 +89,48 @@ class TreeWatch:
         # As of the last look.
         self._ticks = runner.ticks
         self._ticked = False
-        # As of the last change that was told.
-        self._before = TreeState((Status.INVALID,) * len(nodes), (), (), False)
-        self._raw = ["-"] * len(nodes)
-        self._letters = "-" * len(nodes)
-        self._messages: list[object] = [None] * len(nodes)
-        self._texts = [""] * len(nodes)
 
     def look(self) -> TreeState | None:
         """Return the tree's state if it may be another one than at the last look."""
-        runner, marks = self._runner, self._marks
+        runner, marks = self.runner, self._marks
         usual = self._ticked
         self._ticked = ticked = runner.ticks != self._ticks
         self._ticks = runner.ticks
         if ticked and usual and not marks.changed:
             if not marks.feedback:
                 return None
-            known = [node for node in marks.feedback if id(node) in self._places]
+            known = [node for node in marks.feedback if id(node) in self.places]
             marks.feedback.clear()
-            places = [self._places[id(node)] for node in known]
-            return TreeState(None, places, [node.feedback_message for node in known])
+            places = [self.places[id(node)] for node in known]
+            return TreeState(None, places, [node.feedback_message for node in known], watch=self)
         if not (ticked or usual or marks.changed):
             return None
         # What becomes of a tree that was brought to rest is not what its leaves did before.
         marks.changed = runner.error is not None or runner.root.status is Status.INVALID
         marks.feedback.clear()
         reached = marks.seen.copy() if ticked else ()
-        return TreeState(self._statuses(), self._speakers, self._feedback(), ticked, reached, runner.error)
+        speakers, feedback = self._speakers, self._feedback()
+        return TreeState(self._statuses(), speakers, feedback, ticked, reached, runner.error, self)
 
     def look_again(self) -> None:
         """Look at every node next time, for what one may have done to another one unseen."""
         self._marks.changed = True
+
+
+class TreeChanges:
+    """Makes sense of what a :class:`TreeWatch` finds, at any later time but in the same order.
+
+    Another watch, of a tree of the same nodes, may take its place on the way.
+    """
+
+    def __init__(self, watch: TreeWatch) -> None:
+        count = len(watch.parents)
+        # As of the last change that was told.
+        self._before = TreeState((Status.INVALID,) * count, (), (), False)
+        self._raw = ["-"] * count
+        self._letters = "-" * count
+        self._messages: list[object] = [None] * count
+        self._texts = [""] * count
 
     def change(self, state: TreeState) -> TreeChange | None:
         """Return what is new in ``state`` since the state before, None if that is nothing."""
@@ -147,16 +159,17 @@ class TreeWatch:
         """Return the statuses' letters, small where a node was not ticked."""
         if not state.ticked:
             return "".join(self._raw).lower()
-        letters = self._raw.copy()
-        reached = {self._places.get(id(node), -1) for node in state.reached}
+        letters, watch = self._raw.copy(), state.watch
+        assert watch is not None
+        reached = {watch.places.get(id(node), -1) for node in state.reached}
         # Nodes that were not ticked, and selectors of which a child before the last one decided.
         idle: set[int] = set()
         decided: set[int] = set()
         for place, letter in enumerate(self._raw):
             if letter == "-" or not place:
                 continue
-            parent = self._parents[place]
-            reach = self._reach[parent]
+            parent = watch.parents[place]
+            reach = watch.reach[parent]
             if reach == "some":
                 ticked = place in reached
             else:

@@ -85,6 +85,36 @@ class World(Protocol):
         """Put a robot down at rest, as its handler does, in world coordinates [m]; else people do it."""
         return
 
+    def put_ball(self, x: float, y: float, vx: float, vy: float) -> None:  # noqa: ARG002
+        """Put the ball somewhere with a velocity, where :attr:`movable`; world coordinates [m, m/s].
+
+        Raises:
+            ValueError: it cannot be put there.
+        """
+        raise ValueError("nothing can be moved in this world")
+
+    def put_robot(self, robot: RobotId, x: float, y: float, heading: float) -> None:  # noqa: ARG002
+        """Put a robot somewhere at rest, where :attr:`movable`; one that was taken is there again.
+
+        Raises:
+            ValueError: it cannot be put there.
+        """
+        raise ValueError("nothing can be moved in this world")
+
+    def take_robot(self, robot: RobotId) -> None:  # noqa: ARG002
+        """Take a robot off the field until it is put somewhere, where :attr:`movable`."""
+        raise ValueError("nothing can be moved in this world")
+
+    @property
+    def movable(self) -> bool:
+        """Whether robots and ball can be put elsewhere while a match is played."""
+        return False
+
+    @property
+    def paced(self) -> bool:
+        """Whether :meth:`act` itself waits for real time, as on a field, which waits for nobody."""
+        return False
+
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
         """Return who was seen to kick between the last two frames, and when in the frames' time [s].
 
@@ -141,6 +171,28 @@ class WrappedWorld(World):
     def carry_robot(self, robot: RobotId, x: float, y: float) -> None:
         """See :meth:`World.carry_robot`."""
         self.world.carry_robot(robot, x, y)
+
+    def put_ball(self, x: float, y: float, vx: float, vy: float) -> None:
+        """See :meth:`World.put_ball`."""
+        self.world.put_ball(x, y, vx, vy)
+
+    def put_robot(self, robot: RobotId, x: float, y: float, heading: float) -> None:
+        """See :meth:`World.put_robot`."""
+        self.world.put_robot(robot, x, y, heading)
+
+    def take_robot(self, robot: RobotId) -> None:
+        """See :meth:`World.take_robot`."""
+        self.world.take_robot(robot)
+
+    @property
+    def movable(self) -> bool:
+        """See :attr:`World.movable`."""
+        return self.world.movable
+
+    @property
+    def paced(self) -> bool:
+        """See :attr:`World.paced`."""
+        return self.world.paced
 
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
         """See :meth:`World.seen_kicks`."""

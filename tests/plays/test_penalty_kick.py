@@ -16,14 +16,14 @@ def shoot_out() -> tuple[MatchResult, list[str]]:
     """The first kick of each team."""
     happened: list[str] = []
     with Match(load_scenario("shoot_out").lasting(23.0), 1, sim_world) as match:
-        update = match._referee.update  # type: ignore[union-attr]
+        update = match.referee.update  # type: ignore[union-attr]
 
         def told(frame):  # type: ignore[no-untyped-def]
             decision = update(frame)
             happened.extend(event.kind.value for event in decision.events)
             return decision
 
-        match._referee.update = told  # type: ignore[union-attr, method-assign]
+        match.referee.update = told  # type: ignore[union-attr, method-assign]
         return match.play(), happened
 
 

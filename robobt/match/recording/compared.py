@@ -34,29 +34,39 @@ def candidates(changes: Written) -> Iterator[tuple[int, list[JsonValue]]]:
         yield tick, rows
 
 
-def plans(changes: Written) -> Iterator[tuple[int, list[object]]]:
-    """Give whom a team marks, by the marker's number, and whom it fears, the most dangerous first.
+class Plans:
+    """What a team plans, as it follows from what its skills have written so far."""
 
-    Then its attacker's number and where that is to meet the rolling ball, x and y [m]; nothing without one.
-    """
-    marks: dict[int, int] = {}
-    threats: list[int] = []
-    attacker: int | None = None
-    meeting: list[float] = []
-    for tick, change in changes:
-        if not {"marks", "threats", "attacker", "meeting"} & change.keys():
-            continue
-        try:
-            if "marks" in change:
-                marks = {int(a): int(b) for a, b in dict(change["marks"] or {}).items()}  # type: ignore[arg-type]
-            if "threats" in change:
-                threats = [int(one) for one in change["threats"] or []]  # type: ignore[arg-type, union-attr]
-            if "attacker" in change:
-                attacker = None if change["attacker"] is None else int(change["attacker"])  # type: ignore[arg-type]
-            if "meeting" in change:
-                meeting = [float(one) for one in change["meeting"] or []]  # type: ignore[arg-type, union-attr]
-                if len(meeting) not in (0, 2) or None in plain(meeting):  # type: ignore[operator]
-                    raise ValueError("no place")
-        except (TypeError, ValueError):
-            marks, threats, attacker, meeting = {}, [], None, []
-        yield tick, [marks, threats, [] if attacker is None or not meeting else [attacker, *meeting]]
+    def __init__(self) -> None:
+        self._marks: dict[int, int] = {}
+        self._threats: list[int] = []
+        self._attacker: int | None = None
+        self._meeting: list[float] = []
+
+    def follow(self, changes: Written) -> Iterator[tuple[int, list[object]]]:
+        """Give whom it marks, by the marker's number, and whom it fears, the most dangerous first.
+
+        Then its attacker's number and where that is to meet the rolling ball, x and y [m]; nothing
+        without one.
+        """
+        for tick, change in changes:
+            if not {"marks", "threats", "attacker", "meeting"} & change.keys():
+                continue
+            try:
+                self._take(change)
+            except (TypeError, ValueError):
+                self._marks, self._threats, self._attacker, self._meeting = {}, [], None, []
+            meets = self._attacker is not None and bool(self._meeting)
+            yield tick, [self._marks, self._threats, [self._attacker, *self._meeting] if meets else []]
+
+    def _take(self, change: dict[str, JsonValue]) -> None:
+        if "marks" in change:
+            self._marks = {int(a): int(b) for a, b in dict(change["marks"] or {}).items()}  # type: ignore[arg-type]
+        if "threats" in change:
+            self._threats = [int(one) for one in change["threats"] or []]  # type: ignore[arg-type, union-attr]
+        if "attacker" in change:
+            self._attacker = None if change["attacker"] is None else int(change["attacker"])  # type: ignore[arg-type]
+        if "meeting" in change:
+            self._meeting = [float(one) for one in change["meeting"] or []]  # type: ignore[arg-type, union-attr]
+            if len(self._meeting) not in (0, 2) or None in plain(self._meeting):  # type: ignore[operator]
+                raise ValueError("no place")

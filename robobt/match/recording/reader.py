@@ -93,10 +93,10 @@ class _Reader:
         if late.size:
             raise self._error(int(late[0]), "time", "must be finite and not less than the time before")
         robots = len(self._header.robots)
-        truth = _poses(self._truth, robots)
+        truth = poses_of(self._truth, robots)
         observed = None
         if any(one is not other for one, other in zip(self._observed, self._truth, strict=True)):
-            observed = _poses(self._observed, robots)
+            observed = poses_of(self._observed, robots)
         commands = np.concatenate(self._commands).reshape(len(times), robots, COMMAND)
         odd = np.flatnonzero(~np.isin(commands[:, :, -1], range(sum(RobotFlag) + 1)).all(axis=1))
         if odd.size:
@@ -156,7 +156,7 @@ class _Reader:
         return RecordingError(self._path, problem, tick, field)
 
 
-def _poses(tables: list[NDArray[np.float32]], count: int) -> Poses:
+def poses_of(tables: list[NDArray[np.float32]], count: int) -> Poses:
     """Return the poses of tables (ticks, numbers) of so many robots; what is not wholly known is unknown."""
     table = np.concatenate(tables)
     ball = table[:, :BALL]

@@ -33,9 +33,8 @@ Written: TypeAlias = tuple[int, Values]
 class StoreWatch:
     """Finds what has changed in some stores since they were looked at last.
 
-    Looking is quick and can be done at every tick; :meth:`plain` makes plain data of what was
-    found, at any later time but in the same order. A value that is changed in place is noticed
-    in lists, sets and mappings.
+    Looking is quick and can be done at every tick; :class:`StoreChanges` makes plain data of what
+    was found. A value that is changed in place is noticed in lists, sets and mappings.
 
     Args:
         stores: by a name each the store and the names of its entries to look at; an entry that
@@ -43,16 +42,13 @@ class StoreWatch:
     """
 
     def __init__(self, stores: Mapping[str, tuple[object, Sequence[str]]]) -> None:
-        self._watched = [(name, store, entries) for name, (store, entries) in stores.items() if entries]
+        self.watched = [(name, store, entries) for name, (store, entries) in stores.items() if entries]
         items = [
             "(" + "".join([f"'{place}'.{entry}," for entry in entries]) + ")"
-            for place, (_, _, entries) in enumerate(self._watched)
+            for place, (_, _, entries) in enumerate(self.watched)
         ]
-        self._read = make_reader(f"[{','.join(items)}]", [store for _, store, _ in self._watched])
-        self._values: list[Values] = [(None,) * len(entries) for _, _, entries in self._watched]
-        # As of the last values that were made plain.
-        self._before = self._values.copy()
-        self._plain: list[dict[str, JsonValue]] = [dict.fromkeys(entries) for _, _, entries in self._watched]
+        self._read = make_reader(f"[{','.join(items)}]", [store for _, store, _ in self.watched])
+        self._values: list[Values] = [(None,) * len(entries) for _, _, entries in self.watched]
 
     def look(self) -> list[Written]:
         """Return the stores of which a value is not what it was at the last look."""
@@ -65,7 +61,7 @@ class StoreWatch:
             # An entry that is not there, or values that do not compare to a truth, as arrays.
             values = [
                 tuple([getattr(store, entry, None) for entry in entries])
-                for _, store, entries in self._watched
+                for _, store, entries in self.watched
             ]
             places = [*range(len(values))]
         for place in places:
@@ -76,11 +72,21 @@ class StoreWatch:
             self._values[place] = now
         return [(place, self._values[place]) for place in places]
 
+
+class StoreChanges:
+    """Makes plain data of what a :class:`StoreWatch` finds, at any later time but in the same order."""
+
+    def __init__(self, watch: StoreWatch) -> None:
+        self._entries = [(name, entries) for name, _, entries in watch.watched]
+        # As of the last values that were made plain.
+        self._before: list[Values] = [(None,) * len(entries) for _, entries in self._entries]
+        self._plain: list[dict[str, JsonValue]] = [dict.fromkeys(entries) for _, entries in self._entries]
+
     def plain(self, written: list[Written]) -> dict[str, dict[str, JsonValue]]:
         """Return by store and entry what is new in ``written``."""
         changed: dict[str, dict[str, JsonValue]] = {}
         for place, values in written:
-            name, _, entries = self._watched[place]
+            name, entries = self._entries[place]
             for entry, value, before in zip(entries, values, self._before[place], strict=True):
                 if value is before:
                     continue

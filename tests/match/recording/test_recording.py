@@ -17,6 +17,7 @@ import pytest
 from py_trees.visitors import VisitorBase
 from pydantic import ValidationError
 
+from robobt.live.replay_html import replay_html
 from robobt.match import Match
 from robobt.match.recording import (
     Event,
@@ -29,7 +30,6 @@ from robobt.match.recording import (
     load_recording,
     reader,
 )
-from robobt.match.recording.replay_html import replay_html
 from robobt.match.recording.stream import new_stream
 from robobt.match.scenario.scenario import load_scenario, scenario_from
 from robobt.skills.store import Store

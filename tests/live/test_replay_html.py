@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robobt.live import replay_html as module
+from robobt.live.replay_html import page_data, replay_html, write_html
 from robobt.match import Match
 from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
-from robobt.match.recording import replay_html as module
-from robobt.match.recording.replay_html import page_data, replay_html, write_html
 from robobt.match.scenario.scenario import load_scenario
 from robobt.skills import SelectShot, Store
 from robobt.tree import Selector, TreeRunner
@@ -330,8 +330,9 @@ def test_the_page_holds_where_the_attacker_meets_a_rolling_ball(team_match: Reco
     assert meetings
     for number, x, y in meetings:
         assert number in range(1, 6)
-        assert abs(x) <= 4.7
-        assert abs(y) <= 3.2
+        # The field, and the run-up behind its lines.
+        assert abs(x) <= 5.0
+        assert abs(y) <= 3.5
 
 
 @pytest.mark.parametrize("other", ["far", [1, 2], {"3": "x"}, [{"receiver": 3}], [{"target": [0, None]}], 7])

@@ -1,0 +1,132 @@
+"""``robobt live``: play a scenario in real time and watch it in the browser."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robobt.cli.common import (
+    Bundled,
+    Imports,
+    Seed,
+    Where,
+    import_files,
+    parse_assignments,
+    say,
+    warn,
+    world_of,
+)
+from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
+
+if TYPE_CHECKING:
+    from robobt.live.server import Server
+
+Host = Annotated[
+    str,
+    typer.Option(
+        help="Address to serve the page at. Any other than this machine's own lets whoever can reach it "
+        "and knows the page's address watch and steer, unencrypted."
+    ),
+]
+Port = Annotated[int, typer.Option(min=0, max=65535, help="Port to serve the page at; 0 takes a free one.")]
+Open = Annotated[
+    bool | None,
+    typer.Option("--open/--no-open", help="Whether to open the page; by default where there is a desktop."),
+]
+
+
+def live(
+    scenario: Bundled = "six_v_six",
+    seed: Seed = None,
+    speed: Annotated[
+        float, typer.Option(min=0.05, max=20.0, help="Times real time; the page can change it.")
+    ] = 1.0,
+    paused: Annotated[bool, typer.Option("--paused", help="Wait for the page to start it.")] = False,
+    record: Annotated[
+        Path | None, typer.Option("--record", help="Record the first match to this file as well.")
+    ] = None,
+    blue: Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = "",
+    yellow: Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = "",
+    settings: Set = None,
+    imports: Imports = None,
+    world: Where = "sim",
+    referee: RefereeOption = None,
+    game_controller: ControllerOption = None,
+    stages: StagesOption = None,
+    host: Host = "127.0.0.1",
+    port: Port = 0,
+    open_page: Open = None,
+) -> None:
+    """Play a scenario in real time and show it in the browser while it happens.
+
+    The page shows all that a replay does, and can pause, step, slow down, go back up to five minutes and
+    save what was seen. Ctrl-C ends it.
+    """
+    from robobt.match import Match, load_scenario
+    from robobt.match.runner import trial_seed
+    from robobt.match.scenario.changes import changed
+
+    with page_server(host, port, open_page) as server:
+        from robobt.live.session import Live
+
+        import_files(imports)
+        loaded = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+        loaded, referees = refereed(with_teams(loaded, blue, yellow), referee, game_controller, stages)
+        start = loaded.seed if seed is None else seed
+        records = [record]
+
+        def make(trial: int) -> Match:
+            seed = trial_seed(start, trial)
+            return Match(loaded, seed, factory, records.pop() if records else None, trial, referees)
+
+        with world_of(world) as factory:
+            Live(server, speed, paused).play_on(make)
+
+
+@contextmanager
+def page_server(host: str, port: int, open_page: bool | None) -> Iterator[Server]:
+    """Serve the live page, say where, and open it where that is wanted."""
+    try:
+        from robobt.live.server import Server
+    except ModuleNotFoundError as error:
+        if error.name != "websockets":
+            raise
+        raise typer.BadParameter("the live page needs websockets: pip install 'robobt[live]'") from error
+    own = host in ("127.0.0.1", "localhost", "::1")
+    names = () if own else tuple(_names_of(host))
+    with Server(host, port, names) as server:
+        say(f"Live: {server.url}")
+        if not own:
+            warn(
+                f"the page is open to every machine that can reach {host}: whoever has its address watches "
+                "and steers, and nothing is encrypted"
+            )
+        if _desktop() if open_page is None else open_page:
+            import webbrowser
+
+            webbrowser.open(server.url)
+        yield server
+
+
+def _names_of(host: str) -> Iterator[str]:
+    """Give the names by which other machines may call this one."""
+    import socket
+
+    if host in ("0.0.0.0", "::"):
+        yield socket.gethostname()
+        yield from sorted({str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)})
+    else:
+        yield host
+
+
+def _desktop() -> bool:
+    return sys.platform in ("darwin", "win32") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )

@@ -1,0 +1,43 @@
+"""Table 4's row that nobody could repeat: a person with a game controller."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from robobt.experiments.table4_starts import SHOOTER
+from robobt.live.session import LOOK, Live
+from robobt.match.loop import Match
+from robobt.world.game import Team
+from robobt.world.state import RobotId
+
+COUNTDOWN = 3.0
+"""Before each run, in which nothing moves [s]."""
+
+
+class HumanRuns:
+    """Lets whoever steers the live page drive the robot of each run, from its start to its end.
+
+    A run begins when the page is there and the countdown is over; its clock, start and ends are
+    those of the other rows.
+    """
+
+    def __init__(self, live: Live, countdown: float = COUNTDOWN, look: float = LOOK) -> None:
+        self._live, self._countdown, self._look = live, countdown, look
+
+    def __call__(self, match: Match) -> Callable[[], bool]:
+        """Show a match and count down; return what plays its next tick."""
+        team, _, number = SHOOTER.partition(" ")
+        self._live.begin(match).take(RobotId(Team(team), int(number)))
+        self._live.count_down(match, self._countdown)
+
+        def tick() -> bool:
+            if self._live.tick(match):
+                return True
+            if match.outcome is None:
+                # Not to be chosen anew: the paper's person had 25 runs.
+                self._live.forget_reset()
+                return not self._live.ended
+            self._live.linger(match, self._look)
+            return False
+
+        return tick

@@ -1,0 +1,111 @@
+"""A person drives a robot: from a page's commands to the robot's, and to a stop where they no longer come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import hypot
+from typing import Literal
+
+from robobt.world.command import RobotCommand
+from robobt.world.geometry import to_robot_frame
+from robobt.world.rules import own_side
+from robobt.world.state import Frame, RobotState
+
+STOPS_IN = 0.2
+"""A robot whose page falls silent is stopped in this time [s]."""
+
+_SLACK = 0.02
+"""What a tick may be late [s]."""
+
+HELD_UP = 0.1
+"""A command that took so much longer on its way than others did is as old [s]."""
+
+_WINDOW = 30.0
+"""How long the shortest way is remembered, for clocks drift apart [s]."""
+
+Frames = Literal["field", "robot"]
+
+
+class HandDriver:
+    """Drives one robot as its page says: called at every tick, it returns the command.
+
+    Args:
+        clock: the time by which commands are as old as they are [s].
+        period: from one tick to the next [s].
+
+    Attributes:
+        deadline: a command that is older than this counts no more [s].
+    """
+
+    def __init__(self, clock: Callable[[], float], period: float) -> None:
+        self._clock = clock
+        # The last tick that still follows a command lasts for a period.
+        self.deadline = STOPS_IN - period - _SLACK
+        self._wanted: tuple[float, float, float, Frames, bool, float] | None = None
+        self._at = 0.0
+        self._way = _ShortestWay()
+
+    def command(
+        self,
+        sent: float,
+        arrived: float,
+        velocity: tuple[float, float],
+        omega: float,
+        frame: Frames,
+        dribbler: bool,
+        kick: float,
+    ) -> bool:
+        """Take a command; False for one that was held up on its way.
+
+        Args:
+            sent: when the page sent it, by the page's own clock [s].
+            arrived: when it came, by ours [s].
+            velocity: as a share of the robot's top speed, in the field's frame as the page shows it (blue
+                defends -x) or the robot's own.
+            omega: as a share of its top turning rate.
+            frame: which of them.
+            dribbler: whether the dribbler turns.
+            kick: speed of a kick [m/s], 0 for none.
+        """
+        if self._way.excess(arrived, arrived - sent) > HELD_UP:
+            return False
+        self._wanted = (*velocity, omega, frame, dribbler, kick)
+        self._at = arrived
+        return True
+
+    @property
+    def told(self) -> bool:
+        """Whether a command holds now."""
+        return self._wanted is not None and self._clock() <= self._at + self.deadline
+
+    def stop(self) -> None:
+        """Stop the robot until the next command."""
+        self._wanted = None
+
+    def __call__(self, view: Frame, me: RobotState) -> RobotCommand:
+        """Return the command of this tick."""
+        if self._wanted is None or not self.told:
+            return RobotCommand()
+        x, y, omega, frame, dribbler, kick = self._wanted
+        size = max(1.0, hypot(x, y))
+        x, y = x / size * me.limits.max_speed, y / size * me.limits.max_speed
+        if frame == "field":
+            # The page shows blue's view; the command is given in the team's own.
+            side = -own_side(view.team)
+            x, y = to_robot_frame(side * x, side * y, me.heading)
+        return RobotCommand(x, y, omega * me.limits.max_turn, kick, dribbler=dribbler)
+
+
+class _ShortestWay:
+    """The shortest time that anything took on its way lately, the clocks' difference included."""
+
+    def __init__(self) -> None:
+        self._since = float("-inf")
+        self._before = self._now = float("inf")
+
+    def excess(self, at: float, took: float) -> float:
+        """Return by how much this took longer [s]."""
+        if at > self._since + _WINDOW:
+            self._since, self._before, self._now = at, self._now, float("inf")
+        self._now = min(self._now, took)
+        return took - min(self._before, self._now)

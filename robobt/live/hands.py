@@ -1,0 +1,189 @@
+"""What viewers do to a match: they move things, change plays and skills, give the referee's orders."""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Callable
+from typing import Any
+
+from robobt.config.errors import RobobtError
+from robobt.config.yaml import write_yaml
+from robobt.live.driving import HandDriver
+from robobt.live.messages import (
+    Act,
+    AskForm,
+    Drive,
+    GiveOrder,
+    MoveBall,
+    MoveRobot,
+    Play,
+    Release,
+    Rest,
+    Situation,
+    Skill,
+    Take,
+    TakeOff,
+)
+from robobt.live.server import Server
+from robobt.match.loop import Match
+from robobt.match.steering import Steering, SteeringError
+from robobt.plays import PLAYS
+from robobt.tree.parameters import Parameter
+from robobt.world.game import Team
+from robobt.world.state import RobotId
+
+_GRIP = 0.5
+"""What is held is let go when its page says nothing for so long [s]."""
+
+
+class Hands:
+    """Does to one match what messages ask for, and tells the viewers where that cannot be done."""
+
+    def __init__(self, match: Match, server: Server, clock: Callable[[], float]) -> None:
+        self._match, self._server, self._clock = match, server, clock
+        self._steering = Steering(match)
+        self._held: dict[str, tuple[MoveBall | MoveRobot, float]] = {}
+        self._said = self._situations = 0
+        server.tell(
+            movable=self._steering.movable,
+            orders=self._steering.orders,
+            plays=list(PLAYS),
+            form=None,
+            said=None,
+            situation=0,
+            driven=None,
+        )
+        self._driver: HandDriver | None = None
+        self._driven: RobotId | None = None
+
+    def do(self, act: Act, now: float, arrived: float) -> None:
+        """Do it, or say why not; ``arrived`` is when it came."""
+        try:
+            if isinstance(act, Drive | Rest | Take | Release):
+                self._drive(act, arrived)
+            else:
+                self._do(act, now)
+        except RobobtError as error:
+            self.say(str(error))
+
+    def hold(self, now: float) -> None:
+        """Keep what is held where it is held, before the next tick."""
+        for name, (move, since) in list(self._held.items()):
+            if now > since + _GRIP:
+                del self._held[name]
+                continue
+            try:
+                self._move(move)
+            except SteeringError as error:
+                del self._held[name]
+                self.say(str(error))
+
+    def say(self, text: str) -> None:
+        """Tell the viewers something."""
+        self._said += 1
+        self._server.tell(said=[self._said, text])
+
+    def _do(self, act: Act, now: float) -> None:
+        steering = self._steering
+        match act:
+            case MoveBall() | MoveRobot():
+                name = act.robot if isinstance(act, MoveRobot) else "ball"
+                self._move(act)
+                if act.held:
+                    self._held[name] = act, now
+                else:
+                    self._held.pop(name, None)
+            case TakeOff(robot=robot):
+                self._held.pop(robot, None)
+                steering.take_off(_robot(robot))
+            case GiveOrder(order=order, team=team):
+                steering.order(order, team)
+            case AskForm(robot=robot, path=path):
+                self._tell_form(_robot(robot), path)
+            case Play(robot=robot, play=play, params=params):
+                for each in self._meant(act):
+                    steering.play(each, play, params)
+                self._tell_form(_robot(robot), "")
+            case Skill(robot=robot, path=path, params=params):
+                steering.change_skill(_robot(robot), path, params)
+                self._tell_form(_robot(robot), path)
+            case Situation():
+                self._server.situation = write_yaml(steering.situation())
+                self._situations += 1
+                self._server.tell(situation=self._situations)
+
+    def take(self, robot: RobotId) -> None:
+        """Let whoever steers drive a robot."""
+        self.release()
+        self._driver = HandDriver(self._clock, self._match.scenario.period)
+        self._steering.drive(robot, self._driver)
+        self._driven = robot
+        self._server.tell(driven=str(robot))
+
+    def release(self) -> None:
+        """Let the tree of the robot that is driven drive it again."""
+        if self._driven is not None:
+            self._steering.drive(self._driven, None)
+        self._driven = self._driver = None
+        self._server.tell(driven=None)
+
+    @property
+    def driving(self) -> bool:
+        """Whether the page of whoever drives has sent a command."""
+        return self._driver is not None and self._driver.told
+
+    def _drive(self, act: Drive | Rest | Take | Release, arrived: float) -> None:
+        if isinstance(act, Take):
+            self.take(_robot(act.robot))
+        elif isinstance(act, Release):
+            self.release()
+        elif self._driver is None:
+            pass
+        elif isinstance(act, Rest):
+            self._driver.stop()
+        else:
+            velocity = (act.vx, act.vy)
+            self._driver.command(act.at, arrived, velocity, act.omega, act.frame, act.dribbler, act.kick)
+
+    def _move(self, move: MoveBall | MoveRobot) -> None:
+        if isinstance(move, MoveBall):
+            self._steering.move_ball(move.x, move.y, move.vx, move.vy, move.held)
+        else:
+            self._steering.move_robot(_robot(move.robot), move.x, move.y, move.heading, move.held)
+
+    def _meant(self, act: Play) -> list[RobotId]:
+        robot = _robot(act.robot)
+        if not act.team:
+            return [robot]
+        keeper = self._match.scenario.goalkeepers().get(robot.team)
+        players = [player.robot for player in self._match.players]
+        return [it for it in players if it.team is robot.team and it.number != keeper]
+
+    def _tell_form(self, robot: RobotId, path: str) -> None:
+        fields = [_field(parameter, value) for parameter, value in self._steering.parameters(robot, path)]
+        setup = self._steering.setup(robot)
+        self._server.tell(form={"robot": str(robot), "path": path, "play": setup.play, "fields": fields})
+
+
+def _robot(name: str) -> RobotId:
+    team, _, number = name.partition(" ")
+    return RobotId(Team(team), int(number))
+
+
+def _field(parameter: Parameter, value: Any) -> dict[str, Any]:
+    """Describe a parameter for a form: how it is entered, and what it is now."""
+    hint = parameter.hint
+    if typing.get_origin(hint) is typing.Annotated:
+        hint = typing.get_args(hint)[0]
+    kinds: dict[object, str] = {bool: "switch", int: "integer", float: "number", str: "text"}
+    entered = kinds.get(hint, "data")
+    choices: list[Any] = []
+    if typing.get_origin(hint) is typing.Literal:
+        entered, choices = "choice", list(typing.get_args(hint))
+    return {
+        "name": parameter.name,
+        "type": parameter.kind,
+        "entered": entered,
+        "choices": choices,
+        "value": value,
+    }

@@ -1,0 +1,66 @@
+"""The files of the live page over HTTP, with headers that let it load and ask nothing else."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from http import HTTPStatus
+from importlib.resources import files
+from pathlib import PurePosixPath
+
+from websockets.datastructures import Headers
+from websockets.http11 import Response
+
+from robobt.live.page_files import page_text
+
+_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+_HEAD = '<link rel="stylesheet" href="viewer.css">\n<link rel="icon" href="data:,">'
+_SCRIPTS = '<script type="module" src="live.js"></script>'
+
+RECORDING_TYPE = "application/vnd.apache.arrow.stream"
+
+
+def file_response(path: str, host: str) -> Response:
+    """Return a file of the page; ``path`` is what follows the token, ``host`` how the server was called."""
+    name = path or "index.html"
+    if name not in _names():
+        return response(HTTPStatus.NOT_FOUND, b"There is no such file.\n", host)
+    return response(HTTPStatus.OK, _content(name), host, _TYPES[PurePosixPath(name).suffix])
+
+
+def response(
+    status: HTTPStatus, body: bytes, host: str, kind: str = "text/plain", attached: str | None = None
+) -> Response:
+    """Return an answer; ``attached`` is the file name of what is to be saved rather than shown."""
+    policy = (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; "
+        f"connect-src 'self' ws://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+    charset = "; charset=utf-8" if kind.startswith("text/") else ""
+    headers = {
+        "Content-Type": f"{kind}{charset}",
+        "Content-Length": str(len(body)),
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Cache-Control": "no-store",
+        "Connection": "close",
+    }
+    if attached is not None:
+        headers["Content-Disposition"] = f'attachment; filename="{attached}"'
+    return Response(status.value, status.phrase, Headers(headers), body)
+
+
+@lru_cache(maxsize=1)
+def _names() -> frozenset[str]:
+    there = {each.name for each in files("robobt.live").joinpath("page").iterdir()}
+    return frozenset({name for name in there if name.endswith((".js", ".css"))} | {"index.html"})
+
+
+@lru_cache(maxsize=32)
+def _content(name: str) -> bytes:
+    if name != "index.html":
+        return page_text(name).encode()
+    page = page_text("viewer.html").replace("{{title}}", "robobt live")
+    return page.replace("{{head}}", _HEAD).replace("{{scripts}}", _SCRIPTS).encode()

@@ -1,0 +1,228 @@
+"""What a page may ask for: messages in JSON, small, few and of known forms."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, JsonValue, TypeAdapter, ValidationError
+
+from robobt.config.validation import Settings
+from robobt.live.driving import Frames
+from robobt.match.referee.by_hand import Order
+from robobt.world.game import Team
+
+MOST_BYTES = 4096
+"""The longest message [bytes]."""
+
+RATE, BURST = 200.0, 400.0
+"""Messages a second that a page may send for long, and at once."""
+
+MOST_REFUSED = 50
+"""Messages that are none after which a page is no longer listened to."""
+
+SLOWEST, FASTEST = 0.05, 20.0
+
+
+class Pause(Settings):
+    """Stop the match where it is, or let it go on."""
+
+    do: Literal["pause"]
+    on: bool
+
+
+class Step(Settings):
+    """Play so many ticks and pause."""
+
+    do: Literal["step"]
+    ticks: int = Field(1, ge=1, le=1000)
+
+
+class Speed(Settings):
+    """Play at so many times real time."""
+
+    do: Literal["speed"]
+    factor: float = Field(ge=SLOWEST, le=FASTEST)
+
+
+class Reset(Settings):
+    """Start the scenario anew, with the next seed or the same."""
+
+    do: Literal["reset"]
+    next: bool = True
+
+
+class Steer(Settings):
+    """Become the viewer that steers."""
+
+    do: Literal["steer"]
+
+
+class Past(Settings):
+    """Send what is kept of the match."""
+
+    do: Literal["past"]
+
+
+_Metres = Annotated[float, Field(ge=-20, le=20)]
+_MetresPerSecond = Annotated[float, Field(ge=-15, le=15)]
+_Robot = Annotated[str, Field(pattern=r"^(blue|yellow) \d{1,2}$")]
+_Parameters = Annotated[dict[str, JsonValue], Field(max_length=50)]
+
+
+class MoveBall(Settings):
+    """Put the ball somewhere, with a velocity; ``held`` until it is let go."""
+
+    do: Literal["ball"]
+    x: _Metres
+    y: _Metres
+    vx: _MetresPerSecond = 0.0
+    vy: _MetresPerSecond = 0.0
+    held: bool = False
+
+
+class MoveRobot(Settings):
+    """Put a robot somewhere, in world coordinates; ``held`` until it is let go."""
+
+    do: Literal["robot"]
+    robot: _Robot
+    x: _Metres
+    y: _Metres
+    heading: float = Field(ge=-7, le=7)
+    held: bool = False
+
+
+class TakeOff(Settings):
+    """Take a robot off the field."""
+
+    do: Literal["off"]
+    robot: _Robot
+
+
+class GiveOrder(Settings):
+    """Give an order as the referee."""
+
+    do: Literal["order"]
+    order: Order
+    team: Team | None = None
+
+
+class AskForm(Settings):
+    """Tell the parameters of a robot's play, or of a node of its tree."""
+
+    do: Literal["form"]
+    robot: _Robot
+    path: str = Field("", max_length=2000)
+
+
+class Play(Settings):
+    """Let a robot, or with ``team`` all of its team but the goalkeeper, play something."""
+
+    do: Literal["play"]
+    robot: _Robot
+    play: str = Field(max_length=400)
+    params: _Parameters = Field(default_factory=dict)
+    team: bool = False
+
+
+class Skill(Settings):
+    """Give a skill of a robot's tree other parameters."""
+
+    do: Literal["skill"]
+    robot: _Robot
+    path: str = Field(max_length=2000)
+    params: _Parameters
+
+
+class Situation(Settings):
+    """Make a scenario of the present situation."""
+
+    do: Literal["situation"]
+
+
+class Take(Settings):
+    """Drive a robot in place of its tree."""
+
+    do: Literal["take"]
+    robot: _Robot
+
+
+class Release(Settings):
+    """Let the tree drive the robot again."""
+
+    do: Literal["release"]
+
+
+class Rest(Settings):
+    """Stop the robot that is driven, as where the page has lost the focus."""
+
+    do: Literal["rest"]
+
+
+_Share = Annotated[float, Field(ge=-1, le=1)]
+
+
+class Drive(Settings):
+    """What the robot that is driven is to do; ``at`` is when the page sent it, by its own clock [s].
+
+    Velocity and turning rate are shares of what the robot can.
+    """
+
+    do: Literal["drive"]
+    at: float = Field(ge=0, le=1e10)
+    vx: _Share
+    vy: _Share
+    omega: _Share
+    frame: Frames
+    dribbler: bool = False
+    kick: float = Field(0.0, ge=0, le=8)
+
+
+Act = (
+    Pause
+    | Step
+    | Speed
+    | Reset
+    | MoveBall
+    | MoveRobot
+    | TakeOff
+    | GiveOrder
+    | AskForm
+    | Play
+    | Skill
+    | Situation
+    | Take
+    | Release
+    | Rest
+    | Drive
+)
+"""What only the viewer that steers may ask for: it acts on the match."""
+
+Message = Act | Steer | Past
+
+_READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="do")])
+
+
+def read(data: str | bytes) -> Message | None:
+    """Return the message, None where it is none."""
+    if len(data) > MOST_BYTES:
+        return None
+    try:
+        return _READER.validate_json(data)
+    except ValidationError:
+        return None
+
+
+class Allowance:
+    """How many messages may still come: a bucket that fills again with time."""
+
+    def __init__(self, now: float) -> None:
+        self._left, self._at = BURST, now
+
+    def take(self, now: float) -> bool:
+        """Take one at ``now`` [s]; whether there was one."""
+        self._left = min(BURST, self._left + RATE * (now - self._at))
+        self._at = now
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True

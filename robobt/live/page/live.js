@@ -1,0 +1,158 @@
+/* The page of a match that is being played. */
+import { $, make, put, words } from "./base.js";
+import { connect, on, send, VERSION } from "./link.js";
+import { append, endTime, forget, frameOf, match, openMatch, startTime, state } from "./match.js";
+import { buildFigures, buildHead, chip, choose } from "./panel.js";
+import { delays, showDriving } from "./drive.js";
+import { bridge, showSteering } from "./steering.js";
+import { go, refresh, remote, showPlaying, showSpeed, start, toNow } from "./player.js";
+
+const KEPT = 300, LAG = .04;
+/* How the match goes, as the server tells it. */
+let now = { paused: false, speed: 1, steers: false, viewers: 1, over: null };
+let header = null, link = "connecting";
+/* Chunks that came before those of the past were all there. */
+let past = null, later = null;
+/* From a tick to its picture: times [ms] of the last ticks, for whoever measures. */
+const measured = { painted: [], frames: 0, matches: 0, delays };
+window.robobt = { measured, match, state };
+let unpainted = [];
+
+/* ---------------------------------------------------------------- what is said */
+const told = make("div", "told");
+told.setAttribute("role", "status");
+let telling = 0;
+export const say = text => {
+  put(told, text);
+  clearTimeout(telling);
+  telling = setTimeout(() => put(told, ""), 6000);
+};
+export const act = message => {
+  if (!now.steers) { say("Another viewer steers. Press “Steer” to do it here."); return false; }
+  return send(message);
+};
+
+Object.assign(bridge, { act, say, now: () => now });
+addEventListener("picked", event => choose(event.detail));
+
+/* ---------------------------------------------------------------- controls */
+const control = (name, title, action) => {
+  const button = make("button", "toggle", name);
+  button.title = title;
+  button.addEventListener("click", action);
+  return button;
+};
+const nowButton = control("Now", "Back to the newest tick (End)", toNow);
+const steerButton = control("Steer", "Let this page act on the match, and no other", () => send({ do: "steer" }));
+const nextButton = control("Next seed", "Start the scenario anew with the next seed", () => act({ do: "reset" }));
+const againButton = control("Again", "Start the scenario anew with the same seed", () => act({ do: "reset", next: false }));
+const saveButton = make("a", "toggle", "Save recording");
+saveButton.title = "Save what was seen, up to five minutes, as a recording";
+saveButton.href = "recording.robobt.arrows";
+const showHead = () => {
+  const chips = [chip(link === "found" ? now.paused ? "paused" : "live" : link, undefined, link !== "found")];
+  if (now.over) chips.push(chip("over", words(now.over).toLowerCase()));
+  if (now.viewers > 1) chips.push(chip("viewers", String(now.viewers)));
+  buildHead(chips);
+};
+const count = make("div", "count");
+count.setAttribute("role", "status");
+document.querySelector(".stage").append(count);
+const showState = () => {
+  put(count, now.countdown || ""); count.classList.toggle("words", (now.countdown || "").length > 2);
+  showHead(); showSteering(now); showDriving(now);
+  nowButton.hidden = state.follow;
+  steerButton.setAttribute("aria-pressed", String(now.steers));
+  for (const button of [nextButton, againButton]) button.disabled = !now.steers;
+  nextButton.setAttribute("aria-pressed", String(Boolean(now.over)));
+  showPlaying(state.follow ? !now.paused : state.playing);
+  showSpeed(state.follow ? now.speed : state.speed);
+};
+/* Without the wheel, to pause is to look at one moment while the match goes on. */
+remote.toggle = () => now.steers ? send({ do: "pause", on: !now.paused }) : go(state.time);
+remote.step = () => act({ do: "step" });
+remote.setSpeed = speed => act({ do: "speed", factor: speed });
+addEventListener("follow", showState);
+
+/* ---------------------------------------------------------------- messages */
+const open = () => {
+  openMatch(header);
+  for (const chunk of past || []) append(chunk);
+  for (const chunk of later || []) append(chunk);
+  start();
+  if (state.follow) state.time = endTime();
+  showState();
+};
+on("hello", message => {
+  if (message.version !== VERSION) { link = "this page is out of date: load it anew"; showHead(); return; }
+  header = message; past = null; later = message.past ? [] : null; unpainted = [];
+  if (message.past) send({ do: "past" });
+  state.follow = true; measured.matches++;
+  openMatch(header); buildFigures({}); start(); showState();
+});
+on("now", message => {
+  for (const chunk of message.chunks) {
+    append(chunk);
+    if (later) later.push(chunk);
+  }
+  const last = message.chunks[message.chunks.length - 1];
+  if (last) unpainted.push({ time: endTime(), at: last.at });
+});
+on("past", message => {
+  past = [...past || [], ...message.chunks];
+  if (!message.done) return;
+  open();
+  past = later = null;
+});
+let heard = 0;
+on("state", message => {
+  now = message;
+  if (now.said && now.said[0] > heard) say(now.said[1]);
+  heard = now.said ? now.said[0] : 0;
+  showState();
+});
+on("found", () => { link = "found"; });
+on("lost", () => { link = "connection lost"; if (header) showHead(); else say("The match is not there."); });
+
+/* ---------------------------------------------------------------- time */
+let before = 0, shownFrames = -1, refreshed = 0, listed = -1;
+/* Time goes on evenly and a little behind the newest tick, for ticks come in no even beat. */
+const follow = passed => {
+  const end = endTime(), behind = end - state.time;
+  if (behind <= 0 || behind > .25 * Math.max(1, now.speed)) state.time = end;
+  else state.time = Math.min(end, state.time + passed * now.speed * (behind > LAG * now.speed ? 1.25 : 1));
+};
+const painted = () => {
+  const time = performance.timeOrigin + performance.now();
+  unpainted = unpainted.filter(each => {
+    if (each.time > state.time + 1e-4) return true;
+    measured.painted.push(time - each.at);
+    return false;
+  });
+  measured.painted.splice(0, measured.painted.length - 2000);
+};
+const beat = time => {
+  const passed = Math.min(.25, Math.max(0, (time - before) / 1000));
+  before = time;
+  if (header && match.frames) {
+    if (endTime() - startTime() > KEPT + 10) { forget(frameOf(endTime() - KEPT)); state.time = Math.max(state.time, startTime()); }
+    const earlier = state.time;
+    if (state.follow) follow(passed);
+    if (state.time !== earlier || shownFrames !== match.frames && state.follow) {
+      shownFrames = match.frames;
+      state.show();
+      measured.frames++;
+      setTimeout(painted);
+    }
+    if (time > refreshed + 250) { refreshed = time; if (listed !== match.frames) { listed = match.frames; refresh(); if (!state.follow && !state.playing) state.show(); } }
+  }
+  requestAnimationFrame(beat);
+};
+
+const group = make("div", "group live");
+group.append(nowButton, steerButton, againButton, nextButton, saveButton);
+document.querySelector(".keys").insertBefore(group, document.querySelector(".hint"));
+document.querySelector(".tools").append(told);
+openMatch({ scenario: "", trial: 0, seed: "", robobt: "", teams: {}, robots: [], field: { length: 9, width: 6, margin: .3, goal_line_margin: .3, goal_width: 1, goal_depth: .18, center_radius: .5, defense_depth: 1, defense_width: 2 } });
+connect();
+requestAnimationFrame(beat);

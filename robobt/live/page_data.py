@@ -1,0 +1,235 @@
+"""What the viewer's page is given: what stays the same, and chunks of ticks.
+
+A replay page has one chunk, all of the recording; a live page is sent one after the other. All
+places are in world coordinates; times a robot's ``view``, 1 or -1, they are in that of its own
+team, in which its outputs are. Arrays are little-endian and in base64: ``times`` float32 [s];
+``ball`` int16 x, y [mm], speed [mm/s], height [mm]; a robot's ``rows`` int16 x, y [mm], heading
+[mrad], speed [mm/s]; -32768 off the field. Changes are flat lists whose frame numbers count from the
+change before, in a chunk from its own first frame; texts and letters are places in the chunk's tables.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Iterator
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import JsonValue
+
+from robobt.match.recording import Recording, RecordingHeader, RobotFlag
+from robobt.match.recording.compared import CANDIDATES, Plans, Written, candidates
+from robobt.match.recording.recording import Timeline
+from robobt.match.recording.stores import plain
+from robobt.skills.store import GoalLine
+from robobt.world.game import GameState, Team
+from robobt.world.rules import own_side
+
+_ABSENT = -(2**15)
+_SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
+_GOAL_LINE = "goal_line"
+
+
+def header_data(header: RecordingHeader, paths: bool = False) -> dict[str, object]:
+    """Return what stays the same, as JSON can hold it; with ``paths`` nodes have their ids, for who edits."""
+    return {
+        "scenario": header.scenario,
+        "trial": header.trial,
+        # As text: a seed may have more digits than a script's numbers hold.
+        "seed": str(header.seed),
+        "robobt": header.robobt,
+        "field": header.field.model_dump(mode="json"),
+        "teams": dict(header.teams),
+        "robots": [
+            {
+                "team": robot.team,
+                "view": int(-own_side(robot.id.team)),
+                "number": robot.number,
+                "play": robot.play,
+                "radius": robot.radius,
+                "mouth": robot.mouth,
+                "tree": [
+                    [node.name, node.type, node.kind, node.depth, node.glyph, node.detail, node.path][
+                        : 7 if paths else 6
+                    ]
+                    for node in robot.tree
+                ],
+            }
+            for robot in header.robots
+        ],
+    }
+
+
+class ChunkEncoder:
+    """Makes the chunks of one match, in their order."""
+
+    def __init__(self, header: RecordingHeader) -> None:
+        self._header = header
+        self._written: dict[str, dict[str, JsonValue]] = {str(robot.id): {} for robot in header.robots}
+        self._plans = {team.value: Plans() for team in Team}
+
+    def chunk(
+        self,
+        ticks: Recording,
+        statuses: list[Timeline[str]],
+        feedback: list[Timeline[dict[int, str]]],
+        stride: int = 1,
+    ) -> dict[str, object]:
+        """Return the next ticks, of which every ``stride``-th is shown, as JSON can hold it.
+
+        ``statuses`` and ``feedback`` are those of the ticks' trees, as far as they are shown.
+        """
+        texts, letters = _Table(), _Table()
+        frames = len(ticks.times[::stride])
+        robots = []
+        for slot, robot in enumerate(self._header.robots):
+            rows = ticks.truth.robots[::stride, slot]
+            speed = np.hypot(rows[:, 3], rows[:, 4])
+            written = ticks.written.get(str(robot.id), [])
+            robots.append(
+                {
+                    "rows": _int16(np.column_stack((rows[:, 0], rows[:, 1], rows[:, 2], speed)) * 1000.0),
+                    "flags": _steps(_runs((ticks.flags[::stride, slot] & _SHOWN).tolist()), frames, 1),
+                    "statuses": _steps(
+                        ((tick, letters[word]) for tick, word in statuses[slot]), frames, stride
+                    ),
+                    "feedback": _feedback_steps(feedback[slot], texts, frames, stride),
+                    "outputs": _steps(self._outputs(str(robot.id), written, texts), frames, stride),
+                    "goal_line": _steps(_goal_lines(written, texts), frames, stride),
+                    "candidates": _steps(candidates(written), frames, stride),
+                }
+            )
+        ball = ticks.truth.ball[::stride]
+        ball_rows = np.column_stack((ball[:, 0], ball[:, 1], np.hypot(ball[:, 2], ball[:, 3]), ball[:, 4]))
+        return {
+            "frames": frames,
+            "times": _base64(ticks.times[::stride].astype("<f4").tobytes()),
+            "ball": _int16(ball_rows * 1000.0),
+            "robots": robots,
+            "plans": {
+                team: _steps(known.follow(ticks.written.get(team, [])), frames, stride)
+                for team, known in self._plans.items()
+            },
+            "games": _steps(((tick, _game(game)) for tick, game in ticks.games), frames, stride),
+            "events": [
+                [
+                    event.time,
+                    event.kind,
+                    event.team,
+                    None if event.robot is None else event.robot.number,
+                    event.text,
+                ]
+                for event in sorted(ticks.events, key=lambda event: event.time)
+            ],
+            "texts": texts.entries,
+            "letters": letters.entries,
+        }
+
+    def _outputs(self, robot: str, changes: Written, texts: _Table) -> Iterator[tuple[int, int]]:
+        """Give what the skills of a robot have written so far, as one text whenever that changed."""
+        written = self._written[robot]
+        for tick, change in changes:
+            written.update(change)
+            parts = [
+                f"{entry} {_say(value)}"
+                for entry, value in written.items()
+                if value is not None and entry not in (_GOAL_LINE, CANDIDATES)
+            ]
+            yield tick, texts[" · ".join(parts)]
+
+
+class _Table:
+    """Texts that come again and again, by number."""
+
+    def __init__(self) -> None:
+        self.entries: list[str] = []
+        self._places: dict[str, int] = {}
+
+    def __getitem__(self, text: str) -> int:
+        place = self._places.setdefault(text, len(self.entries))
+        if place == len(self.entries):
+            self.entries.append(text)
+        return place
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+def _int16(values: NDArray[np.floating]) -> str:
+    most = 2.0**15 - 1.0
+    known = np.isfinite(values).all(axis=-1, keepdims=True)
+    whole = np.rint(np.clip(np.nan_to_num(values), -most, most))
+    return _base64(np.where(known, whole, _ABSENT).astype("<i2").tobytes())
+
+
+def _runs(values: list[int]) -> Iterable[tuple[int, int]]:
+    before = None
+    for place, value in enumerate(values):
+        if value != before:
+            before = value
+            yield place, value
+
+
+def _steps(changes: Iterable[tuple[int, object]], frames: int, stride: int) -> list[object]:
+    """Return changes as a flat list of frame differences and values; the last of a frame counts."""
+    by_frame: dict[int, object] = {}
+    for tick, value in changes:
+        # A change between two shown frames is seen from the second one on.
+        by_frame[min(frames - 1, -(-tick // stride))] = value
+    flat: list[object] = []
+    before = 0
+    for frame, value in by_frame.items():
+        flat += [frame - before, value]
+        before = frame
+    return flat
+
+
+def _feedback_steps(changes: Timeline[dict[int, str]], texts: _Table, frames: int, stride: int) -> list[int]:
+    by_frame: dict[int, dict[int, str]] = {}
+    for tick, said in changes:
+        by_frame.setdefault(min(frames - 1, -(-tick // stride)), {}).update(said)
+    flat, before = [], 0
+    for frame, said in by_frame.items():
+        for node, text in said.items():
+            flat += [frame - before, node, texts[text]]
+            before = frame
+    return flat
+
+
+def _goal_lines(changes: Written, texts: _Table) -> Iterator[tuple[int, tuple[JsonValue, int] | None]]:
+    """Give what a robot thought of the goal line: half its length [mm] and its text, None for nothing."""
+    for tick, change in changes:
+        if _GOAL_LINE not in change:
+            continue
+        try:
+            line = GoalLine(**change[_GOAL_LINE])  # type: ignore[arg-type]
+            reach = float(line.reach) * 1000.0
+            if not isfinite(reach):
+                raise ValueError("reaches to nowhere")
+            found = plain(reach), texts[_base64(base64.b64decode(line.chances))]
+        except (TypeError, ValueError):
+            # Some other skill's idea of it, which the page shows nothing of.
+            yield tick, None
+        else:
+            yield tick, found
+
+
+def _say(value: JsonValue) -> str:
+    if isinstance(value, dict):
+        return ", ".join([f"{key} {_say(item)}" for key, item in value.items()])
+    if isinstance(value, list):
+        return "(" + ", ".join(map(_say, value)) + ")"
+    return f"{value:.3g}" if isinstance(value, float) else "none" if value is None else str(value)
+
+
+def _game(game: GameState) -> dict[str, object]:
+    return {
+        "command": game.command.name,
+        "blue": game.blue_score,
+        "yellow": game.yellow_score,
+        "restart": game.restart,
+        "team": game.restart_team,
+        "placement": plain(game.placement),
+    }

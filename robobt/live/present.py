@@ -1,0 +1,36 @@
+"""All that holds at the newest tick, as it follows from what has changed so far."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+class Present:
+    """Gathers changes by the names of :class:`~robobt.match.recording.stream.TickChanges`."""
+
+    def __init__(self) -> None:
+        self._statuses: dict[str, str] = {}
+        self._feedback: dict[str, dict[int, str]] = {}
+        self._written: dict[str, dict[str, Any]] = {}
+        self._lasting: dict[str, Any] = {}
+
+    def follow(self, changes: Mapping[str, Any]) -> None:
+        """Take the changes of the next tick."""
+        self._statuses.update(changes.get("statuses", ()))
+        for robot, said in changes.get("feedback", {}).items():
+            self._feedback.setdefault(robot, {}).update(said)
+        for owner, values in changes.get("written", {}).items():
+            self._written.setdefault(owner, {}).update(values)
+        for name in ("game", "touch"):
+            if name in changes:
+                self._lasting[name] = changes[name]
+
+    def changes(self) -> dict[str, Any]:
+        """Return all that holds, as the changes of a first tick would tell it."""
+        told: dict[str, Any] = {
+            "statuses": dict(self._statuses),
+            "feedback": {robot: dict(said) for robot, said in self._feedback.items()},
+            "written": {owner: dict(values) for owner, values in self._written.items()},
+        }
+        return {**{name: value for name, value in told.items() if value}, **self._lasting}

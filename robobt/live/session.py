@@ -1,0 +1,250 @@
+"""Plays a match at the pace that viewers ask for, and does to it what they ask for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from math import ceil
+from queue import Empty
+
+from robobt.live.hands import Hands
+from robobt.live.messages import Act, Pause, Reset, Speed, Step
+from robobt.live.server import Server
+from robobt.live.stream import Stream
+from robobt.match.loop import Match
+from robobt.match.recording.capture import Capture, CapturedTick
+from robobt.match.results.results import MatchResult
+from robobt.signals import check
+
+LOOK = 1.5
+"""How long the end of a match is shown before the next [s]."""
+
+LATE = 0.005
+"""A tick that begins later than this after it was due counts as late [s]."""
+
+_GIVE_UP = 0.25
+"""By how much a match may fall behind before it no longer tries to catch up [s]."""
+
+_LOOK = 0.05
+"""How often a match that is paused or over looks for what viewers ask for [s]."""
+
+
+class Live:
+    """Plays matches for the viewers of a server.
+
+    Args:
+        server: where they watch.
+        speed: times real time, as fast as can be where it is infinite.
+        paused: whether it waits for a viewer to let it go.
+        clock: the time in seconds, that of the server's inbox.
+        sleep: waits for so many seconds.
+
+    Attributes:
+        ticks: ticks that were played at their time.
+        late: how many of them began late, by more than :data:`LATE`.
+    """
+
+    def __init__(
+        self,
+        server: Server,
+        speed: float = 1.0,
+        paused: bool = False,
+        clock: Callable[[], float] = time.perf_counter,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._server = server
+        self._speed, self._paused = speed, paused
+        self._clock, self._sleep = clock, sleep
+        self._steps = 0
+        self._due = 0.0
+        self._reset: Reset | None = None
+        self._ended = self._paced = False
+        self._capture: Capture | None = None
+        self._stream: Stream | None = None
+        self._hands: Hands | None = None
+        self.ticks = self.late = 0
+
+    def play_on(self, make: Callable[[int], Match]) -> None:
+        """Play one match after the other as viewers ask for them, until :meth:`end`.
+
+        ``make`` is given the trial, which tells the seed.
+        """
+        trial = 0
+        while not self._ended:
+            with make(trial) as match:
+                if self.play(match):
+                    # What is recorded is whole, whatever becomes of the page.
+                    match.close()
+                    self.wait(match)
+            if self._reset is not None:
+                trial += self._reset.next
+
+    def end(self) -> None:
+        """End what is played and shown; may be called by any thread."""
+        self._ended = True
+
+    def play(self, match: Match) -> bool:
+        """Play a match; whether it came to its end, which a viewer may not have wanted to see.
+
+        The match is left open.
+        """
+        self.begin(match)
+        while self.tick(match):
+            pass
+        return match.outcome is not None
+
+    def conduct(self, match: Match) -> MatchResult:
+        """Play a match to its end, show that for a moment, and return the result.
+
+        Raises:
+            KeyboardInterrupt: :meth:`end` was called before it was over.
+        """
+        began = self._clock()
+        with match:
+            self.begin(match)
+            while match.outcome is None:
+                if self._ended:
+                    raise KeyboardInterrupt
+                # Its seed is that of its trial: no other is played in its place.
+                self._reset = None
+                self.tick(match)
+            result = match.result(self._clock() - began)
+        self.linger(match, LOOK)
+        return result
+
+    def begin(self, match: Match) -> Hands:
+        """Show a match, before its first tick, and return what viewers do to it."""
+        self._hands = hands = Hands(match, self._server, self._clock)
+        self._show(match)
+        self._reset = None
+        self._tell(over=None, countdown=None)
+        self._due = self._clock()
+        return hands
+
+    def tick(self, match: Match) -> bool:
+        """Play one tick when it is due and viewers want it; False when it is over or not wanted."""
+        assert self._hands is not None
+        self._obey(match)
+        self._paced = match.world.paced
+        while (
+            self._paused and not self._steps and not self._paced and self._reset is None and not self._ended
+        ):
+            self._idle(match)
+        if self._reset is not None or self._ended:
+            return False
+        self._hands.hold(self._clock())
+        if not match.tick():
+            self._tell(over=match.outcome and match.outcome.value)
+            return False
+        if self._steps:
+            self._steps -= 1
+        self._pace(match.scenario.period)
+        return True
+
+    def count_down(self, match: Match, seconds: float) -> None:
+        """Show the start and count down once somebody is there to drive, from anew whenever nobody is."""
+        assert self._hands is not None
+        assert self._stream is not None
+        truth = match.world.truth().packed()
+        self._stream.take(CapturedTick(0.0, truth, truth, {}, [], [], {}))
+        end = None
+        while not self._ended:
+            self._idle(match)
+            now = self._clock()
+            if not self._hands.driving:
+                end = None
+                self._tell(countdown="Open this page and click into it to drive")
+                continue
+            end = now + seconds if end is None else end
+            if now >= end:
+                break
+            self._tell(countdown=str(ceil(end - now)))
+        self._tell(countdown=None)
+        self._due = self._clock()
+
+    def forget_reset(self) -> None:
+        """Go on with the match although a viewer asked for another."""
+        self._reset = None
+
+    def linger(self, match: Match, seconds: float) -> None:
+        """Show a match that is over for a while."""
+        end = self._clock() + seconds
+        while self._clock() < end and not self._ended:
+            self._idle(match)
+
+    @property
+    def ended(self) -> bool:
+        """Whether :meth:`end` was called."""
+        return self._ended
+
+    def wait(self, match: Match) -> None:
+        """Show a match that is over until a viewer asks for another."""
+        while self._reset is None and not self._ended:
+            self._idle(match)
+
+    @property
+    def _waits(self) -> bool:
+        """Whether the next tick waits for a viewer."""
+        return self._paused and not self._steps and not self._paced
+
+    def _idle(self, match: Match) -> None:
+        """Wait a moment for what viewers ask for."""
+        check()
+        with suppress(Empty):
+            self._do(*self._server.inbox.get(timeout=_LOOK), match)
+        self._due = self._clock()
+
+    def _obey(self, match: Match) -> None:
+        """Do what viewers have asked for by now."""
+        with suppress(Empty):
+            while True:
+                self._do(*self._server.inbox.get_nowait(), match)
+
+    def _show(self, match: Match) -> None:
+        """Show the match as it is captured now."""
+        capture = match.capture()
+        if capture is not self._capture:
+            self._capture, self._stream = capture, Stream(capture)
+            self._server.show(self._stream)
+
+    def _do(self, act: Act, arrived: float, match: Match) -> None:
+        if match.world.paced and isinstance(act, Pause | Step | Speed) and self._hands is not None:
+            self._hands.say(
+                "A field waits for nobody: here the match cannot be paused, stepped or slowed down."
+            )
+            return
+        match act:
+            case Pause(on=on):
+                self._paused, self._steps = on, 0
+            case Step(ticks=ticks):
+                self._paused, self._steps = True, self._steps + ticks
+            case Speed(factor=factor):
+                self._speed = factor
+            case Reset():
+                self._reset = act
+            case _ if self._hands is not None:
+                self._hands.do(act, self._clock(), arrived)
+                # Another tree may have begun another capture.
+                self._show(match)
+                return
+        self._tell()
+
+    def _tell(self, **more: object) -> None:
+        """Tell the viewers how it goes."""
+        self._server.tell(paused=self._paused, speed=self._speed, **more)
+
+    def _pace(self, period: float) -> None:
+        """Wait for the time of the next tick."""
+        if self._paced:
+            # The world waits by itself.
+            return
+        self._due += period / self._speed
+        now = self._clock()
+        if now < self._due:
+            self._sleep(self._due - now)
+            now = self._clock()
+        self.ticks += 1
+        self.late += now > self._due + LATE
+        if now > self._due + _GIVE_UP:
+            self._due = now

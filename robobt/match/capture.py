@@ -1,0 +1,152 @@
+"""What is recorded and shown of a match: one capture of it, and the file it is written to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from robobt.match.ends import Outcome
+from robobt.match.players import Player
+from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
+from robobt.match.recording.capture import Capture
+from robobt.match.scenario.scenario import Scenario
+from robobt.signals import uninterrupted
+from robobt.tree import TreeRunner
+from robobt.world.command import RobotCommand
+from robobt.world.game import Team
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
+from robobt.world.protocol import ReportedEvent, World
+from robobt.world.state import Frame, RobotId
+
+_ENDING = ".robobt.arrows"
+
+
+class MatchCapture:
+    """Captures a match from when somebody asks for it, at once where it is recorded.
+
+    Args:
+        scenario: what is played.
+        trial: which repetition.
+        seed: the trial's.
+        world: where it is played.
+        players: the robots.
+        record: file to record it to, None for none.
+
+    Raises:
+        OSError: the recording cannot be written.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        trial: int,
+        seed: int,
+        world: World,
+        players: Sequence[Player],
+        record: Path | None,
+    ) -> None:
+        self._scenario, self._trial, self._seed = scenario, trial, seed
+        self._world, self._players = world, players
+        self._plays = {robot: setup.play for robot, setup in scenario.robots}
+        self._record, self._parts = record, 0
+        self._capture: Capture | None = None
+        self._recorder: Recorder | None = None
+        if record is not None:
+            self.get()
+
+    def get(self) -> Capture:
+        """Return what captures every tick from now on."""
+        if self._capture is None:
+            self._capture = self._begin()
+        return self._capture
+
+    def change_tree(self, before: TreeRunner, player: Player, play: str) -> None:
+        """Capture the other tree that a robot has now.
+
+        A tree of other nodes begins another capture, and where the match is recorded another
+        file: ``match-2`` after ``match``.
+        """
+        self._plays[player.robot] = play
+        if self._capture is not None and not self._capture.change_tree(before, player.runner):
+            self.close(None)
+            self._capture = self._begin()
+
+    def tick(
+        self,
+        truth: Frame,
+        commands: Mapping[RobotId, RobotCommand],
+        observed: Frame,
+        packed: bytes,
+        kicked: Iterable[RobotId],
+        outcome: Outcome | None,
+    ) -> None:
+        """Capture one tick: who kicked at it, and how the match ended where nobody referees."""
+        if self._capture is None:
+            return
+        with uninterrupted:
+            for robot in kicked:
+                self._capture.event("kick", truth.time, robot=robot)
+            if outcome is not None and outcome in _END_EVENTS:
+                kind, team = _END_EVENTS[outcome]
+                self._capture.event(kind, truth.time, team=team)
+            # What a world shows that may differ from the truth is compared when it is written.
+            self._capture.tick(truth, commands, None if self._world.shows_truth else observed, packed)
+
+    def note(self, event: ReportedEvent) -> None:
+        """Capture an event."""
+        if self._capture is not None:
+            self._capture.event(event.kind, event.time, team=event.team, robot=event.robot, text=event.text)
+
+    def close(self, outcome: Mapping[str, object] | None) -> None:
+        """Finish the recording; without an outcome it stays incomplete."""
+        if self._recorder is not None:
+            with uninterrupted, self._recorder as recorder:
+                if outcome is not None:
+                    recorder.close(outcome)
+            self._recorder = None
+
+    def _begin(self) -> Capture:
+        first = self._world.truth()
+        header = RecordingHeader(
+            scenario=self._scenario.name,
+            trial=self._trial,
+            seed=self._seed,
+            period=self._scenario.period,
+            field=first.field,
+            played=self._scenario.model_dump(mode="json"),
+            robots=tuple(
+                RecordedRobot(
+                    team=robot.team,
+                    number=robot.number,
+                    play=self._plays[robot],
+                    limits=_limits_of(robot, first),
+                )
+                for robot, _ in self._scenario.robots
+            ),
+        )
+        capture = Capture(
+            header,
+            {player.robot: player.runner for player in self._players},
+            {player.robot: player.store for player in self._players},
+        )
+        if self._record is not None:
+            self._parts += 1
+            path = self._record
+            if self._parts > 1:
+                path = path.with_name(f"{path.name.removesuffix(_ENDING)}-{self._parts}{_ENDING}")
+            with uninterrupted:
+                self._recorder = Recorder(path, capture)
+        return capture
+
+
+def _limits_of(robot: RobotId, frame: Frame) -> RobotLimits:
+    state = frame.seen_by(robot.team).robot(robot.number)
+    return DEFAULT_LIMITS if state is None else state.limits
+
+
+_END_EVENTS: Mapping[Outcome, tuple[str, Team | None]] = {
+    Outcome.GOAL_BLUE: ("goal", Team.BLUE),
+    Outcome.GOAL_YELLOW: ("goal", Team.YELLOW),
+    Outcome.SAVED: ("save", None),
+    Outcome.OUT: ("out", None),
+}

@@ -1,0 +1,94 @@
+"""Makes the rows of a recording of captured ticks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import pyarrow as pa
+
+from robobt.match.recording.capture import Capture, CapturedTick
+from robobt.match.recording.header import Event
+from robobt.match.recording.numbers import TickNumbers
+from robobt.match.recording.stores import StoreChanges
+from robobt.match.recording.stream import COLUMNS
+from robobt.tree.recording import TreeChanges
+
+_encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), default=asdict).encode
+
+
+@dataclass(slots=True)
+class EncodedTicks:
+    """Some ticks as the columns of a recording.
+
+    Attributes:
+        times: [s].
+        truth: as the column of that name.
+        observed: likewise; the same object as ``truth`` where all of it was shown as it is.
+        commands: as the column of that name.
+        changes: for each tick what changed, by the names of
+            :class:`~robobt.match.recording.stream.TickChanges`.
+    """
+
+    times: list[float]
+    truth: pa.Array
+    observed: pa.Array
+    commands: pa.Array
+    changes: list[dict[str, Any]]
+
+    def batch(self) -> pa.RecordBatch:
+        """Return the rows."""
+        texts = [_encode(changes) if changes else None for changes in self.changes]
+        columns = [
+            pa.array(self.times),
+            self.truth,
+            pa.nulls(len(texts), self.truth.type) if self.observed is self.truth else self.observed,
+            self.commands,
+            # What is no Unicode text, as half a surrogate pair, becomes a question mark.
+            pa.array([text and text.encode("utf-8", "replace") for text in texts], pa.string()),
+        ]
+        return pa.RecordBatch.from_arrays(columns, COLUMNS)
+
+
+class TickEncoder:
+    """Encodes the ticks of a capture, all of them and in their order."""
+
+    def __init__(self, capture: Capture) -> None:
+        self._trees = [(robot, str(robot), TreeChanges(watch)) for robot, watch in capture.trees]
+        self._stores = StoreChanges(capture.stores)
+        self._numbers = TickNumbers([robot.id for robot in capture.header.robots])
+
+    def encode(self, ticks: Sequence[CapturedTick]) -> EncodedTicks:
+        """Return the columns of the next ticks, at least one."""
+        truths = [tick.truth for tick in ticks]
+        truth = self._numbers.poses(truths)
+        observed = [tick.observed for tick in ticks]
+        return EncodedTicks(
+            [tick.time for tick in ticks],
+            truth,
+            truth if observed == truths else self._numbers.poses(observed),
+            self._numbers.commands([tick.commands for tick in ticks]),
+            [self._changes(tick) for tick in ticks],
+        )
+
+    def _changes(self, tick: CapturedTick) -> dict[str, Any]:
+        # Another encoder reads the same ticks.
+        changes = dict(tick.changes)
+        for place, state in tick.states:
+            robot, name, tree = self._trees[place]
+            change = tree.change(state)
+            if change is None:
+                continue
+            if change.statuses is not None:
+                changes.setdefault("statuses", {})[name] = change.statuses
+            if change.feedback:
+                changes.setdefault("feedback", {})[name] = change.feedback
+            if change.error is not None:
+                error = Event(round(tick.time, 6), "error", robot.team, robot, change.error)
+                changes["events"] = [*changes.get("events", ()), error]
+        written = self._stores.plain(tick.written) if tick.written else None
+        if written:
+            changes["written"] = written
+        return changes

@@ -1,0 +1,41 @@
+"""The referee's commands given by hand, as by a person at the game controller."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from robobt.match.referee.controller import Controller
+from robobt.match.referee.restarts import free_kick, kickoff, penalty
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+
+Order = Literal["halt", "stop", "continue", "force start", "kick-off", "free kick", "penalty"]
+
+FOR_A_TEAM = ("kick-off", "free kick", "penalty")
+"""Orders that need a team."""
+
+
+def give(controller: Controller, field: FieldGeometry, order: Order, team: Team | None = None) -> None:
+    """Give an order; what follows from it is the controller's to see to.
+
+    Raises:
+        ValueError: the order needs a team.
+    """
+    state = controller.state
+    if order == "halt":
+        state.halt(None)
+    elif order == "stop":
+        state.stop(state.following)
+    elif order == "force start":
+        state.play()
+    elif order == "continue":
+        # Out of a HALT by way of a STOP, as the rules have it.
+        state.wait() if state.game.halted else state.resume()
+    elif team is None:
+        raise ValueError(f"a {order} needs a team")
+    elif order == "kick-off":
+        state.stop(kickoff(team))
+    elif order == "free kick":
+        state.stop(free_kick(field, team, *state.ball))
+    else:
+        state.stop(penalty(field, team))

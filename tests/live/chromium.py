@@ -1,0 +1,87 @@
+"""Chromium without a window, for tests of what pages do in it."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic, sleep
+from typing import Any
+
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.remote.webelement import WebElement
+
+_QUIET = (
+    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync --disable-dev-shm-usage --hide-scrollbars"
+)
+
+
+class Page:
+    """A page in Chromium."""
+
+    def __init__(self, driver: webdriver.Chrome) -> None:
+        self.driver = driver
+
+    def open(self, url: str) -> None:
+        self.driver.get(url)
+
+    def js(self, script: str, *args: Any) -> Any:
+        """Run a function's body in the page and return what it returns."""
+        return self.driver.execute_script(script, *args)
+
+    def wait(self, script: str, *args: Any, seconds: float = 20.0) -> Any:
+        """Run it until what it returns is true."""
+        return self.until(lambda: self.js(script, *args), script, seconds)
+
+    def until(self, what: Callable[[], Any], said: str = "it", seconds: float = 20.0) -> Any:
+        end = monotonic() + seconds
+        while monotonic() < end:
+            found = what()
+            if found:
+                return found
+            sleep(0.02)
+        raise AssertionError(f"did not come true within {seconds} s: {said}")
+
+    def find(self, selector: str) -> WebElement:
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def button(self, name: str) -> WebElement:
+        """The control of this name."""
+        return self.driver.find_element(By.XPATH, f"//*[self::button or self::a][normalize-space()='{name}']")
+
+    def size(self, width: int, height: int, *, phone: bool = False) -> None:
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": phone}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": phone})
+
+    def dark(self, on: bool) -> None:
+        feature = {"name": "prefers-color-scheme", "value": "dark" if on else "light"}
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
+
+    def complaints(self) -> list[str]:
+        """What the page has logged since this was asked last: errors, what its policy kept out."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]  # type: ignore[no-untyped-call]
+
+
+@contextmanager
+def chromium(profile: Path) -> Iterator[Page]:
+    """Start Chromium, or skip the test where it is not."""
+    program = shutil.which("chromium") or shutil.which("chromium-browser")
+    driver = shutil.which("chromedriver")
+    if program is None or driver is None:
+        pytest.skip("needs Chromium: apt-get install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = program
+    for argument in (*_QUIET.split(), f"--user-data-dir={profile}", "--window-size=1400,900"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    started = webdriver.Chrome(options=options, service=Service(driver))
+    try:
+        yield Page(started)
+    finally:
+        started.quit()

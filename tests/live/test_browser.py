@@ -1,0 +1,153 @@
+"""What people do with the live page, in a real browser."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from time import sleep
+
+import pytest
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+from robobt.live.messages import Pause
+from robobt.live.replay_html import write_html
+from robobt.match.recording.reader import parse_recording
+from tests.live.chromium import Page
+from tests.live.playing import Session, playing, wait_for
+from tests.live.test_server import get
+
+pytestmark = pytest.mark.integration
+
+SHOWN = "return window.robobt && window.robobt.match.frames"
+ROWS = """const { match } = window.robobt;
+return match.robots.map(robot => [...robot.rows.subarray(0, 4 * match.frames)])"""
+TIME = "return window.robobt.state.time"
+
+
+@pytest.fixture(scope="module")
+def session() -> Iterator[Session]:
+    with playing("striker_vs_goalie") as session:
+        yield session
+
+
+@pytest.fixture
+def live(page: Page, session: Session) -> Page:
+    """The live page with a match that has just begun."""
+    session.act(Pause(do="pause", on=False))
+    page.open(session.server.url)
+    page.wait(SHOWN)
+    page.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
+    matches = page.js("return window.robobt.measured.matches")
+    page.button("Again").click()
+    page.wait(
+        "return window.robobt.measured.matches > arguments[0] && window.robobt.match.frames > 2", matches
+    )
+    return page
+
+
+def keys(page: Page, *pressed: str) -> None:
+    ActionChains(page.driver).send_keys(*pressed).perform()
+
+
+def paused(page: Page, session: Session) -> int:
+    """Pause the match; return how many ticks it has."""
+    keys(page, " ")
+    page.wait("return [...document.querySelectorAll('.chip')].some(chip => chip.textContent === 'paused')")
+    return session.ticks
+
+
+def test_the_page_shows_the_match_as_it_goes_on(live: Page, session: Session) -> None:
+    first = live.js(TIME)
+    live.wait("return window.robobt.state.time > arguments[0] + .3", first)
+    assert live.find("h1").text == "striker_vs_goalie"
+    assert len(live.driver.find_elements("css selector", "#picker .pick")) == 2
+    live.wait("return document.querySelector('#tree .row[data-s=R]') !== null")
+
+
+def test_space_pauses_the_match_and_an_arrow_plays_one_tick(live: Page, session: Session) -> None:
+    ticks = paused(live, session)
+    keys(live, Keys.ARROW_RIGHT)
+    wait_for(lambda: session.ticks == ticks + 1)
+    shown = session.match.scenario.period * ticks
+    live.wait("return Math.abs(window.robobt.state.time - arguments[0]) < .002", shown)
+    keys(live, " ")
+    wait_for(lambda: session.ticks > ticks + 3)
+
+
+def test_speed_is_that_of_the_match(live: Page, session: Session) -> None:
+    slow, _, usual, *_ = live.driver.find_elements("css selector", "#speeds button")
+    slow.click()
+    live.until(lambda: slow.get_attribute("aria-pressed") == "true")
+    ticks = session.ticks
+    sleep(1.0)
+    assert 2 < session.ticks - ticks < 0.5 / session.match.scenario.period
+    usual.click()
+    live.until(lambda: usual.get_attribute("aria-pressed") == "true")
+
+
+def test_one_goes_back_while_the_match_goes_on_and_forward_to_now(live: Page, session: Session) -> None:
+    live.wait("return window.robobt.match.frames > 20")
+    keys(live, Keys.HOME)
+    assert live.js(TIME) == pytest.approx(0.0, abs=0.05)
+    ticks = session.ticks
+    wait_for(lambda: session.ticks > ticks + 5)
+    assert live.js(TIME) == pytest.approx(0.0, abs=0.05)
+    live.button("Now").click()
+    live.wait("const r = window.robobt; return r.state.time > r.match.times[r.match.frames - 1] - .2")
+    assert not live.button("Now").is_displayed()
+
+
+def test_a_page_that_is_loaded_anew_knows_what_was_before(live: Page, session: Session) -> None:
+    live.wait("return window.robobt.match.frames > 30")
+    frames = paused(live, session)
+    live.driver.refresh()
+    live.wait("return window.robobt && window.robobt.match.frames >= arguments[0]", frames)
+    assert live.js("return window.robobt.match.times[0]") == 0.0
+    live.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
+    keys(live, " ")
+    wait_for(lambda: session.ticks > frames + 3)
+
+
+def test_the_recording_that_is_saved_is_replayed_as_it_was_shown(
+    live: Page, session: Session, tmp_path: Path
+) -> None:
+    live.wait("return window.robobt.match.frames > 30")
+    paused(live, session)
+    shown = live.js(ROWS)
+    status, _, body = get(session, "recording.robobt.arrows")
+    assert status == 200
+    write_html(parse_recording(body, tmp_path), tmp_path / "saved.html")
+    live.open((tmp_path / "saved.html").as_uri())
+    assert live.js(ROWS) == shown
+    session.server.inbox.put(
+        __import__("robobt.live.messages", fromlist=["Pause"]).Pause(do="pause", on=False)
+    )
+
+
+def test_of_two_viewers_one_steers(live: Page, session: Session) -> None:
+    first = live.driver.current_window_handle
+    live.driver.switch_to.new_window("tab")
+    try:
+        live.open(session.server.url)
+        live.wait(SHOWN)
+        live.wait("return document.querySelector('#head').textContent.includes('viewers')")
+        ticks = session.ticks
+        live.find("#speeds button").click()
+        assert "Another viewer steers" in live.find(".told").text
+        live.button("Steer").click()
+        live.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
+        paused(live, session)
+        assert session.ticks >= ticks
+        keys(live, " ")
+    finally:
+        live.driver.close()
+        live.driver.switch_to.window(first)
+
+
+def test_the_replay_page_plays_by_itself(page: Page, tmp_path: Path, session: Session) -> None:
+    session.act(Pause(do="pause", on=False))
+    wait_for(lambda: session.ticks > 30)
+    _, _, body = get(session, "recording.robobt.arrows")
+    write_html(parse_recording(body, tmp_path), tmp_path / "replay.html")
+    page.open((tmp_path / "replay.html").as_uri())
+    keys(page, " ")
+    page.wait("return window.robobt.state.time > .2")

@@ -1,0 +1,125 @@
+"""A person drives a robot in the live page, in a real browser."""
+
+import threading
+from collections.abc import Iterator
+from math import hypot
+from time import sleep
+
+import pytest
+from selenium.webdriver.common.action_chains import ActionChains
+
+from robobt.live.messages import Pause
+from robobt.match.scenario.scenario import Scenario, load_scenario
+from tests.live.chromium import Page
+from tests.live.human import GAMEPAD, PLAYER
+from tests.live.playing import Session, playing, wait_for
+
+pytestmark = pytest.mark.integration
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    start = {"position": (1.0, 0.5), "heading": 0.0}
+    return load_scenario("table4_trial1").with_robot("blue 0", start=start, limits={"max_speed": 1.5})
+
+
+@pytest.fixture(scope="module")
+def session(scenario: Scenario) -> Iterator[Session]:
+    ball = scenario.ball.model_copy(update={"position": (2.0, 0.0)})
+    with playing(scenario.model_copy(update={"ball": ball}).lasting(60.0), paused=True) as session:
+        yield session
+
+
+@pytest.fixture
+def driven(page: Page, session: Session) -> Iterator[Page]:
+    """A page that drives the only robot of a match that goes on."""
+    session.act(Pause(do="pause", on=True))
+    page.open(session.server.url)
+    page.wait("return window.robobt && document.querySelector('.live button[aria-pressed=true]') !== null")
+    before = page.js("return window.robobt.measured.matches")
+    page.button("Again").click()
+    page.wait("return window.robobt.measured.matches > arguments[0]", before)
+    page.button("Drive").click()
+    page.wait("return document.querySelector('.driving button').textContent === 'Let go'")
+    session.act(Pause(do="pause", on=False))
+    wait_for(lambda: session.ticks > 3)
+    yield page
+    page.js("clearInterval(window.person)")
+
+
+def speed(session: Session) -> float:
+    return session.match.world.truth().own[0].speed
+
+
+def test_keys_drive_the_robot_and_letting_go_stops_it(driven: Page, session: Session) -> None:
+    ActionChains(driven.driver).key_down("w").perform()
+    wait_for(lambda: session.match.world.truth().own[0].vy > 0.4)
+    ActionChains(driven.driver).key_up("w").key_down("q").perform()
+    wait_for(lambda: session.match.world.truth().own[0].omega > 0.5)
+    ActionChains(driven.driver).key_up("q").perform()
+    wait_for(lambda: speed(session) < 0.05)
+    assert session.match.players[0].driver is not None
+
+
+def test_a_key_is_sent_at_once(driven: Page, session: Session) -> None:
+    for key in "wasd" * 3:
+        ActionChains(driven.driver).key_down(key).key_up(key).perform()
+    delays = sorted(driven.js("return window.robobt.measured.delays"))
+    assert len(delays) == 12
+    assert delays[len(delays) // 2] < 50.0
+
+
+def test_a_page_that_stalls_stops_its_robot(driven: Page, session: Session) -> None:
+    ActionChains(driven.driver).key_down("w").perform()
+    wait_for(lambda: speed(session) > 0.5)
+    driver = session.match.players[0].driver
+    assert driver is not None
+    silent: list[bool] = []
+    watched = threading.Event()
+
+    def watch() -> None:
+        while not watched.wait(0.02):
+            silent.append(not driver.told)  # type: ignore[attr-defined]
+
+    watching = threading.Thread(target=watch)
+    watching.start()
+    # The page hangs: no command comes, and none of its release.
+    driven.js("setTimeout(() => { const end = Date.now() + 1500; while (Date.now() < end); }, 0)")
+    sleep(1.5)
+    watched.set()
+    watching.join()
+    assert sum(silent) > 40
+    assert "1" * 30 in "".join([str(int(each)) for each in silent])
+    ActionChains(driven.driver).key_up("w").perform()
+    wait_for(lambda: speed(session) < 0.1)
+
+
+def test_a_page_that_goes_stops_its_robot(driven: Page, session: Session) -> None:
+    ActionChains(driven.driver).key_down("d").perform()
+    wait_for(lambda: speed(session) > 0.5)
+    driven.open("about:blank")
+    wait_for(lambda: speed(session) < 0.1)
+    ActionChains(driven.driver).key_up("d").perform()
+
+
+def test_a_page_that_loses_the_focus_stops_its_robot(driven: Page, session: Session) -> None:
+    ActionChains(driven.driver).key_down("d").perform()
+    wait_for(lambda: speed(session) > 0.5)
+    driven.js("window.dispatchEvent(new Event('blur'))")
+    wait_for(lambda: speed(session) < 0.1)
+    ActionChains(driven.driver).key_up("d").perform()
+
+
+def test_a_game_controller_scores(driven: Page, session: Session) -> None:
+    driven.js(GAMEPAD)
+    driven.js(PLAYER)
+    wait_for(lambda: session.match.outcome, 40.0)
+    assert session.match.outcome == "goal_blue"
+    driven.wait("return document.querySelector('#score').textContent === '1:0'")
+
+
+def test_the_tree_drives_again_when_the_robot_is_let_go(driven: Page, session: Session) -> None:
+    driven.button("Let go").click()
+    wait_for(lambda: session.match.players[0].driver is None)
+    start = session.match.world.truth().own[0].position
+    wait_for(lambda: hypot(session.match.world.truth().own[0].x - start[0], speed(session)) > 0.3)

@@ -1,0 +1,128 @@
+"""The pace at which a match is shown, and whose wishes it follows."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from time import perf_counter
+
+import pytest
+
+from robobt.live.bench import bench_live
+from robobt.live.messages import Act, Pause, Speed
+from robobt.live.replayed import Replay
+from robobt.live.server import Server
+from robobt.live.session import Live
+from robobt.match import Match, load_scenario, play_match, run_trials
+from robobt.match.recording import load_recording
+from robobt.match.recording.reader import parse_recording
+from robobt.match.scenario.scenario import Scenario
+from robobt.world.protocol import WrappedWorld
+from robobt.worlds import sim_world
+from tests.live.playing import Client, wait_for
+
+pytestmark = pytest.mark.integration
+
+
+class Clock:
+    """Time that passes while somebody sleeps, and a little at each look."""
+
+    def __init__(self) -> None:
+        self.now = self.slept = 0.0
+
+    def __call__(self) -> float:
+        self.now += 1e-5
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+        self.slept += seconds
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    return load_scenario("striker_vs_goalie").lasting(2.0)
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    with Server() as server:
+        yield server
+
+
+def act(server: Server, act: Act) -> None:
+    server.inbox.put((act, perf_counter()))
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.0, 4.0])
+def test_a_match_takes_as_long_as_its_speed_says(server: Server, scenario: Scenario, speed: float) -> None:
+    clock = Clock()
+    live = Live(server, speed, clock=clock, sleep=clock.sleep)
+    with Match(scenario, 3, sim_world) as match:
+        assert live.play(match)
+    assert clock.now == pytest.approx(match.result().time / speed, rel=0.02)
+    assert live.late == 0
+
+
+def test_what_is_shown_is_what_would_be_played_unseen(
+    server: Server, scenario: Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("robobt.live.session.LOOK", 0.1)
+    record = {1: tmp_path / "m.robobt.arrows"}
+    run = run_trials(scenario, sim_world, 2, seed=5, play=Live(server, 20.0).conduct, record=record)
+    usual = run_trials(scenario, sim_world, 2, seed=5)
+    assert [result.trace for result in run.results] == [result.trace for result in usual.results]
+    assert record[1].stat().st_size > 1000
+
+
+def test_a_field_waits_for_nobody(server: Server, scenario: Scenario) -> None:
+    class Field(WrappedWorld):
+        @property
+        def paced(self) -> bool:
+            return True
+
+    clock = Clock()
+    live = Live(server, clock=clock, sleep=clock.sleep)
+    act(server, Pause(do="pause", on=True))
+    act(server, Speed(do="speed", factor=0.1))
+    with Match(scenario, 3, lambda scenario: Field(sim_world(scenario))) as match:
+        assert live.play(match)
+    assert clock.slept == 0.0
+    assert "waits for nobody" in server._state["said"][1]
+    assert match.result().trace == play_match(scenario, 3, sim_world).trace
+
+
+@pytest.mark.slow
+def test_viewers_leave_a_match_of_six_a_side_unharmed() -> None:
+    figures = bench_live(load_scenario("team_v_baseline"), sim_world, 60.0, viewers=20)
+    print(figures)
+    assert figures["memory_mib"] < 300.0
+    assert figures["stalled_age_ms"] is not None
+    assert figures["stalled_age_ms"] < 2000.0
+
+
+def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenario, tmp_path: Path) -> None:
+    path = tmp_path / "m.robobt.arrows"
+    with Match(scenario, 3, sim_world, path) as match:
+        while match.tick():
+            pass
+    replay = Replay(server, path, start=1.0, speed=20.0)
+    showing = threading.Thread(target=replay.show)
+    showing.start()
+    try:
+        with Client(server.url) as client:
+            client.read(lambda it: it.state.get("over"))
+            assert client.hello["scenario"] == "striker_vs_goalie"
+            wait_for(lambda: server._stream is not None and not server._stream._encoded)
+            saved = parse_recording(server._stream.recording(), tmp_path)  # type: ignore[union-attr]
+    finally:
+        replay.end()
+        showing.join()
+    recording = load_recording(path)
+    skipped = len(recording) - len(saved)
+    assert saved.times.tolist() == recording.times[skipped:].tolist()
+    assert saved.times[0] == pytest.approx(1.0, abs=0.03)
+    for robot in recording.header.robots:
+        for tick in range(0, len(saved), 10):
+            assert saved.letters_at(robot.id, tick) == recording.letters_at(robot.id, tick + skipped)
+            assert saved.feedback_at(robot.id, tick) == recording.feedback_at(robot.id, tick + skipped)
+    assert saved.truth.robots.tolist() == recording.truth.robots[skipped:].tolist()

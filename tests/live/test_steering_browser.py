@@ -1,0 +1,168 @@
+"""What people do to the match in the live page, in a real browser."""
+
+from collections.abc import Iterator
+from math import hypot
+from pathlib import Path
+
+import pytest
+from selenium.webdriver.common.actions.action_builder import ActionBuilder
+
+from robobt.live.messages import Pause
+from robobt.live.stream import Stream
+from robobt.match.recording import Event
+from robobt.match.recording.reader import parse_recording
+from robobt.match.scenario.scenario import load_scenario
+from robobt.world.game import RefereeCommand
+from tests.live.chromium import Page
+from tests.live.playing import Session, playing, wait_for
+
+pytestmark = pytest.mark.integration
+
+PLACE = """const { match } = window.robobt, box = document.querySelector("#field").getBoundingClientRect();
+const scale = box.width / (match.field.length + 2 * match.field.goal_line_margin);
+return [box.x + box.width / 2 + arguments[0] * scale, box.y + box.height / 2 - arguments[1] * scale];"""
+EVIL = "<img src=x onerror=alert(1)>"
+
+
+@pytest.fixture(scope="module")
+def session() -> Iterator[Session]:
+    scenario = load_scenario("three_v_three").with_robot("blue 1", play="stand_still")
+    scenario = scenario.model_copy(update={"name": EVIL})
+    with playing(scenario, paused=True) as session:
+        yield session
+
+
+@pytest.fixture
+def live(page: Page, session: Session) -> Page:
+    """The live page with a paused match that this page steers."""
+    session.act(Pause(do="pause", on=True))
+    page.open(session.server.url)
+    page.wait("return window.robobt && document.querySelector('.live button[aria-pressed=true]') !== null")
+    before = page.js("return window.robobt.measured.matches")
+    page.button("Again").click()
+    page.wait("return window.robobt.measured.matches > arguments[0]", before)
+    play(page, session, 3)
+    return page
+
+
+def play(page: Page, session: Session, ticks: int) -> None:
+    """Play some ticks and see them shown."""
+    before = session.ticks
+    for _ in range(ticks):
+        page.find("#next").click()
+    wait_for(lambda: session.ticks == before + ticks)
+    shown = session.match.scenario.period * (session.ticks - 1)
+    page.wait("return window.robobt.state.time > arguments[0] - .001", shown)
+
+
+def drag(page: Page, start: tuple[float, float], end: tuple[float, float], steps: int = 4) -> None:
+    """Drag from one place of the field to another [m]."""
+    builder = ActionBuilder(page.driver, duration=30)
+    pointer = builder.pointer_action
+    pointer.move_to_location(*page.js(PLACE, *start)).pointer_down()
+    for step in range(1, steps + 1):
+        share = step / steps
+        place = [a + share * (b - a) for a, b in zip(start, end, strict=True)]
+        pointer.move_to_location(*page.js(PLACE, *place))
+    pointer.pointer_up()
+    builder.perform()
+
+
+def test_a_robot_is_dragged_and_taken_off_and_put_back(live: Page, session: Session) -> None:
+    world = session.match.world
+    robot = world.truth().own[1]
+    drag(live, robot.position, (-2.0, 1.5))
+    wait_for(lambda: hypot(world.truth().own[1].x + 2.0, world.truth().own[1].y - 1.5) < 0.05)
+    play(live, session, 1)
+    drag(live, world.truth().own[1].position, (-2.0, 3.3), 6)
+    wait_for(lambda: len(world.truth().own) == 2)
+    play(live, session, 1)
+    live.find("#picker .pick.blue:nth-of-type(2)").click()
+    live.button("Take off").click()
+    wait_for(lambda: len(world.truth().own) == 3)
+    play(live, session, 1)
+    wait_for(lambda: any(event.kind == "robot moved" for event in recorded(session)))
+
+
+def recorded(session: Session) -> list[Event]:
+    stream = session.server._stream
+    assert isinstance(stream, Stream)
+    return [*parse_recording(stream.recording(), Path("live")).events]
+
+
+def test_a_ball_that_is_flicked_rolls(live: Page, session: Session) -> None:
+    world = session.match.world
+    ball = world.truth().ball
+    drag(live, ball.position, (ball.x + 1.0, ball.y + 0.5), 8)
+    wait_for(lambda: world.truth().ball.speed > 0.5)
+    moving = world.truth().ball
+    assert moving.vx > 0.0
+    assert moving.vx / moving.vy == pytest.approx(2.0, rel=0.3)
+
+
+def test_a_robot_is_given_another_play_by_the_form(live: Page, session: Session) -> None:
+    live.find("#picker .pick.blue:nth-of-type(3)").click()
+    live.button("Edit play").click()
+    live.wait("return document.querySelector('.forms select[name=play]') !== null")
+    live.js("document.querySelector('.forms select[name=play]').value = 'stand_still'")
+    live.button("Apply").click()
+    live.wait("return document.querySelector('#who-play').textContent === 'stand_still'")
+    live.wait("return window.robobt.match.robots[2].nodes.length === 1")
+
+
+def test_a_parameter_of_a_skill_is_changed_by_the_form(live: Page, session: Session) -> None:
+    live.find("#picker .pick.yellow").click()
+    find = """const robot = window.robobt.state.robot;
+const place = robot.nodes.findIndex(node => node.type === 'CoverAngle');
+document.querySelectorAll('#tree .row')[place].click(); return place;"""
+    place = live.js(find)
+    assert place > 0
+    live.button("Edit skill").click()
+    field = live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
+    name = field.get_attribute("name")
+    field.clear()
+    field.send_keys("0.37")
+    live.button("Apply").click()
+    wait_for(lambda: live.js("return document.querySelector('.forms input[type=number]').value") == "0.37")
+    robot = session.match.players[3]
+    skill = robot.runner.nodes[place]
+    assert skill.parameters()[name] == 0.37  # type: ignore[attr-defined]
+    play(live, session, 2)
+    assert live.js("return window.robobt.match.frames") >= 5
+
+
+def test_a_wrong_value_is_told_and_changes_nothing(live: Page, session: Session) -> None:
+    live.find("#picker .pick.blue").click()
+    live.button("Edit play").click()
+    field = live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
+    live.js("arguments[0].value = '-1e9'", field)
+    live.button("Apply").click()
+    live.wait("return document.querySelector('.told').textContent !== ''")
+
+
+def test_the_referee_is_told_to_stop(live: Page, session: Session) -> None:
+    live.button("Force start").click()
+    play(live, session, 1)
+    assert session.match.game.command is RefereeCommand.FORCE_START
+    live.driver.find_element("xpath", "//section[@aria-label='Steering']//button[.='Stop']").click()
+    play(live, session, 1)
+    assert session.match.game.command is RefereeCommand.STOP
+    live.wait("return document.querySelector('#word').textContent.startsWith('Stop')")
+
+
+def test_names_are_text_and_never_markup(live: Page, session: Session) -> None:
+    assert live.find("h1").text == EVIL
+    assert live.js("return document.querySelectorAll('img').length") == 0
+
+
+def test_a_robot_is_turned_where_it_stands(live: Page, session: Session) -> None:
+    world = session.match.world
+    drag(live, world.truth().own[1].position, (-1.0, -1.0))
+    wait_for(lambda: hypot(world.truth().own[1].x + 1.0, world.truth().own[1].y + 1.0) < 0.05)
+    play(live, session, 1)
+    before = world.truth().own[1].heading
+    live.find("#picker .pick.blue:nth-of-type(2)").click()
+    for _ in range(3):
+        live.button("⟲ Turn").click()
+        play(live, session, 1)
+    assert world.truth().own[1].heading - before == pytest.approx(0.785, abs=0.15)
