@@ -112,7 +112,8 @@ def _look(frame: Frame, plan: Plan) -> None:
     everybody = movers_of(frame)
     plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
-    plan.meetings = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)
+    slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
+    plan.meetings = meetings(everybody, state, plan.rolling, slide, roll, field.half_length, field.half_width)
     times = plan.meetings[:, 0].tolist()
     ours, theirs = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
