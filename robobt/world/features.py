@@ -12,46 +12,28 @@ form of the authors' published code; lengths here are metres.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
 
 import numpy as np
 
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.observation import ObservationSpec as ObservationSpec
+from robobt.world.observation import Row, kinematics, motion, observation_spec
+from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
 
-Row = FloatArray | tuple[float, ...]
-"""Numbers in a fixed order: a robot's x, y, heading, vx, vy, omega or a ball's x, y, vx, vy."""
-
-
-@dataclass(frozen=True)
-class ObservationSpec:
-    """Name, version and entries (name, unit) of an observation vector."""
-
-    name: str
-    version: int
-    entries: tuple[tuple[str, str], ...]
-
-    @property
-    def size(self) -> int:
-        """Length of the vector."""
-        return len(self.entries)
-
-
-def _spec(name: str, version: int, **units: str) -> ObservationSpec:
-    return ObservationSpec(name, version, tuple(units.items()))
-
-
-SHOT = _spec("shot", 1, angle="rad", target_distance="m", opponent_distance="m", along="m", across="m")
+SHOT = observation_spec(
+    "shot", 1, angle="rad", target_distance="m", opponent_distance="m", along="m", across="m"
+)
 """Eq. 4: one opponent beside the line shooter -> target."""
 
-GO_TO_BALL = _spec(
+GO_TO_BALL = observation_spec(
     "go_to_ball", 1, sin_ball="1", cos_ball="1", ball_distance="m", vx="m/s", vy="m/s", omega="rad/s"
 )
 """The ball and the robot's velocity, in the robot's frame."""
 
-GO_TO_BALL_TO_SHOOT = _spec(
+GO_TO_BALL_TO_SHOOT = observation_spec(
     "go_to_ball_to_shoot",
     1,
     **dict(GO_TO_BALL.entries),
@@ -59,7 +41,7 @@ GO_TO_BALL_TO_SHOOT = _spec(
 )
 """The same, and the direction from the ball to the middle of the attacked goal, in the robot's frame."""
 
-SHOOT = _spec(
+SHOOT = observation_spec(
     "shoot",
     1,
     **dict.fromkeys(("ball_x", "ball_y"), "m"),
@@ -76,7 +58,7 @@ SCENE_OPPONENTS = 6
 ABSENT = (-99.0, 99.0, 0.0, 0.0)
 """An empty place in a shot's scene: a robot far behind the shooter."""
 
-SHOT_SCENE = _spec(
+SHOT_SCENE = observation_spec(
     "shot_scene",
     1,
     target_distance="m",
@@ -99,7 +81,10 @@ SCENE_HEAD = SHOT_SCENE.size - 4 * SCENE_OPPONENTS
 
 _ABSENT = np.array(ABSENT)
 
-OBSERVATIONS = {spec.name: spec for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, GO_TO_BALL_TO_SHOOT, SHOOT)}
+OBSERVATIONS = {
+    spec.name: spec
+    for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, GO_TO_BALL_TO_SHOOT, SHOOT, SCORE_ON_GOALKEEPER)
+}
 
 
 @compiled
@@ -279,22 +264,12 @@ def go_to_ball_to_shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
 
 def _go_to_ball(frame: Frame, robot: RobotState, size: int) -> FloatArray:
     row = np.empty(size)
-    _observe_go_to_ball(_kinematics(robot), _motion(frame), frame.field.half_length, row)
+    _observe_go_to_ball(kinematics(robot), motion(frame), frame.field.half_length, row)
     return row
 
 
 def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute the Shoot state of one robot in a frame, (10,)."""
     field, row = frame.field, np.empty(10)
-    _observe_shoot(_kinematics(robot), _motion(frame), field.half_length, field.goal_width / 2, row)
+    _observe_shoot(kinematics(robot), motion(frame), field.half_length, field.goal_width / 2, row)
     return row
-
-
-def _kinematics(r: RobotState) -> Row:
-    # Whole numbers would make numba compile a version of their own.
-    return (float(r.x), float(r.y), float(r.heading), float(r.vx), float(r.vy), float(r.omega))
-
-
-def _motion(frame: Frame) -> Row:
-    ball = frame.ball
-    return (float(ball.x), float(ball.y), float(ball.vx), float(ball.vy))

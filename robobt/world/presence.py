@@ -66,5 +66,4 @@ def without_absent(frame: Frame, game: GameState) -> Frame:
         frame.period,
         frame.game,
         frame.last_touch,
-        frame.ball_model,
     )

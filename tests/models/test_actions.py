@@ -13,12 +13,16 @@ from robobt.world.compiled import numbers_of
 def filled(actions: np.ndarray, scaling: ActionScaling, kick_factor: float = 1.0) -> np.ndarray | None:
     commands = np.full((len(actions), 6), 9.0)
     factors = np.full(len(actions), kick_factor)
-    drive = scaling.kind == "drive"
-    return commands if fill_commands(actions, numbers_of(scaling), drive, factors, commands) else None
+    kind = scaling.drives, scaling.kicks
+    return commands if fill_commands(actions, numbers_of(scaling), *kind, factors, commands) else None
+
+
+BOTH = ActionScaling(kind="drive_and_kick", max_speed=3.0, max_turn=6.0, kick_speed=6.0, dribbler=True)
 
 
 @pytest.mark.parametrize(
-    "scaling", [GO_TO_BALL_ACTION, SHOOT_ACTION, GO_TO_BALL_ACTION.model_copy(update={"dribbler": True})]
+    "scaling",
+    [GO_TO_BALL_ACTION, SHOOT_ACTION, BOTH, GO_TO_BALL_ACTION.model_copy(update={"dribbler": True})],
 )
 def test_a_single_action_stands_for_the_same_command_as_in_a_batch(scaling: ActionScaling) -> None:
     actions = np.random.default_rng(3).normal(0.0, 0.8, (300, scaling.size))
@@ -44,7 +48,7 @@ def test_a_kick_is_multiplied_by_the_robots_factor() -> None:
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-@pytest.mark.parametrize("scaling", [GO_TO_BALL_ACTION, SHOOT_ACTION])
+@pytest.mark.parametrize("scaling", [GO_TO_BALL_ACTION, SHOOT_ACTION, BOTH])
 def test_an_action_that_is_not_finite_is_refused(scaling: ActionScaling, bad: float) -> None:
     actions = np.zeros((3, scaling.size))
     actions[1, -1] = bad

@@ -19,20 +19,29 @@ from robobt.sim.arenas import Arenas
 from robobt.sim.columns import COMMAND
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
+from robobt.world.limits import RobotLimits
 
 
 class ArenaTask(ABC):
-    """``n`` arenas with one robot and a ball each; see :class:`~robobt.learning.envs.task.VectorTask`.
+    """``n`` arenas with a ball and a learner's robot; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    ``seed`` is that of everything drawn from the first ``reset`` on; None for another each time.
+    The learner's robot is the first; the others, if a task has any, do what :meth:`_oppose` decides.
+
+    ``seed`` is that of everything drawn from the first ``reset`` on; None for another each time. Each
+    arena draws with generators of its own: what happens in it follows from the seed and its index, bit
+    for bit, however many arenas there are beside it.
 
     Attributes:
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
+        robots: in an arena.
+        start_columns: what a start consists of: each robot, the ball, and whatever else a task starts from.
         ended: the episodes that the last step ended; None without any.
     """
 
     observation: ObservationSpec
+    robots: int = 1
+    start_columns: tuple[str, ...] = START_COLUMNS
 
     def __init__(self, settings: TaskSettings, n: int, seed: int | None) -> None:
         if n < 1:
@@ -46,29 +55,43 @@ class ArenaTask(ABC):
         self.arenas: Arenas
         self._numbers = numbers_of(settings)
         self._scaling = numbers_of(self.action)
-        self._drives = self.action.kind == "drive"
+        self._kind = self.action.drives, self.action.kicks
         self._seed: int | None = seed
         self._seeded = False
         self._all = np.arange(n)
 
     @abstractmethod
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Draw ``count`` starts (count, 10), columns ``START_COLUMNS``."""
+        """Draw ``count`` starts (count, S), columns :attr:`start_columns`."""
 
     @abstractmethod
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
-        """Compute the observations (m, O) of robots (m, 1, 6) and balls (m, 4)."""
+        """Compute the observations (m, O) of robots (m, R, 6) and balls (m, 4)."""
 
     @abstractmethod
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
-        """Fill ``rewards`` (n,) and ``ends`` (3, n) after a tick; return whether any episode ended."""
+        """Add a tick to ``rewards`` (n,) and ``ends`` (3, n); return whether any episode has ended.
+
+        An episode that had ended already is left as it is.
+        """
 
     @abstractmethod
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
         """Return the shortest possible times from the starts [s]; nan where there is none."""
 
+    def _oppose(self) -> None:  # noqa: B027 - nobody opposes where the learner is alone
+        """Fill the commands of the robots that are not the learner's, for one tick."""
+
+    def _starting(self, starts: FloatArray, which: IntArray) -> None:  # noqa: B027
+        """Take from the starts what a task needs besides robots and ball."""
+
+    @property
+    def _robot_limits(self) -> list[RobotLimits | None]:
+        """What each robot can do; None for the simulator's own."""
+        return [self.settings.robot_limits]
+
     def sample_starts(self, seed: int, count: int) -> FloatArray:
-        """Draw ``count`` starts (count, 10) from a seed of their own; the task's state stays as it is."""
+        """Draw ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
         return self.sample(np.random.default_rng(seed), count)
 
     def reset(self, seed: int | None = None) -> FloatArray:
@@ -82,7 +105,7 @@ class ArenaTask(ABC):
         """Start from given starts in a new simulator; arenas that get none, or end later, go on as ever.
 
         Args:
-            starts: (m, 10), columns ``START_COLUMNS``, handed out in order, first
+            starts: (m, S), columns :attr:`start_columns`, handed out in order, first
                 to the arenas and then to those whose episode ends.
             seed: of noise, randomisation and of starts drawn afterwards.
 
@@ -119,33 +142,37 @@ class ArenaTask(ABC):
         given = np.ascontiguousarray(actions, dtype=np.float64)
         if given.shape != (self.n, self.action_size):
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
-        if not fill_commands(given, self._scaling, self._drives, self._randomiser.kick, self._command_rows):
+        if not fill_commands(given, self._scaling, *self._kind, self._randomiser.kick, self._command_rows):
             raise ValueError("an action is not finite")
-        self.arenas.step(self._randomiser.delayed(self._commands))
-        rewards = np.empty(self.n)
-        ends: BoolArray = np.empty((3, self.n), dtype=np.bool_)
-        ended = self._judge(given, rewards, ends)
-        final = self._perception.look(self.arenas.robots, self.arenas.balls)
+        rewards = np.zeros(self.n)
+        ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
+        for _ in range(self.settings.decide_every):
+            self._oppose()
+            self.arenas.step(self._randomiser.delayed(self._commands))
+            ended = self._judge(given, rewards, ends)
+            final = self._perception.look(self.arenas.robots, self.arenas.balls)
         terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
         return StepResult(final.copy(), rewards, terminated, truncated, final, success)
 
     def _seed_all(self, seed: int | None) -> None:
-        starts, noise, parameters = np.random.SeedSequence(seed).spawn(3)
-        self._start_rng = np.random.default_rng(starts)
-        self._noise_rng = np.random.default_rng(noise)
-        self._parameter_rng = np.random.default_rng(parameters)
+        seeds = [arena.spawn(3) for arena in np.random.SeedSequence(seed).spawn(self.n)]
+        starts, noise, parameters = zip(*seeds, strict=True)
+        self._start_rngs = [np.random.default_rng(each) for each in starts]
+        self._noise_rngs = [np.random.default_rng(each) for each in noise]
+        self._parameter_rngs = [np.random.default_rng(each) for each in parameters]
         self._seeded = True
 
     def _build(self) -> None:
         """Build anew everything that a run changes."""
-        settings, n = self.settings, self.n
-        limits = settings.robot_limits
-        self.arenas = Arenas(settings.field, [limits], settings.stepped_simulator, settings.period, n)
-        self._pool = StartPool(self.sample, self._start_rng, max(n, 64))
-        self._perception = Perception(settings, self.observe, self.observation_size, n, self._noise_rng)
-        self._randomiser = Randomiser(settings, self.arenas, self._parameter_rng)
-        self._commands = np.zeros((n, 1, COMMAND))
+        settings, n, robots = self.settings, self.n, self.robots
+        self.arenas = Arenas(
+            settings.field, self._robot_limits, settings.stepped_simulator, settings.period, n
+        )
+        self._pool = StartPool(self.sample, self._start_rngs, len(self.start_columns))
+        self._perception = Perception(settings, self.observe, self.observation_size, robots, self._noise_rngs)
+        self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
+        self._commands = np.zeros((n, robots, COMMAND))
         self._command_rows = self._commands[:, 0]
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
         self._progress_rows: FloatArray = self._progress.view(np.float64).reshape(n, -1)
@@ -155,11 +182,14 @@ class ArenaTask(ABC):
 
     def _begin(self, which: IntArray) -> FloatArray:
         """Start the episodes of these arenas; their first observations (m, O)."""
-        rows, index = self._pool.take(len(which))
+        rows, index = self._pool.take(which)
         self._starts[which] = index
         self._randomiser.draw(which)
-        self.arenas.place(rows[:, None, :6], rows[:, 6:], which)
-        self._progress[which] = progress_at(rows)
+        robots = rows[:, : 6 * self.robots].reshape(len(rows), self.robots, 6)
+        balls = rows[:, 6 * self.robots : 6 * self.robots + 4]
+        self.arenas.place(robots, balls, which)
+        self._starting(rows, which)
+        self._progress[which] = progress_at(balls)
         self._optimal_time[which] = self._optimum(rows, which)
         return self._perception.start(self.arenas.robots, self.arenas.balls, which)
 
@@ -178,10 +208,12 @@ class ArenaTask(ABC):
         )
 
     def _check_starts(self, rows: FloatArray) -> None:
-        if rows.ndim != 2 or rows.shape[1] != len(START_COLUMNS):
-            raise ValueError(f"starts must have the shape (m, {len(START_COLUMNS)}), not {rows.shape}")
+        columns = self.start_columns
+        if rows.ndim != 2 or rows.shape[1] != len(columns):
+            raise ValueError(f"starts must have the shape (m, {len(columns)}), not {rows.shape}")
         if not np.isfinite(rows).all():
             raise ValueError("a start is not finite")
         most = self.settings.field.outer
-        if (np.abs(rows[:, [0, 6]]) > most[0]).any() or (np.abs(rows[:, [1, 7]]) > most[1]).any():
+        places = [*range(0, 6 * self.robots, 6), 6 * self.robots]
+        if (np.abs(rows[:, places]) > most[0]).any() or (np.abs(rows[:, 1:][:, places]) > most[1]).any():
             raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -17,18 +17,25 @@ Observe = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 class Perception:
-    """How the state of ``n`` arenas is observed."""
+    """How the state of arenas with ``robots`` robots each is observed; noise is drawn by each arena's own."""
 
     def __init__(
-        self, settings: TaskSettings, observe: Observe, size: int, n: int, rng: np.random.Generator
+        self,
+        settings: TaskSettings,
+        observe: Observe,
+        size: int,
+        robots: int,
+        rngs: Sequence[np.random.Generator],
     ) -> None:
+        n = len(rngs)
         self._observe = observe
         self._noise = settings.noise
         self._noisy = settings.noise != NoiseSettings()
         self._differenced = settings.velocities == "finite_difference"
         self._period = settings.period
-        self._rng = rng
-        self._last_robots = np.zeros((n, 1, 6))
+        self._rngs = rngs
+        self._drawn = np.zeros((n, 6 * robots + 4))
+        self._last_robots = np.zeros((n, robots, 6))
         self._last_balls = np.zeros((n, 4))
         self._late = np.zeros((settings.latency + 1, n, size))
         self._newest = 0
@@ -61,9 +68,11 @@ class Perception:
     ) -> tuple[FloatArray, FloatArray]:
         robots, balls, noise = robots.copy(), balls.copy(), self._noise
         if self._noisy:
-            robots[..., :2] += self._draw(noise.robot_position, (len(which), 1, 2))
-            robots[..., 2] = wrap_angles(robots[..., 2] + self._draw(noise.heading, (len(which), 1)))
-            balls[:, :2] += self._draw(noise.ball_position, (len(which), 2))
+            drawn, count = self._draw(which), robots.shape[1]
+            of_robots, of_balls = drawn[:, : 6 * count].reshape(-1, count, 6), drawn[:, 6 * count :]
+            robots[..., :2] += noise.robot_position * of_robots[..., :2]
+            robots[..., 2] = wrap_angles(robots[..., 2] + noise.heading * of_robots[..., 2])
+            balls[:, :2] += noise.ball_position * of_balls[:, :2]
         if self._differenced:
             if first:
                 robots[..., 3:] = 0.0
@@ -76,12 +85,14 @@ class Perception:
             self._last_robots[which] = robots
             self._last_balls[which] = balls
         elif self._noisy:
-            robots[..., 3:5] += self._draw(noise.velocity, (len(which), 1, 2))
-            robots[..., 5] += self._draw(noise.turn_rate, (len(which), 1))
-            balls[:, 2:] += self._draw(noise.velocity, (len(which), 2))
+            robots[..., 3:5] += noise.velocity * of_robots[..., 3:5]
+            robots[..., 5] += noise.turn_rate * of_robots[..., 5]
+            balls[:, 2:] += noise.velocity * of_balls[:, 2:]
         return robots, balls
 
-    def _draw(self, deviation: float, shape: tuple[int, ...]) -> FloatArray:
-        # Drawn even where it is 0, so that one kind of noise does not change another's draws.
-        drawn = self._rng.standard_normal(shape)
-        return deviation * np.minimum(np.maximum(drawn, -CUT_OFF), CUT_OFF)
+    def _draw(self, which: IntArray) -> FloatArray:
+        """Draw a number for each of an arena's, (m, 6 R + 4): one kind of noise changes no other's draws."""
+        drawn = self._drawn[: len(which)]
+        for row, arena in zip(drawn, which.tolist(), strict=True):
+            self._rngs[arena].standard_normal(out=row)
+        return np.minimum(np.maximum(drawn, -CUT_OFF), CUT_OFF)

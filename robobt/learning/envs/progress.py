@@ -15,11 +15,14 @@ class Progress(Protocol):
 
     Attributes:
         ticks: since the start.
-        ticks_held: for how many in a row the ball has lain in the mouth with the dribbler on.
+        ticks_held: for how many in a row the ball has lain in the mouth with the dribbler on; where there
+            is a goalkeeper, in its mouth.
         kick_tick: in which the kicker first fired; -1 before.
         kick_rewarded: 1 once there was what the reward takes for a kick, 0 before.
         total_reward: undiscounted.
         ball_x, ball_y: the ball before the tick [m].
+        carried_x, carried_y: where the ball came into the mouth it lies in; nan in none [m].
+        potential: what the state before the tick is worth to a reward that is shaped by it; nan at first.
     """
 
     ticks: float
@@ -29,16 +32,21 @@ class Progress(Protocol):
     total_reward: float
     ball_x: float
     ball_y: float
+    carried_x: float
+    carried_y: float
+    potential: float
 
 
 PROGRESS = np.dtype([(name, np.float64) for name in Progress.__annotations__])
 """How an episode has gone so far; see :class:`Progress`."""
 
 
-def progress_at(starts: FloatArray) -> NDArray[np.void]:
-    """Return the progress of episodes that begin at these starts (m, 10), columns ``START_COLUMNS``."""
-    progress = np.zeros(len(starts), dtype=PROGRESS)
+def progress_at(balls: FloatArray) -> NDArray[np.void]:
+    """Return the progress of episodes that begin with these balls (m, 4)."""
+    progress = np.zeros(len(balls), dtype=PROGRESS)
     progress["kick_tick"] = -1.0
-    progress["ball_x"] = starts[:, 6]
-    progress["ball_y"] = starts[:, 7]
+    progress["ball_x"] = balls[:, 0]
+    progress["ball_y"] = balls[:, 1]
+    for name in ("carried_x", "carried_y", "potential"):
+        progress[name] = np.nan
     return progress

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from robobt.learning.envs.settings import RandomisationSettings, Span, TaskSettings
@@ -15,13 +17,15 @@ _ACCELERATIONS = (sim.FORWARD_UP, sim.FORWARD_DOWN, sim.SIDE_UP, sim.SIDE_DOWN, 
 class Randomiser:
     """Sets each arena's parameters at the start of an episode, and holds its commands back.
 
+    Speed, accelerations and kicks are those of an arena's first robot, the learner's.
+
     Attributes:
         kick: (n,) factor on the speed of kicks.
         acceleration: (n,) factor on the robot's accelerations.
         top_speed: (n,) factor on its top speed.
     """
 
-    def __init__(self, settings: TaskSettings, arenas: Arenas, rng: np.random.Generator) -> None:
+    def __init__(self, settings: TaskSettings, arenas: Arenas, rngs: Sequence[np.random.Generator]) -> None:
         n = len(arenas.balls)
         self.kick = np.ones(n)
         self.acceleration = np.ones(n)
@@ -29,7 +33,7 @@ class Randomiser:
         self._ranges = settings.randomisation
         self._active = settings.randomisation != RandomisationSettings()
         self._arenas = arenas
-        self._rng = rng
+        self._rngs = rngs
         self._arena_parameters = arenas.arena_parameters.copy()
         self._robot_parameters = arenas.robot_parameters.copy()
         self._grip = arenas.wheel_parameters[:, sim.MU_TANGENT].copy()
@@ -45,14 +49,15 @@ class Randomiser:
         """Draw the parameters of these arenas, whose episodes start."""
         if not self._active:
             return
-        count, arenas, ranges = len(which), self._arenas, self._ranges
-        friction = self._draw(ranges.friction, count)
-        self.acceleration[which] = self._draw(ranges.acceleration, count)
-        mass = self._draw(ranges.mass, count)
-        self.kick[which] = self._draw(ranges.kick_speed, count)
-        dribbler = self._draw(ranges.dribbler, count)
-        delay = self._draw(ranges.control_delay, count)
-        self.top_speed[which] = self._draw(ranges.top_speed, count)
+        arenas, ranges = self._arenas, self._ranges
+        drawn = np.array([self._rngs[arena].random(7) for arena in which.tolist()]).T
+        friction = _within(ranges.friction, drawn[0])
+        self.acceleration[which] = _within(ranges.acceleration, drawn[1])
+        mass = _within(ranges.mass, drawn[2])
+        self.kick[which] = _within(ranges.kick_speed, drawn[3])
+        dribbler = _within(ranges.dribbler, drawn[4])
+        delay = _within(ranges.control_delay, drawn[5])
+        self.top_speed[which] = _within(ranges.top_speed, drawn[6])
         for column in (sim.SLIDE, sim.ROLL):
             arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * friction
         for column in (sim.PULL, sim.SIDE):
@@ -73,7 +78,7 @@ class Randomiser:
             self._waiting[:, which] = 0.0
 
     def delayed(self, commands: FloatArray) -> FloatArray:
-        """Return the commands that reach the robots in this period, (n, 1, 6), of those given so far."""
+        """Return the commands that reach the robots in this period, (n, R, COMMAND)."""
         if self._ranges.control_delay == (0.0, 0.0):
             return commands
         self._newest = (self._newest + 1) % len(self._waiting)
@@ -81,5 +86,6 @@ class Randomiser:
         late: FloatArray = self._waiting[(self._newest - self._delay) % len(self._waiting), self._all]
         return late
 
-    def _draw(self, span: Span, count: int) -> FloatArray:
-        return self._rng.uniform(*span, count)
+
+def _within(span: Span, share: FloatArray) -> FloatArray:
+    return span[0] + (span[1] - span[0]) * share

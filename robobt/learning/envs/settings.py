@@ -119,6 +119,7 @@ class TaskSettings(OrderedSettings):
     limits: RobotLimits | None = Field(None, description="of the robot; None takes the simulator's own")
     period: float = Field(0.030, ge=0.005, le=0.1, description="control period [s]")
     sub_steps: int = Field(4, ge=1, le=100, description="physics steps a control period")
+    decide_every: int = Field(1, ge=1, le=20, description="ticks for which an action holds")
     velocities: Literal["true", "finite_difference"] = Field(
         "true", description="the bodies' own velocities, or differences of two observed positions, 0 at first"
     )

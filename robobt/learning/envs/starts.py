@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from robobt.learning.envs.settings import Span
-from robobt.learning.envs.task import FloatArray
+from robobt.learning.envs.task import FloatArray, IntArray
 
-START_COLUMNS = ("x", "y", "heading", "vx", "vy", "omega", "ball_x", "ball_y", "ball_vx", "ball_vy")
-"""Columns of a start: robot and ball in field coordinates [m, rad, m/s, rad/s]."""
+ROBOT_COLUMNS = ("x", "y", "heading", "vx", "vy", "omega")
+BALL_COLUMNS = ("ball_x", "ball_y", "ball_vx", "ball_vy")
+START_COLUMNS = (*ROBOT_COLUMNS, *BALL_COLUMNS)
+"""Columns of a start with one robot: robot and ball in field coordinates [m, rad, m/s, rad/s]."""
 
 GIVE_UP = 1000
 """Draws of a start after which there is none that fits."""
+
+_BLOCK = 8
+"""Starts that an arena draws at a time: drawing one takes as long."""
 
 Sampler = Callable[[np.random.Generator, int], FloatArray]
 
@@ -25,15 +30,20 @@ def velocities(rng: np.random.Generator, speed: Span, count: int) -> FloatArray:
 
 
 class StartPool:
-    """Starts handed out one after the other: given ones first, then drawn ones."""
+    """Starts handed out one after the other: given ones first, then those that each arena draws for itself.
 
-    def __init__(self, sample: Sampler, rng: np.random.Generator, block: int) -> None:
+    Args:
+        sample: draws so many starts.
+        rngs: a generator for each arena.
+        columns: of a start.
+    """
+
+    def __init__(self, sample: Sampler, rngs: Sequence[np.random.Generator], columns: int) -> None:
         self._sample = sample
-        self._rng = rng
-        self._block = block
-        self._drawn = np.zeros((0, len(START_COLUMNS)))
-        self._next = 0
-        self._given = np.zeros((0, len(START_COLUMNS)))
+        self._rngs = rngs
+        self._drawn = np.zeros((len(rngs), _BLOCK, columns))
+        self._next = [_BLOCK] * len(rngs)
+        self._given = np.zeros((0, columns))
         self._next_given = 0
 
     def give(self, starts: FloatArray) -> None:
@@ -41,19 +51,17 @@ class StartPool:
         self._given = starts
         self._next_given = 0
 
-    def take(self, count: int) -> tuple[FloatArray, list[int]]:
-        """Take the next ``count`` starts, each with its index in the given ones, -1 for a drawn one."""
-        given = min(count, len(self._given) - self._next_given)
+    def take(self, which: IntArray) -> tuple[FloatArray, list[int]]:
+        """Take a start for each of these arenas, with its index in the given ones, -1 for a drawn one."""
+        given = min(len(which), len(self._given) - self._next_given)
         first = self._next_given
         self._next_given += given
-        rows = [self._given[first : first + given]]
-        missing = count - given
-        while missing > 0:
-            if self._next == len(self._drawn):
-                self._drawn = self._sample(self._rng, self._block)
-                self._next = 0
-            part = self._drawn[self._next : self._next + missing]
-            self._next += len(part)
-            missing -= len(part)
-            rows.append(part)
-        return np.concatenate(rows), [*range(first, first + given), *([-1] * (count - given))]
+        rows = np.empty((len(which), self._drawn.shape[2]))
+        rows[:given] = self._given[first : first + given]
+        for k, arena in enumerate(which[given:].tolist(), given):
+            if self._next[arena] == _BLOCK:
+                self._drawn[arena] = self._sample(self._rngs[arena], _BLOCK)
+                self._next[arena] = 0
+            rows[k] = self._drawn[arena, self._next[arena]]
+            self._next[arena] += 1
+        return rows, [*range(first, first + given), *([-1] * (len(which) - given))]

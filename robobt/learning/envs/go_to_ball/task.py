@@ -126,6 +126,9 @@ def _judge(
     episodes = progress.view(PROGRESS)
     any_ended = False
     for i in range(len(balls)):
+        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+            any_ended = True
+            continue
         robot, ball = robots[i, 0], balls[i]
         episode: Progress = episodes[i, 0]
         episode.ticks += 1
@@ -148,8 +151,9 @@ def _judge(
             reached = reached and _would_score(robot[2], ball, goal_x, post_y)
         if contact.max_speed is not None:
             reached = reached and hypot(robot[3], robot[4]) <= contact.max_speed
-        rewards[i] = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing)
-        episode.total_reward += rewards[i]
+        earned = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing)
+        rewards[i] += earned
+        episode.total_reward += earned
         ends[TERMINATED, i] = ends[SUCCESS, i] = reached
         ends[TRUNCATED, i] = not reached and episode.ticks >= settings.time_limit
         any_ended = any_ended or reached or ends[TRUNCATED, i]

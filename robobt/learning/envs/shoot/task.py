@@ -88,6 +88,9 @@ def _judge(
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     any_ended = False
     for i in range(len(balls)):
+        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+            any_ended = True
+            continue
         robot, ball = robots[i, 0], balls[i]
         episode: Progress = episodes[i, 0]
         episode.ticks += 1
@@ -103,10 +106,11 @@ def _judge(
         out = out or in_area(robot[0], robot[1], half_length, field.defense_depth, field.defense_width)
         if settings.lost_distance is not None and episode.kick_tick < 0:
             out = out or hypot(ball[0] - robot[0], ball[1] - robot[1]) > settings.lost_distance
-        rewards[i] = reward(
+        earned = reward(
             weights, firing_counts, half_length, post, robot, ball, actions[i], fired, goal, out, episode
         )
-        episode.total_reward += rewards[i]
+        rewards[i] += earned
+        episode.total_reward += earned
         ended = goal or out
         ends[TERMINATED, i] = ended
         ends[SUCCESS, i] = goal
