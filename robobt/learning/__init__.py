@@ -1,14 +1,19 @@
 """Learning: environments, learners, shot data, predictors, export. Torch lives here.
 
-Importing it makes the environments known to Gymnasium: ``GoToBall-v0`` and
-``ShootTowardsGoal-v0``, also as ``robobt/GoToBall-v0`` and
-``robobt/ShootTowardsGoal-v0``, for ``gymnasium.make`` and, with
+Importing it makes the environments known to Gymnasium: ``GoToBall-v0``,
+``ShootTowardsGoal-v0`` and ``ScoreOnGoalkeeper-v0``, also as ``robobt/GoToBall-v0``
+and so on, for ``gymnasium.make`` and, with
 ``vectorization_mode="vector_entry_point"``, for ``gymnasium.make_vec``.
 """
 
 import gymnasium
 
-for _name, _room in (("GoToBall", "go_to_ball"), ("ShootTowardsGoal", "shoot")):
+_ROOMS = {
+    "GoToBall": "go_to_ball",
+    "ShootTowardsGoal": "shoot",
+    "ScoreOnGoalkeeper": "score_on_goalkeeper",
+}
+for _name, _room in _ROOMS.items():
     _class = f"robobt.learning.envs.{_room}.env:{_name}"
     for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
         # The environments end their episodes themselves, and a second import must not warn.

@@ -1,6 +1,6 @@
-"""The environments in which skills are trained: Go-To-Ball and Shoot-Towards-Goal.
+"""The environments in which skills are trained: Go-To-Ball, Shoot-Towards-Goal and Score-On-Goalkeeper.
 
-A learner steps many arenas at once (:class:`GoToBallTask`, :class:`ShootTask`);
+A learner steps many arenas at once (:class:`GoToBallTask` and its like);
 Gymnasium's interface is over the same.
 """
 
@@ -11,6 +11,11 @@ from robobt.learning.envs.go_to_ball.env import GoToBallEnv as GoToBallEnv
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings as GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask as GoToBallTask
 from robobt.learning.envs.make import make_task as make_task
+from robobt.learning.envs.score_on_goalkeeper.env import ScoreOnGoalkeeperEnv as ScoreOnGoalkeeperEnv
+from robobt.learning.envs.score_on_goalkeeper.settings import (
+    ScoreOnGoalkeeperSettings as ScoreOnGoalkeeperSettings,
+)
+from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask as ScoreOnGoalkeeperTask
 from robobt.learning.envs.settings import HARDWARE_CHALLENGE as HARDWARE_CHALLENGE
 from robobt.learning.envs.settings import TaskSettings as TaskSettings
 from robobt.learning.envs.shoot.env import ShootTowardsGoalEnv as ShootTowardsGoalEnv

@@ -11,6 +11,7 @@ from math import atan2, cos, hypot, inf, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import rolling_after
 from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
 from robobt.motion.pilot import roughly
@@ -39,7 +40,6 @@ from robobt.skills.defence.block_shot import dive_speed
 from robobt.skills.defence.cover_angle import CoverAngle, cover_place
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
-from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -97,15 +97,11 @@ class Goalkeepers:
     def __init__(
         self, field: FieldGeometry, limits: RobotLimits, period: float, n: int, speed: ArrayLike = 1.0
     ) -> None:
-        factors = np.broadcast_to(np.asarray(speed, dtype=np.float64), (n,))
-        if not ((factors > 0.0) & np.isfinite(factors)).all():
-            raise ValueError("speed must be above 0 and finite")
         self.cases: NDArray[np.int64] = np.full(n, HOME, dtype=np.int64)
         self._field = numbers_of(field)
         self._own = numbers(limits)
-        self._given = np.tile(self._own, (n, 1))
-        self._given[:, [TOP, TURN]] *= factors[:, None]
-        self._slowed = factors != 1.0
+        self._given = np.empty((n, len(self._own)))
+        self._slowed: NDArray[np.bool_] = np.empty(n, dtype=np.bool_)
         # Open play, seen by a team whose only robot is the goalkeeper.
         me = RobotState(0, 0.0, 0.0)
         self._scene = scene_of(Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period))
@@ -113,10 +109,17 @@ class Goalkeepers:
         self._period = period
         self._ticks = np.zeros(n)
         self._memory = np.zeros((n, _MEMORY))
-        self.restart(np.arange(n))
+        self.restart(np.arange(n), speed)
 
-    def restart(self, which: NDArray[np.int64]) -> None:
-        """Forget in the arenas ``which`` what was seen there."""
+    def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
+        """Forget what was seen in the arenas ``which``; ``speed``, if given, is as for the constructor."""
+        if speed is not None:
+            factors = np.broadcast_to(np.asarray(speed, dtype=np.float64), which.shape)
+            if not ((factors > 0.0) & np.isfinite(factors)).all():
+                raise ValueError("speed must be above 0 and finite")
+            self._given[which] = self._own
+            self._given[which[:, None], [TOP, TURN]] *= factors[:, None]
+            self._slowed[which] = factors != 1.0
         self._ticks[which] = 0.0
         self._memory[which] = 0.0
         self._memory[which, : 3 * _WATCHES : 3] = -inf
@@ -264,7 +267,7 @@ def _block(
     top, faster, slower = given[TOP], given[FORWARD], given[BRAKING]
     task[TARGET_X], task[TARGET_Y], task[HEADING] = place[0], place[1], direction(here, there)
     task[FINAL_SPEED] = dive_speed(
-        here, (task[3], task[4]), place, there, speed, rolling, top, faster, slower, _SLIDE, _ROLL
+        here, (task[3], task[4]), place, there, speed, rolling, top, faster, slower
     )
     leg, gentle = task[TARGET_X : FINAL_SPEED + 1], slowed or own[REACTION] > 0.0
     return drive_numbers(task[:TARGET_X], leg, own, given, gentle, scene[PERIOD])

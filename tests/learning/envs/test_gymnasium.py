@@ -18,7 +18,7 @@ from robobt.learning.envs.scripted import straight_drive
 
 IDS = pytest.mark.parametrize(
     "name",
-    ["robobt/GoToBall-v0", "GoToBall-v0", "robobt/ShootTowardsGoal-v0", "ShootTowardsGoal-v0"],
+    ["robobt/GoToBall-v0", "ShootTowardsGoal-v0", "ScoreOnGoalkeeper-v0"],
 )
 DISTURBED = {
     "noise": {"robot_position": 0.01, "ball_position": 0.01, "heading": 0.02, "velocity": 0.1},
@@ -130,8 +130,14 @@ def test_the_last_step_tells_what_became_of_the_episode() -> None:
     assert np.isnan(info["kick_time"])
 
 
+def test_every_environment_has_its_name_with_and_without_the_namespace() -> None:
+    for name in ("GoToBall-v0", "ShootTowardsGoal-v0", "ScoreOnGoalkeeper-v0"):
+        with_it, without = gymnasium.spec(f"robobt/{name}"), gymnasium.spec(name)
+        assert with_it.entry_point == without.entry_point
+
+
 @pytest.mark.integration
-@pytest.mark.parametrize("name", ["GoToBall-v0", "ShootTowardsGoal-v0"])
+@pytest.mark.parametrize("name", ["GoToBall-v0", "ShootTowardsGoal-v0", "ScoreOnGoalkeeper-v0"])
 @pytest.mark.parametrize("settings", [None, {**DISTURBED, "velocities": "finite_difference"}])
 def test_nothing_observed_lies_outside_the_spaces(name: str, settings: Any) -> None:
     envs = many(name, 64, settings=settings)

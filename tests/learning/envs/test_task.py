@@ -11,6 +11,8 @@ from robobt.learning.envs import (
     ArenaTask,
     GoToBallSettings,
     GoToBallTask,
+    ScoreOnGoalkeeperSettings,
+    ScoreOnGoalkeeperTask,
     ShootSettings,
     ShootTask,
     run_starts,
@@ -27,10 +29,20 @@ NOISY = {
 }
 
 
-def noisy(kind: type[GoToBallTask] | type[ShootTask], n: int, seed: int) -> ArenaTask:
-    if kind is GoToBallTask:
-        return GoToBallTask(GoToBallSettings.model_validate(NOISY), n, seed)
-    return ShootTask(ShootSettings.model_validate(NOISY), n, seed)
+SETTINGS = {
+    GoToBallTask: GoToBallSettings,
+    ShootTask: ShootSettings,
+    ScoreOnGoalkeeperTask: ScoreOnGoalkeeperSettings,
+}
+
+
+def make_settings(kind: Any, changes: dict[str, Any]) -> Any:
+    return SETTINGS[kind].model_validate(changes)
+
+
+def noisy(kind: Any, n: int, seed: int) -> ArenaTask:
+    made: ArenaTask = kind(make_settings(kind, NOISY), n, seed)
+    return made
 
 
 def trace(task: ArenaTask, ticks: int, seed: int | None = None) -> list[bytes]:
@@ -80,6 +92,26 @@ def test_an_arena_among_many_moves_as_it_would_alone(kind: Any) -> None:
 def test_the_same_seed_gives_the_same_run_bit_for_bit(kind: Any, n: int) -> None:
     assert trace(kind(n=n, seed=5), 120) == trace(kind(n=n, seed=5), 120)
     assert trace(kind(n=n, seed=5), 20) != trace(kind(n=n, seed=6), 20)
+
+
+@pytest.mark.parametrize("kind", [GoToBallTask, ShootTask, ScoreOnGoalkeeperTask])
+def test_an_arenas_history_follows_from_the_seed_and_its_index_alone(kind: Any) -> None:
+    rng = np.random.default_rng(1)
+    settings = make_settings(kind, NOISY)
+    one, many = kind(settings, 1, seed=5), kind(settings, 64, seed=5)
+    np.testing.assert_array_equal(one.reset()[0], many.reset()[0])
+    ended = 0
+    actions = rng.uniform(-1, 1, (64, one.action_size))
+    for tick in range(250):
+        if tick % 10 == 0:
+            actions = rng.uniform(-1, 1, (64, one.action_size))
+        alone, among = one.step(actions[:1]), many.step(actions)
+        np.testing.assert_array_equal(alone.observation[0], among.observation[0])
+        np.testing.assert_array_equal(alone.final_observation[0], among.final_observation[0])
+        assert alone.reward[0] == among.reward[0]
+        ended += int(alone.terminated[0] or alone.truncated[0])
+        assert alone.success[0] == among.success[0]
+    assert ended >= (kind is not GoToBallTask)
 
 
 @BOTH

@@ -1,0 +1,107 @@
+"""Score-On-Goalkeeper as Gymnasium knows it: its specification."""
+
+from __future__ import annotations
+
+import numpy as np
+from gymnasium.spaces import Box
+
+from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
+from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
+from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
+from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
+from robobt.world.state import ROBOT_RADIUS
+
+
+def _space(settings: ScoreOnGoalkeeperSettings) -> Box[np.float32]:
+    """Return bounds that follow from walls, limits, kicker and noise."""
+    limits, starts, noise = settings.robot_limits, settings.starts, settings.noise
+    most, fastest = farthest(settings), limits.max_speed * settings.randomisation.top_speed[1]
+    driven = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+    turned = min(limits.max_turn, settings.action.max_turn) + driven / ROBOT_RADIUS
+    # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+    kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
+    own, ball = (
+        seen_speed(settings, driven, noise.robot_position),
+        seen_speed(settings, max(kicked, starts.ball_speed[1]), noise.ball_position),
+    )
+    keeper = seen_speed(settings, settings.simulator.limits.max_speed + BUMP, noise.robot_position)
+    turn = seen_turn(settings, turned)
+    posts = [most + settings.field.goal_width] * 4
+    high = [own, own, turn, most, most, ball, ball, 1.0, 1.0, *posts, most, most, keeper, keeper]
+    return bounded(high, distances=())
+
+
+_KIND = EnvKind(ScoreOnGoalkeeperTask, ScoreOnGoalkeeperSettings, _space)
+
+
+class ScoreOnGoalkeeperEnv(SingleEnv):
+    """Score-On-Goalkeeper: get the ball, carry it to where it can be kicked past the goalkeeper, and score.
+
+    What is given here are the defaults of
+    :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings`, where all of it can be changed.
+
+    One step is a decision and holds for two control periods of 30 ms, each of 4 physics steps. The
+    dribbler is on all the time and holds the ball with limited force.
+
+    **Observation**, float32, :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`; the frame is the robot's, x
+    ahead and y to its left; velocities are those over the field:
+
+    | entry | meaning | unit |
+    | --- | --- | --- |
+    | 0, 1, 2 | the robot's velocity and turning rate | m/s, rad/s |
+    | 3, 4 | position of the ball | m |
+    | 5, 6 | its velocity | m/s |
+    | 7, 8 | sine and cosine of the angle from the heading to the middle of the goal | 1 |
+    | 9, 10 | position of the goal's left post | m |
+    | 11, 12 | that of the right one | m |
+    | 13, 14 | position of the goalkeeper | m |
+    | 15, 16 | its velocity | m/s |
+
+    **Action**, float32, :data:`robobt.models.actions.SCORE_ACTION`:
+
+    | entry | meaning | of 1 | range |
+    | --- | --- | --- | --- |
+    | 0, 1 | velocity ahead and to the left, shortened to 3 m/s together | 3 m/s | [-1, 1] |
+    | 2 | turning rate | 6 rad/s | [-1, 1] |
+    | 3 | kick where above 0, with 6 m/s, if the ball is in the mouth | - | [-1, 1] |
+
+    **Goalkeeper**: drawn anew for each episode, with a top speed of 1 to 3 m/s and a place 0.12 to 0.6 m
+    before the line, of four kinds that differ in what they watch until a shot comes: the ball, the line from
+    ball to goal, the attacker's heading, or the ball, towards which they come out
+    (:mod:`robobt.learning.opponents.keepers`). The shipped play ``goalkeeper`` is the kind ``shipped``. It
+    is not among those trained against, so that it can be evaluated on.
+
+    **Reward** a period of 30 ms; the weights are in
+    :class:`~robobt.learning.envs.score_on_goalkeeper.rewards.ScoreReward`:
+
+    | term | value |
+    | --- | --- |
+    | goal | 5 on a goal |
+    | lost | -0.3 where the episode ends without one |
+    | time | -0.005 |
+    | aimed | 0.5 on a kick between the posts |
+    | unreached | up to 1.5 on such a kick: the speed, over 2 m/s, with which the goalkeeper would have to get into its way |
+    | miss | -0.1 on a kick that will not go between the posts |
+    | approach, advance, facing | what the state is worth more than the one before, but for a shot on its way: -0.5 for each metre from robot to ball, -0.3 for each from ball to goal, 0.5 (1 + cos) of the heading to the goal with the ball in the mouth |
+
+    **Start**: the attacker from 3.5 m before the middle line to 0.4 m before the defence area, more often
+    near the goal and turned towards it; in six of ten episodes with the ball in its mouth, else the ball
+    anywhere there, with up to 0.5 m/s.
+
+    **End**: terminated by a goal, which is success; terminated by a ball over a line, one that the goalkeeper
+    has held for 8 periods or that rests where it is the goalkeeper's, and by an attacker in the
+    defence area, or partly inside with the ball; truncated after 334 periods (10 s).
+
+    Args:
+        settings: a :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings` or the mapping that makes
+            one, as out of a YAML file.
+        render_mode: None or "rgb_array".
+    """  # noqa: E501 - a table's row is a line
+
+    kind = _KIND
+
+
+class ScoreOnGoalkeeperVectorEnv(ManyEnv):
+    """Many arenas of :class:`ScoreOnGoalkeeperEnv`, which says what is observed, rewarded and ended."""
+
+    kind = _KIND

@@ -1,0 +1,112 @@
+"""The reward of Score-On-Goalkeeper: what a weight is called and what it weighs.
+
+For a new term add its weight to :class:`ScoreReward` and the term to :func:`reward`.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, isnan, nan
+
+from pydantic import Field
+
+from robobt.config.validation import Settings
+from robobt.learning.envs.progress import Progress
+from robobt.learning.envs.task import FloatArray
+from robobt.world.compiled import compilable
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+_SLOW = 1.0
+"""A shot that is slower than this is over [m/s]."""
+
+
+class ScoreReward(Settings):
+    """Weights of the reward's terms."""
+
+    goal: float = Field(5.0, ge=0, le=1e3, description="on a goal")
+    lost: float = Field(0.3, ge=0, le=1e3, description="taken off where the episode ends without one")
+    time: float = Field(0.005, ge=0, le=10, description="taken off every tick")
+    aimed: float = Field(0.5, ge=0, le=100, description="on a kick that will go between the posts")
+    unreached: float = Field(
+        1.5, ge=0, le=100, description="on such a kick, times how hard it is to reach in time"
+    )
+    miss: float = Field(0.1, ge=0, le=100, description="taken off a kick that will not go between the posts")
+    approach: float = Field(0.5, ge=0, le=10, description="for each metre nearer to the ball")
+    advance: float = Field(0.3, ge=0, le=10, description="for each metre that the ball is nearer to the goal")
+    facing: float = Field(
+        0.5, ge=0, le=10, description="for a ball in the mouth, times the cosine of the heading to the goal"
+    )
+    unreachable: float = Field(
+        2.0, gt=0, le=20, description="a kick counts in full if the goalkeeper had to be so fast [m/s]"
+    )
+
+
+@compilable
+def reward(
+    weights: ScoreReward,
+    goal_x: float,
+    post_y: float,
+    robot: FloatArray,
+    keeper: FloatArray,
+    ball: FloatArray,
+    held: bool,
+    fired: bool,
+    goal: bool,
+    lost: bool,
+    progress: Progress,
+) -> float:
+    """Compute the reward of a tick.
+
+    Args:
+        weights: of the terms.
+        goal_x: where the attacked goal's line is [m].
+        post_y: distance of its posts from the field's long axis [m].
+        robot: (6,) x, y, heading, vx, vy, omega of the attacker after the tick.
+        keeper: (6,) of the goalkeeper.
+        ball: (4,) x, y, vx, vy after it.
+        held: whether the ball lies in the attacker's mouth.
+        fired: whether the attacker's kicker fired in it.
+        goal: whether a goal was scored.
+        lost: whether the episode ended otherwise.
+        progress: of the episode; keeps the potential, which pays for what the state is worth more than
+            the one before.
+    """
+    total = -weights.time
+    if fired:
+        earned = kicked(weights, goal_x, post_y, keeper, ball)
+        total += earned
+        progress.kick_rewarded = 1.0 if earned > 0.0 else 0.0
+    elif held or hypot(ball[2], ball[3]) < _SLOW:
+        progress.kick_rewarded = 0.0
+    potential = -weights.approach * hypot(ball[0] - robot[0], ball[1] - robot[1])
+    potential -= weights.advance * hypot(goal_x - ball[0], ball[1])
+    if held:
+        potential += weights.facing * (1.0 + cos(atan2(-robot[1], goal_x - robot[0]) - robot[2]))
+    if progress.kick_rewarded > 0.0:
+        # Who shoots at the goal gives the ball away, and shall not pay for that.
+        potential = nan
+    elif not isnan(progress.potential):
+        total += potential - progress.potential
+    progress.potential = potential
+    if goal:
+        total += weights.goal
+    elif lost:
+        total -= weights.lost
+    return total
+
+
+@compilable
+def kicked(weights: ScoreReward, goal_x: float, post_y: float, keeper: FloatArray, ball: FloatArray) -> float:
+    """Judge a kick by where it goes, as soon as the ball has left."""
+    if ball[2] <= 0.0:
+        return -weights.miss
+    if abs(ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]) > post_y - BALL_RADIUS:
+        return -weights.miss
+    # Where the goalkeeper stands beside the shot's line, and how long the ball takes to get there.
+    fast = hypot(ball[2], ball[3])
+    dx, dy = keeper[0] - ball[0], keeper[1] - ball[1]
+    ahead, beside = (dx * ball[2] + dy * ball[3]) / fast, abs(dy * ball[2] - dx * ball[3]) / fast
+    lacking = beside - ROBOT_RADIUS - BALL_RADIUS
+    time = max(ahead, 0.1) / fast
+    hard = min(max(lacking / (time * weights.unreachable), 0.0), 1.0)
+    worth: float = weights.aimed + weights.unreached * hard
+    return worth

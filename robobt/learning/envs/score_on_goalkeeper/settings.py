@@ -1,0 +1,70 @@
+"""Settings of Score-On-Goalkeeper."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward
+from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
+from robobt.models.actions import SCORE_ACTION, ActionScaling
+
+Kind = Literal["line", "angle", "aim", "rush", "shipped"]
+
+
+class KeeperSettings(OrderedSettings):
+    """The goalkeepers that are met; each episode's is drawn anew.
+
+    ``shipped`` is the play ``goalkeeper``; the others are in :mod:`robobt.learning.opponents.keepers`.
+    """
+
+    kinds: tuple[Kind, ...] = Field(
+        ("line", "angle", "aim", "rush"), min_length=1, max_length=20, description="one of them is drawn"
+    )
+    speed: Span = Field((1.0, 3.0), description="top speed [m/s]")
+    out: Span = Field((0.12, 0.6), description="how far before the goal line they stand [m]")
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.speed[0] <= 0.0 or self.out[0] < 0.0:
+            raise ValueError("speed must be above 0 and out not negative")
+        return self
+
+
+class ScoreStarts(OrderedSettings):
+    """Where episodes start; None for a range takes from 3.5 m before the middle line to near the area."""
+
+    held: float = Field(0.6, ge=0, le=1, description="share that starts with the ball in the mouth")
+    robot_x: Span | None = None
+    robot_y: Span | None = None
+    easy: bool = Field(
+        True,
+        description="x is more often near the goal than far from it, and the heading more often towards it",
+    )
+    robot_speed: Span = Field((0.0, 0.0), description="in any direction, without the ball [m/s]")
+    ball_speed: Span = Field((0.0, 0.5), description="in any direction, of a free ball [m/s]")
+    keeper_y: Span = Field((-0.5, 0.5), description="where the goalkeeper is [m]")
+
+
+class ScoreOnGoalkeeperSettings(TaskSettings):
+    """Score-On-Goalkeeper: get the ball and score."""
+
+    action: ActionScaling = SCORE_ACTION
+    time_limit: int = Field(334, ge=1, le=100_000, description="ticks to the end of an episode")
+    decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
+    keepers: KeeperSettings = KeeperSettings()
+    held_by_keeper: int = Field(
+        8, ge=1, le=1000, description="ticks in its mouth after which the ball is the goalkeeper's"
+    )
+    dribbling: float | None = Field(
+        None, gt=0, le=20, description="longest way with the ball in the mouth, by the rules 1 [m]"
+    )
+    reward: ScoreReward = ScoreReward()
+    starts: ScoreStarts = ScoreStarts()
+
+    @model_validator(mode="after")
+    def _kicks(self) -> Self:
+        if self.action.kind != "drive_and_kick":
+            raise ValueError("action: Score-On-Goalkeeper needs drive_and_kick actions")
+        return self

@@ -1,0 +1,148 @@
+"""Score-On-Goalkeeper over many arenas."""
+
+from __future__ import annotations
+
+from math import hypot, isnan, nan
+
+import numpy as np
+
+from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, reward
+from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
+from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
+from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.learning.opponents.keepers import TRAITS, Keepers
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.features import ObservationSpec
+from robobt.world.field import FieldGeometry
+from robobt.world.limits import RobotLimits
+from robobt.world.rules import goal_side, in_area, is_out
+from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
+from robobt.world.state import ROBOT_RADIUS
+
+_SETTINGS, _FIELD = numbers_dtype(ScoreOnGoalkeeperSettings), numbers_dtype(FieldGeometry)
+_WEIGHTS = numbers_dtype(ScoreReward)
+
+
+class ScoreOnGoalkeeperTask(ArenaTask):
+    """Get the ball and score; :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification."""
+
+    observation: ObservationSpec = SCORE_ON_GOALKEEPER
+    robots = 2
+    start_columns = COLUMNS
+    settings: ScoreOnGoalkeeperSettings
+
+    def __init__(
+        self, settings: ScoreOnGoalkeeperSettings | None = None, n: int = 1, seed: int | None = None
+    ) -> None:
+        super().__init__(ScoreOnGoalkeeperSettings() if settings is None else settings, n, seed)
+        field = self.settings.field
+        self._goal = field.half_length, field.goal_width / 2
+        self._field = numbers_of(field)
+        self._weights = numbers_of(self.settings.reward)
+
+    def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """See :func:`~robobt.learning.envs.score_on_goalkeeper.starts.score_starts`."""
+        return score_starts(self.settings, rng, count)
+
+    def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
+        """See :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`."""
+        return score_on_goalkeeper_rows(robots, balls, *self._goal)
+
+    @property
+    def _robot_limits(self) -> list[RobotLimits | None]:
+        return [self.settings.robot_limits, None]
+
+    def _build(self) -> None:
+        settings = self.settings
+        self._keepers = Keepers(settings.field, settings.simulator.limits, settings.period, self.n)
+        super()._build()
+
+    def _starting(self, starts: FloatArray, which: IntArray) -> None:
+        self._keepers.restart(which, starts[:, -len(TRAITS) :])
+
+    def _oppose(self) -> None:
+        arenas = self.arenas
+        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, self._commands[:, 1])
+
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
+        arenas = self.arenas
+        return _judge(
+            self._numbers,
+            self._field,
+            self._weights,
+            arenas.robots,
+            arenas.balls,
+            arenas.contact,
+            arenas.kicked,
+            self._keepers.kept,
+            self._progress_rows,
+            rewards,
+            ends,
+        )
+
+    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
+        # Nobody knows the shortest way round a goalkeeper.
+        return np.full(len(which), np.nan)
+
+
+@compiled
+def _judge(
+    settings_: FloatArray,
+    field_: FloatArray,
+    weights_: FloatArray,
+    robots: FloatArray,
+    balls: FloatArray,
+    contact: BoolArray,
+    kicked: BoolArray,
+    kept: BoolArray,
+    progress: FloatArray,
+    rewards: FloatArray,
+    ends: BoolArray,
+) -> bool:
+    settings: ScoreOnGoalkeeperSettings = settings_.view(_SETTINGS)[0]
+    field: FieldGeometry = field_.view(_FIELD)[0]
+    weights: ScoreReward = weights_.view(_WEIGHTS)[0]
+    episodes = progress.view(PROGRESS)
+    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
+    depth, width = field.defense_depth, field.defense_width
+    any_ended = False
+    for i in range(len(balls)):
+        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+            any_ended = True
+            continue
+        robot, ball = robots[i, 0], balls[i]
+        episode: Progress = episodes[i, 0]
+        episode.ticks += 1
+        held, fired = contact[i, 0], kicked[i, 0]
+        if fired and episode.kick_tick < 0:
+            episode.kick_tick = episode.ticks
+        episode.ticks_held = episode.ticks_held + 1 if contact[i, 1] else 0.0
+        goal = goal_side(episode.ball_x, episode.ball_y, ball[0], ball[1], half_length, half_width, post) > 0
+        episode.ball_x = ball[0]
+        episode.ball_y = ball[1]
+        lost = is_out(ball[0], ball[1], half_length, half_width) or kept[i]
+        lost = lost or episode.ticks_held >= settings.held_by_keeper
+        # The rules: no touching the ball in their defence area, not even partly inside.
+        lost = lost or in_area(robot[0], robot[1], half_length, depth, width)
+        lost = lost or (held and in_area(robot[0], robot[1], half_length, depth, width, ROBOT_RADIUS))
+        if not held:
+            episode.carried_x = episode.carried_y = nan
+        elif isnan(episode.carried_x):
+            episode.carried_x, episode.carried_y = ball[0], ball[1]
+        elif settings.dribbling is not None:
+            way = hypot(ball[0] - episode.carried_x, ball[1] - episode.carried_y)
+            lost = lost or way > settings.dribbling
+        lost = lost and not goal
+        earned = reward(
+            weights, half_length, post, robot, robots[i, 1], ball, held, fired, goal, lost, episode
+        )
+        rewards[i] += earned
+        episode.total_reward += earned
+        ended = goal or lost
+        ends[TERMINATED, i] = ended
+        ends[SUCCESS, i] = goal
+        ends[TRUNCATED, i] = not ended and episode.ticks >= settings.time_limit
+        any_ended = any_ended or ended or ends[TRUNCATED, i]
+    return any_ended

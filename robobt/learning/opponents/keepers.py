@@ -1,0 +1,173 @@
+"""Goalkeepers of several kinds over many arenas, for attackers to be trained against and evaluated on.
+
+Four kinds are a few lines each and differ in what they watch; the fifth, "shipped", is the play
+``goalkeeper`` (:mod:`robobt.learning.opponents.goalkeeper`), for evaluations.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.learning.opponents.goalkeeper import CLEAR, FETCH, Goalkeepers
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.field import FieldGeometry
+from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.rules import in_area
+from robobt.world.state import ROBOT_RADIUS
+
+KINDS = ("line", "angle", "aim", "rush", "shipped")
+"""What a goalkeeper does until a shot comes, onto whose line all of them drive.
+
+``line`` stays level with the ball, ``angle`` between ball and goal, ``aim`` where the nearest robot's
+heading crosses its line, ``rush`` comes out towards a near ball.
+"""
+
+_LINE, _ANGLE, _AIM, _RUSH, SHIPPED = range(5)
+TRAITS = ("keeper_kind", "keeper_speed", "keeper_out")
+"""What makes a goalkeeper: index of its kind, top speed [m/s], how far before its line it stands [m]."""
+
+_FIELD = numbers_dtype(FieldGeometry)
+_SHOT = 1.0
+"""A ball this fast towards the goal is a shot [m/s]."""
+_BESIDE = 0.1
+"""How far beside the posts a shot still counts [m]."""
+_NEAR = 3.0
+"""From this distance of the ball on, ``rush`` comes out [m]."""
+_FARTHEST = 0.9
+"""It comes so far, which is inside the defence area [m]."""
+_REST = 0.1
+"""A ball slower than this rests [m/s]."""
+_LOOK, _TURN = 6.0, 6.0
+"""How fast they turn for each radian [1/s], and at most [rad/s]."""
+
+
+class Keepers:
+    """A goalkeeper in each of ``n`` arenas, the second robot there; it defends the goal at +x.
+
+    Args:
+        field: dimensions.
+        limits: what the goalkeepers can do.
+        period: control period [s].
+        n: number of arenas.
+
+    Attributes:
+        kept: (n,) whether the ball rests where it is the goalkeeper's to fetch.
+    """
+
+    def __init__(self, field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> None:
+        self.kept: NDArray[np.bool_] = np.zeros(n, dtype=np.bool_)
+        self._field = numbers_of(field)
+        self._braking = min(limits.braking, limits.lateral_braking)
+        self._period = period
+        self._top = limits.max_speed
+        self._traits = np.zeros((n, len(TRAITS)))
+        self._shipped = Goalkeepers(field, limits, period, n)
+        self._theirs = np.zeros((n, 6))
+        self._are_shipped: NDArray[np.bool_] = np.zeros(n, dtype=np.bool_)
+
+    def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
+        """Begin anew in the arenas ``which``, with goalkeepers of these ``traits`` (m, 3), :data:`TRAITS`."""
+        self._traits[which] = traits
+        self.kept[which] = False
+        shipped = traits[:, 0] == SHIPPED
+        self._are_shipped[which] = shipped
+        self._shipped.restart(which[shipped], traits[shipped, 1] / self._top)
+
+    def decide(
+        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
+    ) -> None:
+        """Decide one control tick; arguments as for :meth:`Goalkeepers.decide`, which this fills likewise."""
+        _decide(
+            self._field,
+            self._braking,
+            self._period,
+            self._traits,
+            robots,
+            balls,
+            contact,
+            commands,
+            self.kept,
+        )
+        shipped = self._are_shipped
+        if shipped.any():
+            self._shipped.decide(robots, balls, contact, 1, self._theirs)
+            commands[shipped, :6] = self._theirs[shipped]
+            self.kept[shipped] |= np.isin(self._shipped.cases[shipped], (FETCH, CLEAR))
+
+
+@compiled
+def _decide(
+    field_: FloatArray,
+    braking: float,
+    period: float,
+    traits: FloatArray,
+    robots: FloatArray,
+    balls: FloatArray,
+    contact: NDArray[np.bool_],
+    commands: FloatArray,
+    kept: NDArray[np.bool_],
+) -> None:
+    field: FieldGeometry = field_.view(_FIELD)[0]
+    goal_x, half_goal = field.length / 2, field.goal_width / 2
+    for i in range(len(balls)):
+        me, ball = robots[i, 1], balls[i]
+        near = in_area(ball[0], ball[1], goal_x, field.defense_depth, field.defense_width, ROBOT_RADIUS)
+        kept[i] = near and not contact[i, 0] and hypot(ball[2], ball[3]) < _REST
+        x, y = _place(int(traits[i, 0]), traits[i, 2], robots[i, 0], me, ball, goal_x, half_goal)
+        dx, dy = x - me[0], y - me[1]
+        way = hypot(dx, dy)
+        # As fast as it may be to stop there.
+        speed = min(traits[i, 1], sqrt(2.0 * 0.8 * braking * way), way / period)
+        vx, vy = (speed * dx / way, speed * dy / way) if way > 0.0 else (0.0, 0.0)
+        c, s = cos(me[2]), sin(me[2])
+        command = commands[i]
+        command[:] = 0.0
+        command[0], command[1] = c * vx + s * vy, c * vy - s * vx
+        turn = _LOOK * wrap_angle(atan2(ball[1] - me[1], ball[0] - me[0]) - me[2])
+        command[2] = min(max(turn, -_TURN), _TURN)
+        command[5] = 1.0
+
+
+@compiled
+def _place(
+    kind: int,
+    out: float,
+    attacker: FloatArray,
+    me: FloatArray,
+    ball: FloatArray,
+    goal_x: float,
+    half_goal: float,
+) -> tuple[float, float]:
+    """Return where a goalkeeper drives now."""
+    line = goal_x - out
+    if ball[2] > _SHOT and not _pointed_by(attacker, ball):
+        crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
+        if abs(crosses) < half_goal + _BESIDE and ball[0] < goal_x:
+            # The nearest point on the shot's line, not behind the goal's.
+            fast = hypot(ball[2], ball[3])
+            ux, uy = ball[2] / fast, ball[3] / fast
+            along = max((me[0] - ball[0]) * ux + (me[1] - ball[1]) * uy, 0.0)
+            x = min(ball[0] + along * ux, goal_x - ROBOT_RADIUS)
+            return x, ball[1] + (x - ball[0]) * uy / ux
+    if kind == _LINE:
+        return line, min(max(ball[1], -half_goal), half_goal)
+    if kind == _AIM:
+        ahead = cos(attacker[2])
+        y = ball[1] + (line - ball[0]) * sin(attacker[2]) / ahead if ahead > 0.1 else 0.0
+        return line, min(max(y, -half_goal), half_goal)
+    dx, dy = ball[0] - goal_x, ball[1]
+    far = max(hypot(dx, dy), 1e-6)
+    if kind == _RUSH:
+        out += max(min(_FARTHEST, far - 1.0) - out, 0.0) if far < _NEAR else 0.0
+    return goal_x + min(out * dx / far, -ROBOT_RADIUS), out * dy / far
+
+
+@compiled
+def _pointed_by(attacker: FloatArray, ball: FloatArray) -> bool:
+    """Return whether the attacker still drives the ball: nothing has been shot yet."""
+    near = hypot(ball[0] - attacker[0], ball[1] - attacker[1]) < 2.0 * ROBOT_RADIUS
+    return near and hypot(ball[2] - attacker[3], ball[3] - attacker[4]) < _SHOT
