@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from robobt.learning.training.progress import Progress as Standing
     from robobt.learning.training.results import TrainResult
 
-Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball or shoot.")]
+Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball, shoot or score_on_goalkeeper.")]
 Changes = Annotated[
     list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")
 ]
@@ -84,11 +84,7 @@ def train(
                 live.show,
             )
         except KeyboardInterrupt:
-            kept = any(folder.rglob("checkpoint*")) or any(folder.rglob("result.json"))
-            told = (
-                f"--resume goes on with what is in {folder}" if kept else "nothing is written to go on from"
-            )
-            errors.print(f"stopped; {escape(told)}", soft_wrap=True)
+            errors.print(f"stopped; --resume goes on with what is in {escape(str(folder))}", soft_wrap=True)
             raise typer.Exit(130) from None
     if as_json:
         print_json(figures_of(results))
@@ -180,7 +176,7 @@ class _LiveTable:
                 "-" if latest is None else _time(latest.mean_time, latest.time_ratio),
                 "-" if best is None else f"{best.success:.1%} {_time(best.mean_time, best.time_ratio)}",
                 f"{now.cpu_s:.0f}",
-                "-" if latest is None else f"{int(now.left_s) // 60}:{int(now.left_s) % 60:02}",
+                f"{int(now.left_s) // 60}:{int(now.left_s) % 60:02}",
             )
         return shown
 

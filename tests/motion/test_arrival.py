@@ -62,8 +62,7 @@ def test_the_pilot_takes_little_longer(velocity: tuple[float, float, float]) -> 
 
 def meet(me: RobotState, *ball: float) -> tuple[float, float, float]:
     state = np.array(ball)
-    rolling, slide, roll = float(np.hypot(*ball[2:])), 3.0, 0.3
-    time, x, y = meetings(movers([me]), state, rolling, slide, roll, *SIZE)[0].tolist()
+    time, x, y = meetings(movers([me]), state, float(np.hypot(*ball[2:])), *SIZE)[0].tolist()
     return time, x, y
 
 

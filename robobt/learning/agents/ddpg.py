@@ -24,6 +24,7 @@ from torch import Tensor
 
 from robobt.learning.agents.distributional import Atoms
 from robobt.learning.agents.networks import Actor, Critic
+from robobt.learning.agents.optimiser import Adam, restore_state, state_of
 from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.agents.settings import AgentSettings
 
@@ -56,8 +57,8 @@ class DDPG:
         for frozen in (self.target_actor, self.target_critic):
             frozen.requires_grad_(False)
         decay = settings.weight_decay
-        self._actor_adam = _Adam(list(self.actor.parameters()), settings.actor_rate, decay)
-        self._critic_adam = _Adam(list(self.critic.parameters()), settings.critic_rate, decay)
+        self._actor_adam = Adam(list(self.actor.parameters()), settings.actor_rate, decay)
+        self._critic_adam = Adam(list(self.critic.parameters()), settings.critic_rate, decay)
         self._online: list[Tensor] = [*self.actor.parameters(), *self.critic.parameters()]
         self._targets: list[Tensor] = [*self.target_actor.parameters(), *self.target_critic.parameters()]
         self._atoms = Atoms(*settings.returns, settings.atoms) if settings.atoms else None
@@ -159,8 +160,7 @@ class DDPG:
     def set_rates(self, share: float) -> None:
         """Scale both learning rates to ``share`` of those in the settings."""
         for optimiser in (self._actor_adam, self._critic_adam):
-            for group in optimiser.adam.param_groups:
-                group["lr"] = optimiser.rate * share
+            optimiser.set_rate(share)
 
     def reset_sums(self) -> None:
         """Set :attr:`critic_loss` and :attr:`value` to zero."""
@@ -168,16 +168,12 @@ class DDPG:
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Return weights, optimisers and counters as arrays by name."""
-        state: dict[str, NDArray[np.generic]] = {
+        sums = np.array([float(self.critic_loss), float(self.value)])
+        return {
             "updates": np.array([self.updates]),
-            "sums": np.array([float(self.critic_loss), float(self.value)]),
+            "sums": sums,
+            **state_of(self._modules(), self._optimisers()),
         }
-        for name, module in self._modules():
-            state |= {f"{name}.{key}": tensor.numpy() for key, tensor in module.state_dict().items()}
-        for name, optimiser in self._optimisers():
-            for index, moments in optimiser.state_dict()["state"].items():
-                state |= {f"{name}.{index}.{key}": tensor.numpy() for key, tensor in moments.items()}
-        return {key: array.copy() for key, array in state.items()}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
         """Take over another agent's :meth:`state`.
@@ -189,18 +185,7 @@ class DDPG:
         self.updates = int(state["updates"].tolist()[0])
         loss, value = state["sums"].tolist()
         self.critic_loss, self.value = torch.tensor(loss), torch.tensor(value)
-        for name, module in self._modules():
-            module.load_state_dict(
-                {key: torch.from_numpy(state[f"{name}.{key}"].copy()) for key in module.state_dict()}
-            )
-        for name, optimiser in self._optimisers():
-            whole = optimiser.state_dict()
-            moments: dict[int, dict[str, Tensor]] = {}
-            for key, array in state.items():
-                if key.startswith(f"{name}."):
-                    _, index, entry = key.split(".")
-                    moments.setdefault(int(index), {})[entry] = torch.from_numpy(array.copy())
-            optimiser.load_state_dict({"state": moments, "param_groups": whole["param_groups"]})
+        restore_state(state, self._modules(), self._optimisers())
 
     def _modules(self) -> tuple[tuple[str, torch.nn.Module], ...]:
         return (
@@ -210,21 +195,5 @@ class DDPG:
             ("target_critic", self.target_critic),
         )
 
-    def _optimisers(self) -> tuple[tuple[str, torch.optim.Adam], ...]:
-        return (("actor_adam", self._actor_adam.adam), ("critic_adam", self._critic_adam.adam))
-
-
-class _Adam:
-    """Adam over all weights of a network, in single calls whatever their number."""
-
-    def __init__(self, weights: list[torch.nn.Parameter], rate: float, decay: float) -> None:
-        self.weights = weights
-        self.rate = rate
-        self.adam = torch.optim.Adam(weights, lr=rate, weight_decay=decay, fused=True)
-        for weight in weights:
-            weight.grad = torch.zeros_like(weight)
-        self._gradients = [weight.grad for weight in weights if weight.grad is not None]
-
-    def step(self, gradients: Sequence[Tensor]) -> None:
-        torch._foreach_copy_(self._gradients, list(gradients))
-        self.adam.step()
+    def _optimisers(self) -> tuple[tuple[str, Adam], ...]:
+        return (("actor_adam", self._actor_adam), ("critic_adam", self._critic_adam))

@@ -1,23 +1,30 @@
-"""Actor and critic: small ReLU networks that take raw observations in SI units."""
+"""Actor and critic: small networks that take raw observations in SI units."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from typing import TypedDict
+from typing import Literal, NotRequired, TypedDict
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+Activation = Literal["relu", "tanh"]
 
-def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | None) -> nn.Sequential:
-    """Build linear layers with ReLU between them, initialised as PyTorch does.
+
+def mlp(
+    sizes: Sequence[int],
+    layer_norm: bool,
+    generator: torch.Generator | None,
+    activation: Activation = "relu",
+) -> nn.Sequential:
+    """Build linear layers with ReLU or tanh between them, initialised as PyTorch does.
 
     ``sizes`` are those of the input, the hidden layers and the output; ``layer_norm`` normalises each hidden
-    layer before its ReLU. Weights come from ``generator``, None for the global one.
+    layer before its activation. Weights come from ``generator``, None for the global one.
     """
     layers: list[nn.Module] = []
     for i, (fan_in, fan_out) in enumerate(pairwise(sizes)):
@@ -25,7 +32,7 @@ def mlp(sizes: Sequence[int], layer_norm: bool, generator: torch.Generator | Non
         if i < len(sizes) - 2:
             if layer_norm:
                 layers.append(nn.LayerNorm(fan_out))
-            layers.append(nn.ReLU())
+            layers.append(nn.ReLU() if activation == "relu" else nn.Tanh())
     return nn.Sequential(*layers)
 
 
@@ -36,6 +43,7 @@ class ActorBuild(TypedDict):
     actions: int
     hidden: list[int]
     layer_norm: bool
+    activation: NotRequired[Activation]
 
 
 class Actor(nn.Module):
@@ -45,7 +53,7 @@ class Actor(nn.Module):
     exported module feeds it what :mod:`robobt.world.features` makes, unchanged.
 
     ``scale`` (observation,) is the typical size of each entry in its SI unit, ``hidden`` the sizes of the
-    hidden layers; ``layer_norm`` and ``generator`` are as for :func:`mlp`.
+    hidden layers; ``layer_norm``, ``generator`` and ``activation`` are as for :func:`mlp`.
 
     Attributes:
         build: the arguments that make an actor of the same shape.
@@ -60,6 +68,7 @@ class Actor(nn.Module):
         hidden: Sequence[int],
         layer_norm: bool = False,
         generator: torch.Generator | None = None,
+        activation: Activation = "relu",
     ) -> None:
         super().__init__()
         self.build: ActorBuild = {
@@ -67,9 +76,10 @@ class Actor(nn.Module):
             "actions": actions,
             "hidden": list(hidden),
             "layer_norm": layer_norm,
+            "activation": activation,
         }
         self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
-        self.body = mlp([len(scale), *hidden, actions], layer_norm, generator)
+        self.body = mlp([len(scale), *hidden, actions], layer_norm, generator, activation)
 
     def forward(self, observation: Tensor) -> Tensor:
         """Map (..., observation) in SI units to (..., action) in [-1, 1]."""

@@ -50,3 +50,28 @@ class AgentSettings(Settings):
         if max(self.hidden) > 4096 or min(self.hidden) < 1:
             raise ValueError("hidden layers have 1 to 4096 units")
         return self
+
+
+class PPOSettings(Settings):
+    """The learner PPO; the defaults are what the shipped Score was trained with."""
+
+    hidden: tuple[int, ...] = Field(
+        (96, 96), min_length=1, max_length=6, description="hidden layers' sizes, of policy and value each"
+    )
+    gamma: float = Field(0.985, gt=0, lt=1, description="discount a decision")
+    trace: float = Field(0.95, ge=0, le=1, description="lambda of the advantages")
+    clip: float = Field(0.2, gt=0, le=1, description="how far probabilities may move in an update")
+    rollout: int = Field(40, ge=1, le=10_000, description="decisions of each arena between updates")
+    batch: int = Field(1280, ge=1, le=1_000_000, description="decisions of a minibatch")
+    epochs: int = Field(4, ge=1, le=100, description="times that a rollout is gone through")
+    rate: float = Field(7e-4, gt=0, le=1, description="learning rate (Adam), falling to 0 at the last step")
+    entropy: float = Field(0.002, ge=0, le=1, description="weight of the policy's entropy")
+    longest_step: float = Field(0.5, gt=0, le=100, description="longest gradient")
+    spread: float = Field(0.6, gt=0, le=3, description="standard deviation of actions at first")
+    threshold_bias: float = Field(-1.5, ge=-10, le=10, description="log-odds of kicks at first")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if max(self.hidden) > 4096 or min(self.hidden) < 1:
+            raise ValueError("hidden layers have 1 to 4096 units")
+        return self

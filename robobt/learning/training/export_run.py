@@ -17,7 +17,7 @@ from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.results import TrainResult
 from robobt.learning.training.run_folder import RESULT, load_run
-from robobt.learning.training.settings import environment_of
+from robobt.learning.training.settings import environment_of, evaluated_on
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model, refuse_to_replace
 from robobt.models.file import SUFFIXES, Format, ModelError
@@ -25,7 +25,7 @@ from robobt.statistics import mean_interval
 
 _Floats = NDArray[np.float64]
 
-_SKILLS = {"go_to_ball": "GoToBall", "shoot": "Shoot"}
+_SKILLS = {"go_to_ball": "GoToBall", "shoot": "Shoot", "score_on_goalkeeper": "Score"}
 """Skill of each task."""
 
 
@@ -45,7 +45,7 @@ def export_run(
     Args:
         run: the folder of the run, or of several seeds of one, of which the best is taken: by
             the starts that chose its actor, not the held-out ones.
-        name: of the model; the task's with ``_ddpg`` when empty.
+        name: of the model; the task's with the learner's when empty.
         folder: where to.
         formats: "torchscript", "onnx" or both.
         starts: number of held-out starts; None for as many as the run was set to.
@@ -62,13 +62,15 @@ def export_run(
         )
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
-    called = name or f"{settings.task}_ddpg"
+    called = name or f"{settings.task}_{settings.learner}"
     for format_ in formats:
         refuse_to_replace(Path(folder) / f"{called}{SUFFIXES[format_]}", force)
     environment = environment_of(settings, str(run))
     count = settings.evaluation.held_out if starts is None else starts
     with one_thread():
-        figures = problem_of(environment).evaluate(policy_of(result.actor), "held_out", count)
+        figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
+            policy_of(result.actor), "held_out", count
+        )
     skill, observation = _SKILLS[settings.task], make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",

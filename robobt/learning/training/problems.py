@@ -10,6 +10,7 @@ import numpy as np
 
 from robobt.learning.envs import (
     GoToBallSettings,
+    ScoreOnGoalkeeperSettings,
     ShootSettings,
     ShootTask,
     TaskSettings,
@@ -47,8 +48,8 @@ class Problem:
     smoothed: tuple[bool, ...]
 
 
-def problem_of(environment: TaskSettings) -> Problem:
-    """Return the task in that environment."""
+def problem_of(environment: TaskSettings, held_out: TaskSettings | None = None) -> Problem:
+    """Return the task in that environment; ``held_out`` is where held-out starts are played, if elsewhere."""
     speed, turn = environment.action.max_speed, environment.action.max_turn
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]
@@ -60,11 +61,16 @@ def problem_of(environment: TaskSettings) -> Problem:
         # What matters is a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
         scale = (0.1, 0.1, 1.0, 1.0, turn, 3.0, 1.0, 1.0, 1.0, 1.0)
         smoothed = (True, False)
+    elif isinstance(environment, ScoreOnGoalkeeperSettings):
+        # Beside the line of the heading, less counts than along it.
+        scale = (speed, speed, turn, 2.0, 1.5, 3.0, 3.0, 1.0, 1.0, *(4.0, 2.0) * 3, 2.0, 2.0)
+        smoothed = (True, True, True, False)
     else:
         raise TypeError(f"{type(environment).__name__} is no environment of a task")
+    where: dict[Split, TaskSettings] = {"validation": environment, "held_out": held_out or environment}
     return Problem(
         lambda n: make_task(environment, n),
-        lambda policy, split, starts: _evaluate(environment, policy, split, starts),
+        lambda policy, split, starts: _evaluate(where[split], policy, split, starts),
         scale,
         smoothed,
     )

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
-from robobt.learning.agents.settings import AgentSettings
-from robobt.learning.envs import GoToBallSettings, ShootSettings, TaskSettings
+from robobt.learning.agents.settings import AgentSettings, PPOSettings
+from robobt.learning.envs import (
+    GoToBallSettings,
+    ScoreOnGoalkeeperSettings,
+    ShootSettings,
+    TaskSettings,
+)
 
 _PRESETS = Path(__file__).parent / "presets"
 SWITCHES = _PRESETS / "switches.yaml"
@@ -20,7 +25,11 @@ SWITCHES = _PRESETS / "switches.yaml"
 
 _M = TypeVar("_M", bound=BaseModel)
 
-ENVIRONMENTS: dict[str, type[TaskSettings]] = {"go_to_ball": GoToBallSettings, "shoot": ShootSettings}
+ENVIRONMENTS: dict[str, type[TaskSettings]] = {
+    "go_to_ball": GoToBallSettings,
+    "shoot": ShootSettings,
+    "score_on_goalkeeper": ScoreOnGoalkeeperSettings,
+}
 """The settings of each task's environment."""
 
 
@@ -95,6 +104,9 @@ class EvaluationSettings(Settings):
     held_out: int = Field(
         1_000, ge=1, le=100_000, description="fixed starts that the best actor is evaluated on"
     )
+    held_out_environment: dict[str, Any] = Field(
+        default_factory=dict, description="changes to the environment for those, such as opponents never met"
+    )
     target_actor: bool = Field(
         False, description="evaluate and ship the slow actor instead of the online one"
     )
@@ -112,12 +124,16 @@ class EvaluationSettings(Settings):
 class TrainSettings(Settings):
     """A training run: with a seed and a version it gives the same weights, bit for bit, on a machine."""
 
-    task: str = Field(description="what is learned: go_to_ball or shoot")
+    task: str = Field(description="what is learned: go_to_ball, shoot or score_on_goalkeeper")
     preset: str = Field("", description="where these settings come from")
     seed: int = Field(0, ge=0, le=2**53 - 1, description="what all randomness follows from")
     steps: int = Field(description="environment steps at most", ge=1, le=1_000_000_000)
     environment: dict[str, Any] = Field(default_factory=dict, description="changes to the task's settings")
+    learner: Literal["ddpg", "ppo"] = Field(
+        "ddpg", description="what learns: ddpg with the settings of agent, replay and collection, or ppo"
+    )
     agent: AgentSettings = AgentSettings()
+    ppo: PPOSettings = PPOSettings()
     replay: ReplaySettings = ReplaySettings()
     collection: CollectionSettings = CollectionSettings()
     evaluation: EvaluationSettings = EvaluationSettings()
@@ -137,6 +153,8 @@ class TrainSettings(Settings):
         ``d4pg`` has a distributional critic, ``td3`` twin critics, a delayed actor or smoothed targets,
         ``ddpgfd`` keeps demonstrations; ``3-step ddpg`` is DDPG with 3-step returns.
         """
+        if self.learner == "ppo":
+            return "ppo"
         agent, named = self.agent, []
         if agent.atoms:
             named.append("d4pg")
@@ -190,6 +208,7 @@ def load_settings(
         problem = f"there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
         raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
+    evaluated_on(settings, source)
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
 
@@ -206,6 +225,14 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
     """Return the environment's settings."""
     return _validated(ENVIRONMENTS[settings.task], settings.environment, source, "environment")
+
+
+def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSettings:
+    """Return the settings of the environment in which the held-out starts are played."""
+    data = _merged(settings.environment, settings.evaluation.held_out_environment)
+    return _validated(
+        ENVIRONMENTS[settings.task], data, source, "environment with evaluation.held_out_environment"
+    )
 
 
 def _validated(model: type[_M], data: dict[str, Any], source: str, group: str) -> _M:

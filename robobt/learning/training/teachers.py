@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from robobt.config.errors import RobobtError
 from robobt.learning.envs import ArenaTask, GoToBallSettings, GoToBallTask, ShootTask
 from robobt.learning.envs.scripted import AIM_GAIN, drive_to_shoot, straight_drive, turn_and_kick
 from robobt.learning.envs.task import FloatArray, IntArray
@@ -25,6 +26,10 @@ from robobt.world.state import BallState, Frame, RobotState
 
 _CAREFUL = 0.9
 """Share of what the dribbler can hold that a script turns with."""
+
+
+class TeacherError(RobobtError, ValueError):
+    """A task that no teacher can show."""
 
 
 class Teacher(Protocol):
@@ -89,6 +94,7 @@ class SkillTeacher:
 
 def script(task: ArenaTask) -> Teacher:
     """Return the script that does this task."""
+    _refuse_opponents(task)
     if isinstance(task, ShootTask):
         dribbler = task.settings.simulator.dribbler
         kind, simulator = dribbler.kind, task.settings.simulator
@@ -109,10 +115,16 @@ def _drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
 
 def skill(task: ArenaTask) -> Teacher:
     """Return the skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
+    _refuse_opponents(task)
     if isinstance(task, GoToBallTask):
         return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
     goal, speed = task.settings.field.their_goal, task.action.kick_speed
     return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
+
+
+def _refuse_opponents(task: ArenaTask) -> None:
+    if task.robots > 1:
+        raise TeacherError(f"nobody demonstrates {task.observation.name}: teachers know no opponents")
 
 
 TEACHERS: dict[str, Callable[[ArenaTask], Teacher]] = {"skill": skill, "script": script}

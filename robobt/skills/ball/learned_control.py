@@ -22,12 +22,14 @@ from robobt.world.features import (
     shoot_of,
 )
 from robobt.world.geometry import FloatArray
+from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from robobt.world.state import Frame, RobotState
 
 OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     GO_TO_BALL.name: go_to_ball_of,
     GO_TO_BALL_TO_SHOOT.name: go_to_ball_to_shoot_of,
     SHOOT.name: shoot_of,
+    SCORE_ON_GOALKEEPER.name: score_on_goalkeeper_of,
 }
 """The function that makes each observation from a frame."""
 

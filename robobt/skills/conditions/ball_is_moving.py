@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Condition, skill
+from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 
 
 @skill
-class BallIsMoving(Condition):
+class BallIsMoving(Skill):
     """Succeeds while the ball is faster than ``speed``.
 
     Args:

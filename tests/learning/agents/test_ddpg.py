@@ -226,5 +226,5 @@ def test_the_actor_scales_raw_observations_itself():
 def test_learning_rates_can_fall():
     agent = small_agent(3, 2)
     agent.set_rates(0.5)
-    rates = [group["lr"] for _, adam in agent._optimisers() for group in adam.param_groups]
+    rates = [group["lr"] for _, each in agent._optimisers() for group in each.adam.param_groups]
     assert rates == [1e-3, 2.5e-3]

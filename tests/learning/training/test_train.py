@@ -34,6 +34,12 @@ EVERYTHING = {
     "replay__priority": {"enabled": True},
 }
 
+PPO = {
+    "learner": "ppo",
+    "ppo": {"hidden": (16,), "rollout": 10, "batch": 40, "rate": 5e-3, "gamma": 0.9},
+    "rebuild_every": 320,
+}
+
 
 class KilledError(BaseException):
     """Stands in for a signal: nothing in the learner catches it."""
@@ -72,7 +78,13 @@ def test_the_task_is_learned(tmp_path):
     assert held["time_ratio"] < 1.3
 
 
-@pytest.mark.parametrize("switches", [{}, EVERYTHING], ids=["plain", "everything"])
+def test_the_task_is_learned_from_rollouts(tmp_path):
+    result = train(slide_settings(**PPO, steps=9600), tmp_path / "run", problem=SLIDE)
+    assert result.figures["held_out"]["success"] >= 0.9
+    assert result.settings.algorithm == "ppo"
+
+
+@pytest.mark.parametrize("switches", [{}, EVERYTHING, PPO], ids=["plain", "everything", "ppo"])
 @pytest.mark.parametrize(
     "moments",
     [

@@ -1,0 +1,258 @@
+"""Proximal policy optimisation, after Schulman et al. (2017), for driving and kicking at once.
+
+With V the value and A the advantages of a rollout by generalised advantage estimation,
+
+    (1)  delta_t = r_t + gamma V(s_t+1) - V(s_t)         V is 0 where the episode has terminated
+    (2)  A_t     = delta_t + gamma lambda A_t+1          which ends where an episode does
+
+an update makes, over a few epochs of minibatches,
+
+    (3)  the mean of min(rho A, clip(rho, 1 - eps, 1 + eps) A) large, rho = pi(a | s) / pi_old(a | s)
+    (4)  the mean of (V(s) - (A + V_old(s)))^2 small
+
+The policy's entries are independent: each is normal about tanh of the network's output, with a spread that
+is learned, except thresholds such as that of a kick: these are coins, tossed with the output as log-odds.
+Without noise a policy takes the middle of the normal ones, and kicks where that is likelier than not; so
+the actor alone is the network that is evaluated and exported, like DDPG's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+from torch.nn.functional import softplus
+
+from robobt.learning.agents.networks import Actor, mlp
+from robobt.learning.agents.optimiser import Adam, restore_state, state_of
+from robobt.learning.agents.settings import PPOSettings
+
+Floats = NDArray[np.float64]
+
+_LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
+
+
+@dataclass(slots=True)
+class Rollout:
+    """Steps of ``n`` arenas, T of each.
+
+    Attributes:
+        observation: (T, n, O) what was seen.
+        action: (T, n, A) what was done, as drawn.
+        log_probability: (T, n) of it.
+        value: (T, n) V of what was seen.
+        next_value: (T, n) V of what the step led to; whatever where the episode has terminated.
+        reward: (T, n).
+        terminated: (T, n) the episode ended in a state from which nothing follows.
+        ended: (T, n) the episode ended, whatever the reason.
+    """
+
+    observation: Floats
+    action: Floats
+    log_probability: Floats
+    value: Floats
+    next_value: Floats
+    reward: Floats
+    terminated: NDArray[np.bool_]
+    ended: NDArray[np.bool_]
+
+    @classmethod
+    def empty(cls, ticks: int, n: int, observations: int, actions: int) -> Rollout:
+        """Return one to be filled."""
+
+        def numbers() -> Floats:
+            return np.zeros((ticks, n))
+
+        def flags() -> NDArray[np.bool_]:
+            return np.zeros((ticks, n), dtype=np.bool_)
+
+        seen, done = np.zeros((ticks, n, observations)), np.zeros((ticks, n, actions))
+        return cls(seen, done, numbers(), numbers(), numbers(), numbers(), flags(), flags())
+
+
+class Value(nn.Module):
+    """V: what a state is worth; arguments as for :class:`Actor`."""
+
+    inverse_scale: Tensor
+
+    def __init__(self, scale: Sequence[float], hidden: Sequence[int], generator: torch.Generator) -> None:
+        super().__init__()
+        self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
+        self.body = mlp([len(scale), *hidden, 1], False, generator, "tanh")
+        orthogonal(self.body, 1.0, generator)
+
+    def forward(self, observation: Tensor) -> Tensor:
+        """Map (..., observation) to (...)."""
+        value: Tensor = self.body(observation * self.inverse_scale)
+        return value.squeeze(-1)
+
+
+class PPO:
+    """Policy, value and their optimisers.
+
+    Args:
+        settings: of the learner.
+        scale: (observation,) typical size of each entry of the observation.
+        smooth: (action,) which entries are normal; the others are thresholds at 0.
+        seed: of the initial weights.
+
+    ``critic_loss`` and ``value`` are sums over the ``updates`` since :meth:`reset_sums`.
+    """
+
+    def __init__(
+        self, settings: PPOSettings, scale: Sequence[float], smooth: Sequence[bool], seed: int
+    ) -> None:
+        self.settings = settings
+        generator = torch.Generator().manual_seed(seed)
+        self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh")
+        self.critic = Value(scale, settings.hidden, generator)
+        self._smooth = torch.tensor(list(smooth))
+        self._spread = nn.ParameterDict(
+            {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.spread))))}
+        )
+        # So that all directions are alike at first, and kicks rare.
+        last = orthogonal(self.actor.body, 0.01, generator)
+        with torch.no_grad():
+            last.bias.copy_(torch.where(self._smooth, 0.0, settings.threshold_bias))
+        weights = [*self.actor.parameters(), *self._spread.parameters()]
+        self._actor_adam = Adam(weights, settings.rate, eps=1e-5)
+        self._critic_adam = Adam(list(self.critic.parameters()), settings.rate, eps=1e-5)
+        self.updates = 0
+        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
+
+    @torch.no_grad()
+    def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
+        """Draw actions: (n, observation) -> (n, action), their log-probabilities (n,), values (n,)."""
+        seen = torch.from_numpy(observation.astype(np.float32))
+        output = self.actor.body(seen * self.actor.inverse_scale)
+        noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._spread["log"])), np.float32))
+        toss = torch.from_numpy(rng.random((len(seen), int((~self._smooth).sum())), np.float32))
+        action = torch.empty_like(output)
+        action[:, self._smooth] = torch.tanh(output[:, self._smooth]) + self._spread["log"].exp() * noise
+        kicks = toss < torch.sigmoid(output[:, ~self._smooth])
+        action[:, ~self._smooth] = torch.where(kicks, 1.0, -1.0)
+        log_probability, _ = self._weigh(output, action)
+        return (_doubles(action), _doubles(log_probability), _doubles(self.critic(seen)))
+
+    @torch.no_grad()
+    def worth(self, observation: Floats) -> Floats:
+        """Return V of (n, observation), (n,)."""
+        return _doubles(self.critic(torch.from_numpy(observation.astype(np.float32))))
+
+    def update(self, rollout: Rollout, rng: np.random.Generator) -> None:
+        """Learn from a rollout by (3) and (4)."""
+        settings = self.settings
+        advantage = advantages(rollout, settings.gamma, settings.trace)
+        target = advantage + rollout.value
+        observation, action, log_probability, advantage_, target_ = (
+            torch.from_numpy(array.reshape(-1, *array.shape[2:]).astype(np.float32))
+            for array in (rollout.observation, rollout.action, rollout.log_probability, advantage, target)
+        )
+        for _ in range(settings.epochs):
+            order = torch.from_numpy(rng.permutation(len(action)))
+            for rows in torch.split(order, settings.batch):
+                self._improve(observation[rows], action[rows], log_probability[rows], advantage_[rows])
+                self._fit(observation[rows], target_[rows])
+                self.updates += 1
+
+    def _improve(self, seen: Tensor, action: Tensor, old: Tensor, advantage: Tensor) -> None:
+        """Take a step of (3), with a bonus for entropy."""
+        settings = self.settings
+        output = self.actor.body(seen * self.actor.inverse_scale)
+        log_probability, entropy = self._weigh(output, action)
+        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
+        ratio = (log_probability - old).exp()
+        clipped = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip)
+        gain = torch.minimum(ratio * advantage, clipped * advantage).mean()
+        loss = -gain - settings.entropy * entropy.mean()
+        weights = self._actor_adam.weights
+        self._actor_adam.step(torch.autograd.grad(loss, weights), settings.longest_step)
+
+    def _fit(self, seen: Tensor, target: Tensor) -> None:
+        """Take a step of (4)."""
+        value = self.critic(seen)
+        loss = (value - target).square().mean()
+        weights = self._critic_adam.weights
+        self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.longest_step)
+        self.critic_loss += loss.detach()
+        self.value += value.detach().mean()
+
+    def _weigh(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the log-probability and the entropy of actions (m, action), both (m,), given the outputs."""
+        log_spread = self._spread["log"]
+        off = (action[:, self._smooth] - torch.tanh(output[:, self._smooth])) * (-log_spread).exp()
+        normal = -0.5 * off.square() - log_spread - _LOG_ROOT
+        odds, kicks = output[:, ~self._smooth], action[:, ~self._smooth]
+        # log sigmoid(x) = -softplus(-x), and 1 - sigmoid(x) = sigmoid(-x).
+        coins = -softplus(-odds * kicks)
+        tossed = softplus(odds) - odds * torch.sigmoid(odds)
+        entropy = (log_spread + 0.5 + _LOG_ROOT).sum() + tossed.sum(-1)
+        return normal.sum(-1) + coins.sum(-1), entropy
+
+    def set_rates(self, share: float) -> None:
+        """Scale both learning rates to ``share`` of those in the settings."""
+        for optimiser in (self._actor_adam, self._critic_adam):
+            optimiser.set_rate(share)
+
+    def reset_sums(self) -> None:
+        """Set :attr:`critic_loss` and :attr:`value` to zero."""
+        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
+
+    def state(self) -> dict[str, NDArray[np.generic]]:
+        """Return weights, optimisers and counters as arrays by name."""
+        sums = np.array([float(self.critic_loss), float(self.value)])
+        return {
+            "updates": np.array([self.updates]),
+            "sums": sums,
+            **state_of(self._modules(), self._optimisers()),
+        }
+
+    def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
+        """Take over another agent's :meth:`state`.
+
+        Raises:
+            KeyError: it is that of an agent with other settings.
+            RuntimeError: the same.
+        """
+        self.updates = int(state["updates"].tolist()[0])
+        loss, value = state["sums"].tolist()
+        self.critic_loss, self.value = torch.tensor(loss), torch.tensor(value)
+        restore_state(state, self._modules(), self._optimisers())
+
+    def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
+        return (("actor", self.actor), ("critic", self.critic), ("spread", self._spread))
+
+    def _optimisers(self) -> tuple[tuple[str, Adam], ...]:
+        return (("actor_adam", self._actor_adam), ("critic_adam", self._critic_adam))
+
+
+def orthogonal(body: nn.Sequential, last_gain: float, generator: torch.Generator) -> nn.Linear:
+    """Make a network's weights orthogonal and its biases 0; return its last layer.
+
+    Hidden layers have the gain sqrt(2) with which signals neither fade nor grow.
+    """
+    layers = [layer for layer in body if isinstance(layer, nn.Linear)]
+    for layer in layers:
+        gain = last_gain if layer is layers[-1] else 2.0**0.5
+        nn.init.orthogonal_(layer.weight, gain, generator=generator)
+        nn.init.zeros_(layer.bias)
+    return layers[-1]
+
+
+def advantages(rollout: Rollout, gamma: float, trace: float) -> Floats:
+    """Compute (1) and (2), (T, n); ``trace`` is lambda."""
+    delta = rollout.reward + gamma * rollout.next_value * ~rollout.terminated - rollout.value
+    result = np.zeros_like(delta)
+    later = np.zeros(delta.shape[1])
+    for t in reversed(range(len(delta))):
+        later = delta[t] + gamma * trace * later * ~rollout.ended[t]
+        result[t] = later
+    return result
+
+
+def _doubles(tensor: Tensor) -> Floats:
+    return np.asarray(tensor.numpy(), dtype=np.float64)

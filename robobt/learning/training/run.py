@@ -1,0 +1,209 @@
+"""What all training runs do: evaluate, keep the best, and be able to go on after being killed."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from typing import Protocol
+
+import numpy as np
+from torch import Tensor
+
+from robobt import __version__
+from robobt.config.errors import RobobtError
+from robobt.learning.agents.networks import Actor, policy_of
+from robobt.learning.training.checkpoint import Arrays, RunState, digest_of
+from robobt.learning.training.clock import RunClock
+from robobt.learning.training.problems import Problem, training_seed
+from robobt.learning.training.progress import OnProgress, Reporter
+from robobt.learning.training.results import Figures, TrainResult, Validation, held_out_figures
+from robobt.learning.training.run_folder import RunFolder
+from robobt.learning.training.selection import Selection
+from robobt.learning.training.settings import TrainSettings
+
+
+class TrainError(RobobtError, RuntimeError):
+    """A run cannot go on; the message is one line."""
+
+
+class Agent(Protocol):
+    """What learns."""
+
+    actor: Actor
+    updates: int
+    critic_loss: Tensor
+    value: Tensor
+
+    def state(self) -> Arrays:
+        """Return all that it goes on from, as arrays by name."""
+
+    def restore(self, state: Arrays) -> None:
+        """Take over another agent's :meth:`state`."""
+
+    def reset_sums(self) -> None:
+        """Set ``critic_loss`` and ``value``, sums over the updates, to zero."""
+
+
+class Run(ABC):
+    """A training run; a subclass says how it collects and learns."""
+
+    _agent: Agent
+
+    def __init__(
+        self,
+        settings: TrainSettings,
+        problem: Problem,
+        folder: RunFolder,
+        clock: RunClock,
+        on_progress: OnProgress | None,
+    ) -> None:
+        self._settings = settings
+        self._problem = problem
+        self._folder = folder
+        self._clock = clock
+        self._task = problem.make(settings.collection.environments)
+        seeds = np.random.SeedSequence(settings.seed).spawn(2)
+        self._rng = np.random.default_rng(seeds[0])
+        self._agent_seed = int(seeds[1].generate_state(1)[0])
+        self._observation = np.zeros((self._task.n, len(problem.scale)))
+        self._steps = 0
+        self._selection = Selection(settings.evaluation)
+        self._reporter = Reporter(settings, on_progress, clock, self._selection)
+        self._saved_at = time.monotonic()
+
+    @abstractmethod
+    def _advance(self) -> None:
+        """Collect experience, count its steps, and learn from it."""
+
+    def _begin(self) -> None:  # noqa: B027 - most learners begin with the first step
+        """Do what comes before the first step of a new run."""
+
+    def _settle(self) -> None:  # noqa: B027
+        """Do what has to be done before the simulator is built anew."""
+
+    def _kept(self) -> Arrays:
+        """Return what a resumed run needs besides agent and evaluations, as arrays by name."""
+        return {}
+
+    @property
+    def _evaluated(self) -> Actor:
+        """The actor that is evaluated and kept."""
+        return self._agent.actor
+
+    def to_end(self) -> TrainResult:
+        """Train until the last step or until it is good enough, and write what came of it."""
+        stored = self._folder.stored
+        if stored is None:
+            self._begin()
+        else:
+            self._restore(*stored)
+        self._rebuild()
+        self._reporter.begin(self._steps)
+        while self._steps < self._settings.steps and not self._selection.is_good_enough():
+            before = self._steps
+            self._advance()
+            if _passed(self._settings.evaluation.every, before, self._steps):
+                self._evaluate()
+            if _passed(self._settings.rebuild_every, before, self._steps):
+                self._settle()
+                self._rebuild()
+                self._save()
+            self._reporter.report(self._steps)
+        latest = self._selection.latest
+        if latest is None or latest.steps != self._steps:
+            self._evaluate()
+        return self._finish()
+
+    def _rebuild(self) -> None:
+        """Build the simulator anew: which bodies are in contact is in no checkpoint."""
+        self._observation = self._task.reset(training_seed(self._settings.seed, self._steps))
+
+    def _evaluate(self) -> None:
+        """Evaluate the actor on the validation starts, log it, and keep it if it is the best yet."""
+        actor = self._evaluated
+        with self._clock.evaluating():
+            figures = self._problem.evaluate(policy_of(actor), "validation", self._settings.evaluation.starts)
+        latest = self._selection.latest
+        updates = self._agent.updates - (latest.updates if latest else 0)
+        validation = Validation(
+            steps=self._steps,
+            updates=self._agent.updates,
+            success=figures.rate,
+            mean_time=figures.mean_time,
+            time_ratio=figures.time_ratio,
+            mean_return=float(figures.returns.mean()),
+            cpu_s=round(self._clock.cpu_s, 3),
+            evaluation_cpu_s=round(self._clock.evaluation_s, 3),
+            wall_s=round(self._clock.wall_s, 3),
+            critic_loss=float(self._agent.critic_loss) / updates if updates else None,
+            value=float(self._agent.value) / updates if updates else None,
+        )
+        self._agent.reset_sums()
+        if validation.critic_loss is not None and not np.isfinite(validation.critic_loss):
+            raise TrainError(
+                f"{self._folder.path}: the critic's loss is not finite after {self._steps} steps"
+            )
+        self._selection.add(validation, actor)
+        self._folder.log(validation)
+        self._reporter.report(self._steps, now=True)
+
+    def _finish(self) -> TrainResult:
+        best = self._selection.best
+        assert best is not None
+        settings = self._settings
+        actor = self._selection.actor(self._agent.actor.build)
+        with self._clock.evaluating():
+            held_out = self._problem.evaluate(policy_of(actor), "held_out", settings.evaluation.held_out)
+        figures: Figures = {
+            "task": settings.task,
+            "preset": settings.preset,
+            "seed": settings.seed,
+            "robobt": __version__,
+            "stopped_early": self._steps < settings.steps,
+            "steps": self._steps,
+            "updates": self._agent.updates,
+            "best_steps": best.steps,
+            "cpu_s": round(self._clock.cpu_s, 3),
+            "evaluation_cpu_s": round(self._clock.evaluation_s, 3),
+            "wall_s": round(self._clock.wall_s, 3),
+            "held_out": held_out_figures(held_out),
+            "weights": digest_of(self._agent.state()),
+        }
+        result = TrainResult(settings, self._folder.path, actor, self._selection.validations, figures)
+        self._folder.finish(result)
+        return result
+
+    def _save(self) -> None:
+        """Write a checkpoint, unless the last one is recent."""
+        if time.monotonic() - self._saved_at < self._settings.checkpoint_seconds:
+            return
+        arrays: Arrays = {f"agent/{key}": array for key, array in self._agent.state().items()}
+        arrays |= self._kept()
+        arrays |= {f"best/{key}": array for key, array in self._selection.weights.items()}
+        self._folder.save(
+            arrays,
+            {
+                "steps": self._steps,
+                "rng": self._rng.bit_generator.state,
+                "validations": self._selection.state(),
+                "clock": self._clock.state(),
+                "robobt": __version__,
+            },
+        )
+        self._saved_at = time.monotonic()
+
+    def _restore(self, arrays: Arrays, state: RunState) -> None:
+        self._agent.restore(part(arrays, "agent/"))
+        self._selection.restore(state["validations"], part(arrays, "best/"))
+        self._steps = state["steps"]
+        self._rng.bit_generator.state = state["rng"]
+        self._clock.restore(state["clock"])
+
+
+def part(arrays: Arrays, name: str) -> Arrays:
+    """Return the arrays whose names begin with ``name``, by the rest of theirs."""
+    return {key.removeprefix(name): value for key, value in arrays.items() if key.startswith(name)}
+
+
+def _passed(every: int, before: int, now: int) -> bool:
+    return now // every > before // every

@@ -1,0 +1,136 @@
+"""PPO computes what its equations say, and learns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from torch.distributions import Bernoulli, Normal
+
+from robobt.learning.agents.networks import policy_of
+from robobt.learning.agents.ppo import PPO, Rollout, advantages
+from robobt.learning.agents.settings import PPOSettings
+
+GAMMA, TRACE = 0.9, 0.8
+
+
+def agent(seed: int = 0, **settings) -> PPO:
+    return PPO(PPOSettings(hidden=(16,), **settings), (1.0, 2.0), (True, False), seed)
+
+
+def random_rollout(ticks: int, n: int, seed: int = 0) -> Rollout:
+    rng = np.random.default_rng(seed)
+    rollout = Rollout.empty(ticks, n, 2, 2)
+    for name in ("observation", "action", "value", "next_value", "reward"):
+        getattr(rollout, name)[:] = rng.normal(size=getattr(rollout, name).shape)
+    rollout.terminated[:] = rng.random((ticks, n)) < 0.15
+    rollout.ended[:] = rollout.terminated | (rng.random((ticks, n)) < 0.15)
+    return rollout
+
+
+def test_advantages_are_the_sum_of_discounted_errors_to_the_episodes_end():
+    rollout = random_rollout(12, 5)
+    found = advantages(rollout, GAMMA, TRACE)
+    for arena in range(5):
+        for first in range(12):
+            total, weight = 0.0, 1.0
+            for t in range(first, 12):
+                bootstrap = 0.0 if rollout.terminated[t, arena] else GAMMA * rollout.next_value[t, arena]
+                total += weight * (rollout.reward[t, arena] + bootstrap - rollout.value[t, arena])
+                weight *= GAMMA * TRACE
+                if rollout.ended[t, arena]:
+                    break
+            assert found[first, arena] == pytest.approx(total)
+
+
+def test_with_a_trace_of_one_they_are_the_return_less_the_value():
+    rollout = random_rollout(8, 3)
+    rollout.ended[:] = rollout.terminated[:] = False
+    rollout.next_value[:-1] = rollout.value[1:]
+    powers = GAMMA ** np.arange(8)
+    returns = powers @ rollout.reward + GAMMA**8 * rollout.next_value[-1]
+    np.testing.assert_allclose(advantages(rollout, GAMMA, 1.0)[0], returns - rollout.value[0])
+
+
+def test_actions_are_weighed_as_a_normal_and_a_coin_are():
+    it = agent(spread=0.7)
+    with torch.no_grad():
+        it.actor.body[-1].weight.mul_(100.0)
+    seen = np.random.default_rng(1).normal(size=(50, 2))
+    action, log_probability, _ = it.act(seen, np.random.default_rng(2))
+    assert set(action[:, 1]) == {-1.0, 1.0}
+    with torch.no_grad():
+        output = it.actor.body(torch.from_numpy(seen.astype(np.float32)) * it.actor.inverse_scale)
+        taken = torch.from_numpy(action.astype(np.float32))
+        normal, coin = Normal(torch.tanh(output[:, 0]), 0.7), Bernoulli(logits=output[:, 1])
+        expected = normal.log_prob(taken[:, 0]) + coin.log_prob((taken[:, 1] > 0).float())
+        _, entropy = it._weigh(output, taken)
+        assert torch.allclose(entropy, normal.entropy() + coin.entropy(), atol=1e-5)
+    np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-5)
+
+
+def test_the_drawn_actions_have_the_spread_and_the_odds_that_were_asked_for():
+    it = agent(spread=0.5, threshold_bias=-1.5)
+    action, _, _ = it.act(np.zeros((4000, 2)), np.random.default_rng(3))
+    assert action[:, 0].std() == pytest.approx(0.5, rel=0.05)
+    assert (action[:, 1] > 0).mean() == pytest.approx(1 / (1 + np.exp(1.5)), abs=0.02)
+
+
+def test_a_first_step_follows_the_policy_gradient():
+    # Before the first update rho is 1, so that the gradient of (3) is the mean of A grad log pi.
+    it, same = agent(longest_step=100.0, entropy=0.0), agent(longest_step=100.0, entropy=0.0)
+    rng = np.random.default_rng(4)
+    seen = rng.normal(size=(64, 2))
+    action, log_probability, _ = it.act(seen, rng)
+    advantage = rng.normal(size=64)
+    tensors = [torch.from_numpy(x.astype(np.float32)) for x in (seen, action, log_probability, advantage)]
+    it._improve(*tensors)
+    weights = same._actor_adam.weights
+    standard = (tensors[3] - tensors[3].mean()) / (tensors[3].std() + 1e-8)
+    log_now, _ = same._weigh(same.actor.body(tensors[0] * same.actor.inverse_scale), tensors[1])
+    expected = torch.autograd.grad(-(standard * log_now).mean(), weights)
+    for found, wanted in zip(it._actor_adam.weights, expected, strict=True):
+        torch.testing.assert_close(found.grad, wanted, atol=1e-6, rtol=1e-4)
+
+
+def test_what_has_moved_far_enough_is_not_moved_on():
+    it = agent(entropy=0.0)
+    seen, action = torch.zeros(4, 2), torch.tensor([[0.3, -1.0], [-0.3, -1.0]] * 2)
+    output = it.actor.body(seen)
+    now, _ = it._weigh(output, action)
+    # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
+    advantage = torch.tensor([1.0, -1.0] * 2)
+    old = now.detach() - 0.5 * advantage
+    it._improve(seen, action, old, advantage)
+    assert all((weight.grad == 0.0).all() for weight in it._actor_adam.weights)
+
+
+def test_it_learns_what_pays_from_rollouts():
+    # One decision: drive where the first entry points, kick where the second is above 0.
+    it, rng = agent(rate=5e-3, batch=128, epochs=4), np.random.default_rng(5)
+    for _ in range(60):
+        rollout = Rollout.empty(1, 256, 2, 2)
+        rollout.observation[0] = rng.uniform(-1.0, 1.0, (256, 2))
+        rollout.action[0], rollout.log_probability[0], rollout.value[0] = it.act(rollout.observation[0], rng)
+        seen, done = rollout.observation[0], rollout.action[0]
+        rollout.reward[0] = -np.square(done[:, 0] - 0.8 * seen[:, 0]) + np.sign(done[:, 1] * seen[:, 1])
+        rollout.terminated[:] = rollout.ended[:] = True
+        it.update(rollout, rng)
+    seen = rng.uniform(-1.0, 1.0, (500, 2))
+    decided = policy_of(it.actor)(seen)
+    assert np.abs(decided[:, 0] - 0.8 * seen[:, 0]).mean() < 0.12
+    assert ((decided[:, 1] > 0) == (seen[:, 1] > 0)).mean() > 0.93
+
+
+def test_its_state_is_all_there_is_to_it():
+    one, other = agent(seed=1), agent(seed=2)
+    rng = np.random.default_rng(6)
+    rollout = random_rollout(4, 8)
+    rollout.action[..., 1] = np.sign(rollout.action[..., 1])
+    one.update(rollout, rng)
+    other.restore(one.state())
+    for it in (one, other):
+        it.update(rollout, np.random.default_rng(7))
+    first, second = one.state(), other.state()
+    assert first.keys() == second.keys()
+    assert all(np.array_equal(first[key], second[key]) for key in first)
