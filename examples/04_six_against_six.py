@@ -13,7 +13,7 @@ import robobt
 
 def main(seconds: float = 60.0) -> None:
     scenario = robobt.load_scenario("six_v_six").lasting(seconds)
-    match = robobt.Match(scenario, 1, robobt.sim_world, record="out/six_v_six.robobt.arrows")
+    match = robobt.Match(scenario, 1, record="out/six_v_six.robobt.arrows")
     command = None
     with match:  # closes the recording
         while match.tick():

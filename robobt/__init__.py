@@ -20,7 +20,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "BallState": "world",
     "Frame": "world",
-    "Match": "match",
+    "Match": "worlds",
     "MatchResult": "match",
     "PLAYS": "plays",
     "RobobtError": "config.errors",
@@ -51,4 +51,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOMES})
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

@@ -1,5 +1,4 @@
 from robobt.config.errors import RobobtError as RobobtError
-from robobt.match import Match as Match
 from robobt.match import MatchResult as MatchResult
 from robobt.match import Run as Run
 from robobt.match import Scenario as Scenario
@@ -13,6 +12,7 @@ from robobt.world import Frame as Frame
 from robobt.world import RobotCommand as RobotCommand
 from robobt.world import RobotState as RobotState
 from robobt.world import World as World
+from robobt.worlds import Match as Match
 from robobt.worlds import play_match as play_match
 from robobt.worlds import run_trials as run_trials
 from robobt.worlds import sim_world as sim_world

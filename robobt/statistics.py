@@ -73,8 +73,6 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
     Raises:
         ValueError: no values, one that is not finite, or confidence out of range.
     """
-    from scipy.special import stdtrit
-
     sample = np.asarray(values, dtype=np.float64)
     if sample.ndim != 1 or len(sample) == 0 or not np.isfinite(sample).all():
         raise ValueError("a mean needs a list of finite values")
@@ -82,6 +80,8 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
         raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
     if len(sample) == 1:
         return Interval(-np.inf, np.inf)
+    from scipy.special import stdtrit
+
     quantile = float(stdtrit(len(sample) - 1, 0.5 + confidence / 2.0))
     half = quantile * float(sample.std(ddof=1)) / sqrt(len(sample))
     middle = float(sample.mean())

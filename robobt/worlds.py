@@ -88,6 +88,31 @@ def world_from(address: str) -> WorldFactory:
     return LeagueFactory(address, scenario_settings)
 
 
+class Match(loop.Match):
+    """A match that is played tick by tick, in the built-in simulator unless another world is given.
+
+    Args:
+        scenario: what is played.
+        seed: fixes placement, world and trees; the scenario's by default.
+        world: an address as for :func:`world_from`, or a factory.
+        record: file to record the match to; its name ends in ``.robobt.arrows``.
+        referee: makes the referee; by default the scenario's own. It is closed with the match.
+
+    Attributes and errors are those of :class:`robobt.match.loop.Match`.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int | None = None,
+        world: str | WorldFactory = SIM,
+        record: str | Path | None = None,
+        referee: RefereeFactory = own_referee,
+    ) -> None:
+        seed = scenario.seed if seed is None else seed
+        super().__init__(scenario, seed, _factory(world), record, referee=referee)
+
+
 def play_match(
     scenario: Scenario,
     seed: int | None = None,

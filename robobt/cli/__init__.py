@@ -6,6 +6,7 @@ is imported by the command that needs it, so that ``robobt --help`` is quick.
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Mapping
 from importlib import import_module
@@ -89,12 +90,15 @@ _GROUPS = {
 }
 """The groups of commands, likewise, each with its help."""
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    help="Behaviour trees for robot soccer: play scenarios, look at plays and skills, measure.",
-)
+app: typer.Typer
+"""The whole of it, made when it is first used."""
+
+
+def __getattr__(name: str) -> object:
+    if name != "app":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = made = application()
+    return made
 
 
 def _version(show: bool) -> None:
@@ -113,7 +117,6 @@ def _run_on(context: typer.Context, address: str) -> None:
     context.with_resource(running_on(context.with_resource(RayEngine(address))))
 
 
-@app.callback()
 def _main(
     context: typer.Context,
     engine: Annotated[
@@ -144,19 +147,34 @@ def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
         group.command(name)(one_line_errors(command))
 
 
-_enter(app, _COMMANDS)
-for _name, (_help, _commands) in _GROUPS.items():
-    _group = typer.Typer(no_args_is_help=True, help=_help)
-    # A group of its own even with a single command.
-    _group.callback()(lambda: None)
-    _enter(_group, _commands)
-    app.add_typer(_group, name=_name)
+def application(only: str | None = None) -> typer.Typer:
+    """Make the application; of one command or group alone where that is all that is asked for."""
+    made = typer.Typer(
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        help="Behaviour trees for robot soccer: play scenarios, look at plays and skills, measure.",
+    )
+    made.callback()(_main)
+    known = only in _COMMANDS or only in _GROUPS
+    _enter(made, {name: place for name, place in _COMMANDS.items() if name == only or not known})
+    for name, (about, commands) in _GROUPS.items():
+        if name == only or not known:
+            group = typer.Typer(no_args_is_help=True, help=about)
+            # A group of its own even with a single command.
+            group.callback()(lambda: None)
+            _enter(group, commands)
+            made.add_typer(group, name=name)
+    return made
 
 
 def main() -> None:
     """Run the command ``robobt``."""
+    # What a start imports stays; looking through it for garbage took a tenth of the start.
+    gc.set_threshold(100_000, *gc.get_threshold()[1:])
     try:
-        app(prog_name="robobt")
+        # To make all commands takes as long as many a command itself.
+        application(sys.argv[1] if len(sys.argv) > 1 else None)(prog_name="robobt")
     except SystemExit as end:
         leave_after_signal(end.code)
         raise

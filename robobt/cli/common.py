@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from robobt.config.errors import ConfigError, RobobtError
+from robobt.config.errors import ConfigError, RobobtError, unknown_name
 from robobt.signals import Terminated, at_the_latest_after, ending
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def _nothing() -> None:
 def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:
     """Make the usage error for an unknown name, with the known ones or what is wrong with its package."""
     problem = registry.problem_with(name)
-    there = f"no {registry.kind} is called {name!r}; there are {', '.join(registry)}"
+    there = f"no {registry.kind} is called {name!r}; {unknown_name(name, registry)}"
     return typer.BadParameter(there if problem is None else problem)
 
 

@@ -8,8 +8,12 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Imports, Json, console, import_files, print_json, say, table
+from robobt.config.yaml import read_yaml
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
     from robobt.match import Scenario
 
 
@@ -28,22 +32,29 @@ def scenarios(
     params, start: in the own team's view, own goal at -x).
     """
     from robobt.config.resources import bundled_scenarios
-    from robobt.match import load_scenario
 
     import_files(imports)
+    if name is None and not as_json:
+        _print_list(bundled_scenarios())
+        return
+    from robobt.match import load_scenario
+
     loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]
     if as_json:
         print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
         return
-    if name is not None:
-        _print_scenario(loaded[0])
-        return
+    _print_scenario(loaded[0])
+
+
+def _print_list(files: Mapping[str, Path]) -> None:
+    """Print what the files say; whether they can be played is looked at by what plays them."""
     listed = table("scenario", "robots", "trials", "what it is")
     listed.columns[0].no_wrap = True
-    for scenario in loaded:
-        size = f"{len(scenario.robots.blue)} v {len(scenario.robots.yellow)}"
-        about = " ".join(scenario.description.split()).partition(". ")[0].removesuffix(".")
-        listed.add_row(escape(scenario.name), size, str(scenario.trials), escape(about))
+    for name, path in files.items():
+        data = read_yaml(path)
+        size = " v ".join(str(len(data["robots"].get(team, ()))) for team in ("blue", "yellow"))
+        about = " ".join(data["description"].split()).partition(". ")[0].removesuffix(".")
+        listed.add_row(escape(data.get("name", name)), size, str(data.get("trials", 1)), escape(about))
     console.print(listed)
 
 

@@ -84,7 +84,11 @@ def train(
                 live.show,
             )
         except KeyboardInterrupt:
-            errors.print(f"stopped; --resume goes on with what is in {escape(str(folder))}", soft_wrap=True)
+            kept = any(folder.rglob("checkpoint*")) or any(folder.rglob("result.json"))
+            told = (
+                f"--resume goes on with what is in {folder}" if kept else "nothing is written to go on from"
+            )
+            errors.print(f"stopped; {escape(told)}", soft_wrap=True)
             raise typer.Exit(130) from None
     if as_json:
         print_json(figures_of(results))
@@ -176,7 +180,7 @@ class _LiveTable:
                 "-" if latest is None else _time(latest.mean_time, latest.time_ratio),
                 "-" if best is None else f"{best.success:.1%} {_time(best.mean_time, best.time_ratio)}",
                 f"{now.cpu_s:.0f}",
-                f"{int(now.left_s) // 60}:{int(now.left_s) % 60:02}",
+                "-" if latest is None else f"{int(now.left_s) // 60}:{int(now.left_s) % 60:02}",
             )
         return shown
 

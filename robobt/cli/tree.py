@@ -95,7 +95,9 @@ def tree(
 
 
 def _build(play: str, params: list[str]) -> Behaviour:
+    from robobt.config.errors import RobobtError
     from robobt.plays.files import find_play, problem_with_play
+    from robobt.plays.mistakes import PlayError, mistake_in_play
     from robobt.plays.private_files import private_files
     from robobt.tree.namespace import within
     from robobt.tree.parameters import ParameterError, check_parameters
@@ -108,6 +110,10 @@ def _build(play: str, params: list[str]) -> Behaviour:
             return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
+    except (RobobtError, typer.BadParameter):
+        raise
+    except Exception as error:
+        raise PlayError(mistake_in_play(error)) from error
 
 
 def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool) -> bool:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Self
 
@@ -61,6 +62,14 @@ def short_repr(value: object) -> str:
     """Return the ``repr`` of a value for a message, at most 60 characters long."""
     shown = repr(value)
     return shown if len(shown) <= 60 else shown[:57] + "..."
+
+
+def unknown_name(name: object, known: Iterable[str]) -> str:
+    """Return how a message about an unknown name ends: which was meant, or which there are."""
+    there = list(known)
+    close = get_close_matches(str(name), there, n=3, cutoff=0.7)
+    meant = f"did you mean {' or '.join(close)}? " if close else ""
+    return f"{meant}there are {', '.join(there)}"
 
 
 @contextmanager

@@ -292,7 +292,8 @@ def _compared(pairs: Iterable[tuple[float | None, float | None]]) -> Comparison 
     differences = [ours - theirs for ours, theirs in pairs if ours is not None and theirs is not None]
     if not differences:
         return None
-    mean, vary = fmean(differences), len(set(differences)) > 1
+    # Times are multiples of the control period; what differs by less differs by rounding.
+    mean, vary = fmean(differences), max(differences) - min(differences) > 1e-9
     low, high = mean_interval(differences) if vary else (None, None)
     effect = mean / stdev(differences) if vary else None
     return Comparison(n=len(differences), mean=mean, low=low, high=high, effect=effect)

@@ -12,11 +12,12 @@ from robobt.league.estimate.filter import VisionFilter
 from robobt.league.serve.cameras import Cameras
 from robobt.sim import SimSettings, SimWorld
 from robobt.sim.settings import RealismSettings
+from robobt.world.ball_model import GRAVITY
 from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.protocol import Placement
-from robobt.world.state import BALL_RADIUS, GRAVITY, ROBOT_RADIUS, BallState, Frame, RobotId
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId
 
 PERIOD = 1 / 60
 """Time between two frames of the cameras [s]."""

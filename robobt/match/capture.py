@@ -113,6 +113,7 @@ class MatchCapture:
             seed=self._seed,
             period=self._scenario.period,
             field=first.field,
+            ball_model=first.ball_model,
             played=self._scenario.model_dump(mode="json"),
             robots=tuple(
                 RecordedRobot(

@@ -105,6 +105,13 @@ class Match:
         path = None if record is None else Path(record)
         self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path)
 
+    def __repr__(self) -> str:
+        standing = "playing" if self.outcome is None else self.outcome.value
+        return (
+            f"<Match of {self.scenario.name!r}, seed {self.seed}: {standing} at {self._time:.2f} s, "
+            f"{len(self.players)} robots>"
+        )
+
     def play(self) -> MatchResult:
         """Play to the end."""
         started = perf_counter()

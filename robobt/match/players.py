@@ -18,7 +18,7 @@ from robobt.world.state import Frame, RobotId, RobotState
 _log = logging.getLogger(__name__)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, repr=False)
 class Player:
     """One robot on the field.
 
@@ -33,6 +33,10 @@ class Player:
     problem: str = ""
     names: Namespace | None = None
     driver: Callable[[Frame, RobotState], RobotCommand] | None = None
+
+    def __repr__(self) -> str:
+        doing = f", problem={self.problem!r}" if self.problem else ""
+        return f"<Player {self.robot}: {self.runner.root.name!r}{doing}>"
 
     def decide(self, view: Frame, me: RobotState) -> RobotCommand | None:
         """Tick the tree once and return its command, or None where the tree failed.

@@ -15,7 +15,7 @@ from math import cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.motion.ball_model import DEFAULT_BALL, way_in
+from robobt.world.ball_model import way_in
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
@@ -31,8 +31,6 @@ _DRIFT = 0.15
 """Sideways speed that does not count [m/s]."""
 _BODY = ROBOT_RADIUS + BALL_RADIUS
 _HORIZON = 4.0
-_SLIDE = DEFAULT_BALL.slide_deceleration
-_ROLL = DEFAULT_BALL.roll_deceleration
 
 
 def movers(robots: Iterable[RobotState]) -> FloatArray:
@@ -141,7 +139,13 @@ def arrival_times(robots: FloatArray, rows: NDArray[np.int64], places: FloatArra
 
 @compiled
 def meetings(
-    robots: FloatArray, ball: FloatArray, rolling: float, half_length: float, half_width: float
+    robots: FloatArray,
+    ball: FloatArray,
+    rolling: float,
+    slide: float,
+    roll: float,
+    half_length: float,
+    half_width: float,
 ) -> FloatArray:
     """Find where and when every robot can meet the ball first: (n, 3), the time [s] and the place [m].
 
@@ -152,6 +156,8 @@ def meetings(
         robots: as of :func:`movers`.
         ball: its x, y, vx, vy.
         rolling: the speed from which on it rolls [m/s].
+        slide: its deceleration while it slides [m/s^2].
+        roll: the same while it rolls [m/s^2].
         half_length: half the field's length [m].
         half_width: half its width [m].
     """
@@ -165,7 +171,7 @@ def meetings(
     while True:
         x, y = ball[0] + way * ux, ball[1] + way * uy
         path[last, 0], path[last, 1], path[last, 2] = time, x, y
-        further = way_in(time + STEP, speed, rolling, _SLIDE, _ROLL)
+        further = way_in(time + STEP, speed, rolling, slide, roll)
         gone = abs(x) > half_length or abs(y) > half_width
         if gone or further - way < 0.02 or time >= _HORIZON:
             break

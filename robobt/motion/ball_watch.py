@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import inf
 
-from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.compiled import compilable
 from robobt.world.state import Frame
 
@@ -48,15 +47,14 @@ class BallWatch:
     it; over two frames the sliding one loses its speed several times as fast.
     """
 
-    def __init__(self, model: BallModel = DEFAULT_BALL) -> None:
-        self._model = model
+    def __init__(self) -> None:
         self._time = -inf
         self._speed = 0.0
         self._rolling = 0.0
 
     def rolling_speed(self, frame: Frame) -> float:
         """Return the speed [m/s] below which the ball rolls: its own when it already rolls."""
-        model, speed = self._model, frame.ball.speed
+        model, speed = frame.ball_model, frame.ball.speed
         elapsed = frame.time - self._time
         if elapsed == 0.0:
             return min(self._rolling, speed)

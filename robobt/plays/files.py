@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
-from robobt.config.errors import short_repr
+from robobt.config.errors import short_repr, unknown_name
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.private_files import join_play, private_files, split_play
 from robobt.plays.sources import PythonFileError
@@ -66,7 +66,8 @@ def problem_with_play(name: str) -> str | None:
         if is_play_file(inner) or inner in PLAYS:
             return None
         return PLAYS.problem_with(inner) or (
-            f"no play is called {short_repr(inner)}{where}; there are {', '.join(PLAYS)}"
+            f"no play is called {short_repr(inner)}{where}; {unknown_name(inner, PLAYS)}; "
+            "those of your own files come with --import FILE or as FILE.py:NAME"
         )
 
 

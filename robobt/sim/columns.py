@@ -8,9 +8,10 @@ import numpy as np
 
 from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
+from robobt.world.ball_model import GRAVITY
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BALL_RADIUS, GRAVITY, ROBOT_RADIUS
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 SOFT = 0.008
 """How far inside a robot's core, where there is one, the ball meets something hard [m]."""

@@ -16,9 +16,10 @@ from math import sqrt
 
 from robobt.sim.columns import BALL_R, BOUNCE_WALL, HOP_FIRST, HOP_OTHER, HOP_UP, HOPS, RISE, ROBOT_R, Z
 from robobt.sim.sweep import in_a_wall
+from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.state import GRAVITY, ROBOT_HEIGHT
+from robobt.world.state import ROBOT_HEIGHT
 
 _LAST_APEX = 0.01
 """A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""

@@ -34,9 +34,9 @@ from robobt.sim.columns import (
     SLIDE,
     STOP_SPEED,
 )
+from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.state import GRAVITY
 
 # Columns of a contact, kept for the length of a step: whether there is one, its normal towards the ball, the
 # robot's velocity there, the least speed of parting, friction, how fast the surface moves down, impulses.

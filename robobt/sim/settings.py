@@ -21,29 +21,21 @@ from robobt.sim.robot_settings import (
     ShellSettings,
     WheelSettings,
 )
+from robobt.world.ball_model import BallModel
 from robobt.world.limits import RobotLimits
 
 
-class BallSettings(Settings):
-    """A ball that slides, then rolls, and hops where it was chipped.
-
-    A kicked ball slides with constant deceleration and picks up spin until it
-    rolls, at ``switch_share`` of the speed it started with; from there it rolls
-    with a smaller constant deceleration until it rests. In the air it follows the
-    league's model chip_fixed_loss, until the next hop would be lower than 1 cm.
-    """
+class BallSettings(BallModel):
+    """The ball: how it moves, what it weighs, and when it rests."""
 
     mass: float = Field(0.046, gt=0.001, le=1, description="mass [kg]")
-    slide_deceleration: float = Field(3.0, gt=0, le=50, description="while it slides [m/s^2]")
-    switch_share: float = Field(
-        0.66, gt=0.05, lt=1, description="share of the start speed where rolling begins"
-    )
-    roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
     stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
     placed_rolls: bool = Field(True, description="whether a ball that is placed moving rolls, or slides")
-    first_hop: float = Field(0.8, ge=0, le=1, description="share of its speed kept at the first touch-down")
-    other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
-    rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
+
+    @property
+    def model(self) -> BallModel:
+        """What of it frames tell, and skills plan with."""
+        return BallModel(**self.model_dump(include=set(BallModel.model_fields)))
 
 
 class ContactSettings(Settings):

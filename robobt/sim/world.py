@@ -42,6 +42,7 @@ class SimWorld(World):
     ) -> None:
         self.field = field
         self.settings = SimSettings() if settings is None else settings
+        self._ball_model = self.settings.ball.model
         self.period = period
         self._ids = sorted(robots)
         self._index = {robot: i for i, robot in enumerate(self._ids)}
@@ -243,6 +244,7 @@ class SimWorld(World):
             Team.BLUE,
             self.period,
             last_touch=self._ids[touch] if touch >= 0 else None,
+            ball_model=self._ball_model,
         )
 
 

@@ -100,6 +100,12 @@ class Skill(Leaf[Store]):
         )
 
 
+class Condition(Skill):
+    """A skill that only looks: it succeeds or fails at once and commands nothing."""
+
+    condition = True
+
+
 SKILLS: Registry[type[Skill]] = Registry(
     "skill", group="robobt.skills", fits=lambda entry: isinstance(entry, type) and issubclass(entry, Skill)
 )

@@ -59,11 +59,13 @@ class Leaf(Behaviour, Bound[StoreT]):
     Attributes:
         reads, writes: the store's entries the leaf uses.
         optional: those of ``reads`` that it can do without.
+        condition: whether it only looks, and neither commands anything nor runs on.
     """
 
     reads: ClassVar[Entries] = ()
     writes: ClassVar[Entries] = ()
     optional: ClassVar[tuple[str, ...]] = ()
+    condition: ClassVar[bool] = False
 
     def __init__(self, name: str = "") -> None:
         """Make the leaf.

@@ -8,6 +8,7 @@ from importlib.metadata import EntryPoint, entry_points
 from types import ModuleType
 from typing import Any, Generic, TypeVar
 
+from robobt.config.errors import unknown_name
 from robobt.tree.namespace import current_namespace, within
 
 T = TypeVar("T")
@@ -113,7 +114,7 @@ class Registry(Generic[T]):
         if name not in self._entries:
             if name in self._problems:
                 raise KeyError(self._problems[name])
-            raise KeyError(f"no {self.kind} is called {name!r}; there are {', '.join(self)}")
+            raise KeyError(f"no {self.kind} is called {name!r}; {unknown_name(name, self)}")
         return self._entries[name]
 
     def __contains__(self, name: object) -> bool:

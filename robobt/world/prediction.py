@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import ceil, cos, hypot, sin, sqrt
 
+from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import (
     BALL_RADIUS,
-    GRAVITY,
     ROBOT_HEIGHT,
     BallState,
     Frame,

@@ -66,4 +66,5 @@ def without_absent(frame: Frame, game: GameState) -> Frame:
         frame.period,
         frame.game,
         frame.last_touch,
+        frame.ball_model,
     )

@@ -11,6 +11,7 @@ from math import hypot, pi
 from struct import pack
 from typing import NamedTuple
 
+from robobt.world.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.geometry import FloatArray
@@ -30,9 +31,6 @@ RECEIVED_HEIGHT = 0.05
 
 GOAL_HEIGHT = 0.155
 """Height of a goal's inside, up to its bar. Source: ER-Force's simulator; the rules say 0.16 [m]."""
-
-GRAVITY = 9.81
-"""Acceleration of free fall [m/s^2]."""
 
 
 class RobotId(NamedTuple):
@@ -138,6 +136,7 @@ class Frame(Derived):
         own, opponents: robots on the field, in order of their numbers.
         game: the state of the game.
         last_touch: who touched the ball last, None before anybody did.
+        ball_model: how the ball moves, as far as known.
     """
 
     time: float
@@ -149,6 +148,7 @@ class Frame(Derived):
     period: float = 0.025
     game: GameState = OPEN_PLAY
     last_touch: RobotId | None = None
+    ball_model: BallModel = DEFAULT_BALL
 
     def robot(self, number: int) -> RobotState | None:
         """Return the own robot with this number, None when it is not on the field."""
@@ -203,6 +203,7 @@ class Frame(Derived):
             self.period,
             self.game.mirrored(),
             self.last_touch,
+            self.ball_model,
         )
 
     def seen_by(self, team: Team) -> Frame:

@@ -62,7 +62,8 @@ def test_the_pilot_takes_little_longer(velocity: tuple[float, float, float]) -> 
 
 def meet(me: RobotState, *ball: float) -> tuple[float, float, float]:
     state = np.array(ball)
-    time, x, y = meetings(movers([me]), state, float(np.hypot(*ball[2:])), *SIZE)[0].tolist()
+    rolling, slide, roll = float(np.hypot(*ball[2:])), 3.0, 0.3
+    time, x, y = meetings(movers([me]), state, rolling, slide, roll, *SIZE)[0].tolist()
     return time, x, y
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
 from robobt.world import Frame
+from robobt.world.ball_model import DEFAULT_BALL
 from tests.simulation import Trial, blue
 from tests.skills.fixed_world import frame, robot
 

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion.ball_model import ChipModel
 from robobt.sim import Arenas, SimSettings, SimWorld, preset
 from robobt.sim.robot_settings import KickerSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS, Placement, RobotCommand
+from robobt.world.ball_model import GRAVITY, BallModel
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import FloatArray
-from robobt.world.state import GRAVITY, RECEIVED_HEIGHT, ROBOT_HEIGHT
+from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT
 from tests.sim.rig import HUGE, IT, ME, holding
 
 PERIOD = 0.01
@@ -90,10 +90,8 @@ def test_it_flies_along_a_parabola(speed: float) -> None:
 @pytest.mark.parametrize("name", ["default", "grsim", "erforce"])
 @pytest.mark.parametrize("speed", [3.0, 5.0])
 def test_it_hops_as_the_closed_form_says(name: str, speed: float) -> None:
-    ball = preset(name).ball
-    model = ChipModel(first_hop=ball.first_hop, other_hops=ball.other_hops, rebound=ball.rebound)
     found = touch_downs(chipper(speed, name))
-    expected = model.touch_downs(speed * preset(name).kicker.chip_yield)
+    expected = preset(name).ball.touch_downs(speed * preset(name).kicker.chip_yield)
     assert len(found) == len(expected)
     for (time, way), (closed_time, closed_way) in zip(found, expected, strict=True):
         # It is seen to leave within a tick of the kick.
@@ -110,7 +108,7 @@ def test_it_touches_down_where_sumatras_chip_does(speed: float, ways: tuple[floa
 def test_it_rolls_at_last_as_any_ball_does() -> None:
     world = chipper(3.0)
     downs = touch_downs(world)
-    speed = ChipModel().along(3.0, len(downs))
+    speed = BallModel().along(3.0, len(downs))
     while world.truth().ball.speed > 0.0:
         world.act({})
     rolled = speed * speed / (2 * world.settings.ball.roll_deceleration)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 import pytest
 
-from robobt.sim import REALISM, SimWorld, preset
+from robobt.sim import PRESETS, REALISM, SimWorld, preset
 from robobt.sim.settings import RealismSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, Placement, RobotCommand, RobotId, Team, World
 from robobt.world.command import CHIP_ANGLE
@@ -29,6 +31,22 @@ def test_it_starts_as_placed() -> None:
     assert frame.opponents[0].position == (1, -0.2)
     assert (frame.ball.x, frame.ball.vx) == (0.1, 1)
     assert frame.last_touch is None
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+@pytest.mark.parametrize("speed", [2.0, 5.0])
+def test_what_a_frame_tells_of_the_ball_is_how_it_rolls(name: str, speed: float) -> None:
+    settings = preset(name)
+    sliding = settings.ball.model_copy(update={"placed_rolls": False})
+    world = one_robot(settings.model_copy(update={"ball": sliding}), ball=(-5.0, 3.0, speed, 0.0))
+    assert world.observe().mirrored().ball_model == world.truth().ball_model
+    expected = world.truth().ball_model.time_to(3.0, speed)
+    while world.truth().ball.x < -2.0 and world.time < 10.0 and world.truth().ball.speed > 0.02:
+        world.act({})
+    if expected == inf:
+        assert world.truth().ball.x < -2.0
+    else:
+        assert world.time == pytest.approx(expected, rel=0.02)
 
 
 def test_time_passes_by_the_control_period() -> None:

@@ -77,6 +77,7 @@ class VisionFilter:
     ) -> None:
         self.field = field
         self.settings = settings or SimSettings()
+        self._ball_model = self.settings.ball.model
         self._limits = dict(limits or {})
         realism = self.settings.realism
         self._robot_noise = max(realism.robot_noise, _MIN_ROBOT_NOISE)
@@ -179,6 +180,7 @@ class VisionFilter:
             tuple(teams[Team.BLUE]),
             tuple(teams[Team.YELLOW]),
             last_touch=self.possession.last_touch,
+            ball_model=self._ball_model,
         )
 
     def _confirmed_time(self, time: float) -> bool:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robobt.motion.ball_model import way_in
 from robobt.sim.settings import BallSettings
+from robobt.world.ball_model import way_in
 from robobt.world.geometry import FloatArray
 
 _ROUNDS = 4

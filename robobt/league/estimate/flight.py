@@ -26,8 +26,9 @@ from robobt.league.estimate.hop import LAST_APEX, Hop
 from robobt.league.estimate.kicks import Kick
 from robobt.league.wire.geometry import CameraPlace
 from robobt.sim.settings import BallSettings
+from robobt.world.ball_model import GRAVITY
 from robobt.world.geometry import FloatArray
-from robobt.world.state import BALL_RADIUS, GRAVITY
+from robobt.world.state import BALL_RADIUS
 
 _FEWEST = 6
 """Detections from which on a kick can be told to be a chip."""

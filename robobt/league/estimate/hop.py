@@ -7,7 +7,7 @@ from math import inf, sqrt
 
 from robobt.league.estimate.ball_track import BallMotion
 from robobt.sim.settings import BallSettings
-from robobt.world.state import GRAVITY
+from robobt.world.ball_model import GRAVITY
 
 LAST_APEX = 0.01
 """A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""

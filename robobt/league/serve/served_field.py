@@ -67,6 +67,7 @@ class ServedField:
     ) -> None:
         self.field = field
         self.settings = settings or SimSettings()
+        self._ball_model = self.settings.ball.model
         self.command_loss = self.settings.realism.command_loss
         self._ids = [RobotId(team, number) for team in Team for number in range(TEAM_SIZE)]
         self._index = {robot: i for i, robot in enumerate(self._ids)}
@@ -192,6 +193,7 @@ class ServedField:
             tuple(teams[Team.YELLOW]),
             period=self.period,
             last_touch=self._ids[touch] if touch >= 0 else None,
+            ball_model=self._ball_model,
         )
 
     def _start(self, placement: Placement) -> None:

@@ -11,7 +11,6 @@ from math import atan2, cos, hypot, inf, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import rolling_after
 from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
 from robobt.motion.pilot import roughly
@@ -40,6 +39,7 @@ from robobt.skills.defence.block_shot import dive_speed
 from robobt.skills.defence.cover_angle import CoverAngle, cover_place
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -267,7 +267,7 @@ def _block(
     top, faster, slower = given[TOP], given[FORWARD], given[BRAKING]
     task[TARGET_X], task[TARGET_Y], task[HEADING] = place[0], place[1], direction(here, there)
     task[FINAL_SPEED] = dive_speed(
-        here, (task[3], task[4]), place, there, speed, rolling, top, faster, slower
+        here, (task[3], task[4]), place, there, speed, rolling, top, faster, slower, _SLIDE, _ROLL
     )
     leg, gentle = task[TARGET_X : FINAL_SPEED + 1], slowed or own[REACTION] > 0.0
     return drive_numbers(task[:TARGET_X], leg, own, given, gentle, scene[PERIOD])

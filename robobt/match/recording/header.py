@@ -13,6 +13,7 @@ from robobt import __version__
 from robobt.config.errors import RobobtError, one_line
 from robobt.config.validation import Settings
 from robobt.tree.drawing import NodeKind
+from robobt.world.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
@@ -100,6 +101,7 @@ class RecordingHeader(Settings):
     )
     period: float = Field(gt=0, le=10, description="control period [s]")
     field: FieldGeometry
+    ball_model: BallModel = Field(DEFAULT_BALL, description="what trees are told of how the ball moves")
     teams: dict[Team, str] = Field(default_factory=dict, description="what the teams are called")
     robots: tuple[RecordedRobot, ...] = Field((), max_length=64)
     robobt: str = Field(__version__, description="version of robobt that recorded it")

@@ -182,6 +182,7 @@ class Recording:
             self.header.period,
             _latest(self.games, tick, OPEN_PLAY),
             _latest(self.touches, tick, None),
+            self.header.ball_model,
         )
 
 

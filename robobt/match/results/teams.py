@@ -21,10 +21,10 @@ from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance, line_crossing_x
 from robobt.world.protocol import ReportedEvent
 from robobt.world.rules import ball_out
-from robobt.world.state import Frame, RobotId, RobotState
+from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 _KICKED = 1.0
-"""A ball that leaves a robot faster than this was kicked, not lost [m/s]."""
+"""A ball that goes away from a robot faster than this was kicked, not lost [m/s]."""
 
 _BOUNCES = 0.1
 """A ball that leaves a robot so soon, and no faster than it came, has bounced off it [s]."""
@@ -53,9 +53,9 @@ class TeamResult:
 
     Attributes:
         goals: the score.
-        passes: kicks towards a team-mate that were no shots (a ball that bounces off was not kicked);
-            ``passes_completed`` of them were next touched by a team-mate, ``passes_intercepted`` by an
-            opponent.
+        passes: kicks towards a team-mate that were no shots (a ball that bounces or slips off was not
+            kicked); ``passes_completed`` of them were next touched by a team-mate, ``passes_intercepted``
+            by an opponent.
         shots_on_goal: kicks of at least 2 m/s whose line led into the goal.
         expected_goals: sum of the probabilities that a goalkeeper like the real ones lets them in,
             by the rater ``expected_goal``.
@@ -235,7 +235,7 @@ class TeamStatistics:
             return
         view, seen = before.seen_by(kicker.team), frame.seen_by(kicker.team)
         me = view.robot(kicker.number)
-        if me is None:
+        if me is None or _going_away(seen.ball, me) < _KICKED:
             return
         at = _goal_crossing(seen)
         if at is not None and seen.ball.speed >= _SHOT:
@@ -250,6 +250,11 @@ class TeamStatistics:
         points = np.array([[view.field.half_length, y]])
         chances = self._rater.chances(view, view.ball.position, me, points)
         return 0.0 if chances is None else float(chances[0])
+
+
+def _going_away(ball: BallState, me: RobotState) -> float:
+    """Return how fast the ball moves as seen from the robot's mouth, which may drive and turn [m/s]."""
+    return hypot(ball.vx - me.vx + me.omega * (ball.y - me.y), ball.vy - me.vy - me.omega * (ball.x - me.x))
 
 
 def _goal_crossing(view: Frame) -> float | None:

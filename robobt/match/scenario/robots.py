@@ -12,6 +12,7 @@ from robobt.config.errors import FieldError, RobobtError, message_of
 from robobt.config.validation import first_problem
 from robobt.match.scenario.starts import Part, RobotStart
 from robobt.plays.files import find_play, problem_with_play
+from robobt.plays.mistakes import mistake_in_play
 from robobt.plays.private_files import private_files
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
@@ -70,7 +71,9 @@ class RobotSetup(Part):
                 raise FieldError(self._blamed(), f"{field}: {problem}") from error
             raise FieldError(f"params.{field}", problem) from error
         except Exception as error:
-            raise FieldError(self._blamed(), message_of(error)) from error
+            field = self._blamed()
+            said = mistake_in_play(error) if field in ("play", "params") else message_of(error)
+            raise FieldError(field, said) from error
         if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
             problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
             raise FieldError("play", f"{self.play} {problem}")
@@ -84,6 +87,8 @@ class RobotSetup(Part):
             with suppress(Exception):
                 self.model_copy(update={"params": others}).build_tree()
                 blamed.append(name)
+        if not self.params:
+            return "play"
         return f"params.{blamed[0]}" if len(blamed) == 1 else "params"
 
     def build_tree(self) -> Behaviour:

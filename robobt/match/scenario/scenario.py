@@ -10,7 +10,7 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError, FieldError, one_line, short_repr
+from robobt.config.errors import ConfigError, FieldError, one_line, short_repr, unknown_name
 from robobt.config.resources import bundled_scenarios
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
@@ -244,7 +244,7 @@ def load_scenario(source: str | Path) -> Scenario:
     except (OSError, ValueError):
         missing = True
     if missing:
-        raise ScenarioError(where, f"no such file or bundled scenario; bundled are {', '.join(bundled)}")
+        raise ScenarioError(where, f"no such file or bundled scenario; {unknown_name(where, bundled)}")
     data = read_yaml(path, ScenarioError)
     # From here, not from the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import field
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.skills.debounce import Debounce
 from robobt.skills.store import Pass
 from robobt.tree import Status
 
 
 @skill
-class PassIsSteady(Skill):
+class PassIsSteady(Condition):
     """SUCCESS while the store's ``pass_`` is there and no flicker; else FAILURE, and it is None.
 
     In a short gap the last pass is put back into the store. To be ticked every

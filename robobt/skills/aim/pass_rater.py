@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import Field, field_validator
 
 from robobt.config.validation import Settings
-from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.skills.aim.raters import RATERS, OpenAngle, ShotRater, make_rater
 from robobt.skills.aim.raters.goal_line import lane_clearances, obstacles
 from robobt.skills.store import Pass
+from robobt.world.ball_model import BallModel
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
@@ -49,7 +49,7 @@ class PassRater(Settings):
     lane_clearance: float = Field(0.2415, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
     reaction: float = Field(0.12, ge=0, le=2, description="before an opponent moves to intercept [s]")
     margin_scale: float = Field(0.4, gt=0, le=10, description="head start that gives a safety of 0.73 [s]")
-    ball: BallModel = Field(DEFAULT_BALL, description="how the ball travels")
+    ball: BallModel | None = Field(None, description="how the ball travels; by default as the frame says")
 
     @field_validator("shot_rater", mode="before")
     @classmethod
@@ -62,12 +62,13 @@ class PassRater(Settings):
         receivers = self._receivers(frame, me)
         if not receivers:
             return []
+        ball = self.ball or frame.ball_model
         lengths = [distance(origin, target) for _, target in receivers]
-        speeds = [min(self.max_speed, self.ball.kick_speed(length, self.receive_speed)) for length in lengths]
+        speeds = [min(self.max_speed, ball.kick_speed(length, self.receive_speed)) for length in lengths]
         starts = self.head_starts(frame, [target for _, target in receivers], speeds)
         passes = []
         for (mate, target), length, speed, start in zip(receivers, lengths, speeds, starts, strict=True):
-            travel = self.ball.time_to(length, speed)
+            travel = ball.time_to(length, speed)
             if travel == inf:
                 continue
             shot = self.shot_rater.rate(frame, target, mate, delay=travel)
@@ -86,14 +87,14 @@ class PassRater(Settings):
         """
         if not frame.opponents:
             return [inf] * len(targets)
-        start = frame.ball.position
+        start, ball = frame.ball.position, self.ball or frame.ball_model
         lanes = []
         for target, speed in zip(targets, speeds, strict=True):
             dx, dy = target[0] - start[0], target[1] - start[1]
             length = hypot(dx, dy)
             lanes.append(
                 [
-                    (start[0] + share * dx, start[1] + share * dy, self.ball.time_to(share * length, speed))
+                    (start[0] + share * dx, start[1] + share * dy, ball.time_to(share * length, speed))
                     for share in _LANE_SHARES
                 ]
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Pass
 from robobt.tree import Status
@@ -40,7 +39,7 @@ class SelectClearance(Skill):
         mates.sort(key=lambda mate: -mate.x)
         for mate in mates:
             if self._free(mate):
-                speed = DEFAULT_BALL.kick_speed(distance(ball, mate.position), _ARRIVAL_SPEED)
+                speed = frame.ball_model.kick_speed(distance(ball, mate.position), _ARRIVAL_SPEED)
                 store.pass_ = Pass(mate.id, mate.position, min(speed, _MAX_SPEED), 1.0)
                 return self.succeed(f"to {mate.id}")
         return self.fail("no team-mate can be reached")

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Literal
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.path_planner import allowed_target, travel
 from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
@@ -250,6 +249,6 @@ def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
         dx, dy = x - me.x, y - me.y
         gap = hypot(dx, dy)
         towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
-        way = DEFAULT_BALL.way_in(travel_time(max(0.0, gap - _TOUCHING), towards, limits), speed)
+        way = frame.ball_model.way_in(travel_time(max(0.0, gap - _TOUCHING), towards, limits), speed)
         x, y = ball.x + ux * way, ball.y + uy * way
     return (x, y)

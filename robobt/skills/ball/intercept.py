@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import field
 from math import atan2, cos, hypot, inf, sin
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.ball_watch import BallWatch
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import roughly, travel_time
@@ -50,7 +49,7 @@ def earliest_meeting(
     before = late = 0.0
     time = 0.0
     while True:
-        way = min(most, DEFAULT_BALL.way_in(time, speed, rolling))
+        way = min(most, frame.ball_model.way_in(time, speed, rolling))
         point = (ball.x + way * ux, ball.y + way * uy)
         late = _arrival(me, point, ux, uy, limits) - time
         if late <= 0.0 or way >= most or time >= _HORIZON:
@@ -61,7 +60,7 @@ def earliest_meeting(
         return (point, time)
     for _ in range(4):
         middle = 0.5 * (before + time)
-        way = min(most, DEFAULT_BALL.way_in(middle, speed, rolling))
+        way = min(most, frame.ball_model.way_in(middle, speed, rolling))
         trial = (ball.x + way * ux, ball.y + way * uy)
         if _arrival(me, trial, ux, uy, limits) <= middle:
             time, point = middle, trial

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
 from typing import Literal
 
-from robobt.motion.ball_model import DEFAULT_CHIP
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
@@ -197,7 +196,7 @@ class KickToTarget(DrivingSkill):
     def _with(self, target: Point, tolerance: float, speed: float, pass_: Pass | None) -> _Order:
         if self.chip:
             away = distance(self.ball.position, target)
-            speed = min(DEFAULT_CHIP.kick_speed(away, self.touch_downs), MAX_CHIP_SPEED)
+            speed = min(self.frame.ball_model.chip_speed(away, self.touch_downs), MAX_CHIP_SPEED)
         return _Order(
             target,
             tolerance if self.tolerance is None else self.tolerance,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.geometry import line_crossing_x
 from robobt.world.rules import has_ball
@@ -12,7 +12,7 @@ from robobt.world.state import ROBOT_RADIUS
 
 
 @skill
-class BallAimedAtGoal(Skill):
+class BallAimedAtGoal(Condition):
     """SUCCESS while another robot, of either team, holds the ball and points at our goal mouth.
 
     Writes where to block: the store's ``target`` is the point a robot's radius

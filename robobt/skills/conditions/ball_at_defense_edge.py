@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import field
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.geometry import distance
 from robobt.world.rules import in_own_defense_area
@@ -12,7 +12,7 @@ from robobt.world.state import ROBOT_RADIUS
 
 
 @skill
-class BallAtDefenseEdge(Skill):
+class BallAtDefenseEdge(Condition):
     """SUCCESS from when a ball at the own defence area's edge may be fetched until it is or is lost.
 
     It may be fetched while it rests between a robot's diameter outside the area's

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robobt.motion.pilot import travel_time
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -12,7 +12,7 @@ _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 
 
 @skill
-class BallComing(Skill):
+class BallComing(Condition):
     """SUCCESS while the ball rolls towards this robot, which can step into its way in time.
 
     A ball that has passed, or passes too far off, has to be chased instead. FAILURE

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import in_own_defense_area
 
 
 @skill
-class BallInOwnDefenseArea(Skill):
+class BallInOwnDefenseArea(Condition):
     """Succeeds while the ball's centre is in the own defence area.
 
     Args:

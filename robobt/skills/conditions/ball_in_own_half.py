@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 
 
 @skill
-class BallInOwnHalf(Skill):
+class BallInOwnHalf(Condition):
     """Succeeds while the ball is on the own side of the line ``x``.
 
     Args:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 
 
 @skill
-class BallInPlay(Skill):
+class BallInPlay(Condition):
     """SUCCESS while the ball is free for both teams; FAILURE in a stop and before a restart is taken."""
 
     def on_running(self) -> Status:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 
 
 @skill
-class BallIsMoving(Skill):
+class BallIsMoving(Condition):
     """Succeeds while the ball is faster than ``speed``.
 
     Args:

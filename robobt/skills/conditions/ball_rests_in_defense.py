@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import carries, in_own_defense_area
 
 
 @skill
-class BallRestsInDefense(Skill):
+class BallRestsInDefense(Condition):
     """SUCCESS while the ball lies in the own defence area, at rest or carried by this robot.
 
     Source: RoboBulls' published code, Goalie.

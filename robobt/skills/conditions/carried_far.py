@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import hypot, inf
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point
 from robobt.world.rules import has_ball, keeps_ball, touches
@@ -16,7 +16,7 @@ _LETTING_GO = 0.15
 
 
 @skill
-class CarriedFar(Skill):
+class CarriedFar(Condition):
     """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
 
     The way is as the crow flies from where it got the ball, as referees measure

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import radians
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, wrap_angle
 
 
 @skill
-class FacesTarget(Skill):
+class FacesTarget(Condition):
     """Succeeds while the mouth points at the target; fails without one.
 
     Args:

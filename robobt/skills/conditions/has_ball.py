@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 
 
 @skill
-class HasBall(Skill):
+class HasBall(Condition):
     """Succeeds while the robot has the ball in or right before its mouth."""
 
     def on_running(self) -> Status:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.geometry import distance
 
 
 @skill
-class IsClosestToBall(Skill):
+class IsClosestToBall(Condition):
     """Succeeds while no other robot of the team is nearer to the ball.
 
     Args:

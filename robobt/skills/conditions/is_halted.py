@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 
 
 @skill
-class IsHalted(Skill):
+class IsHalted(Condition):
     """SUCCESS while the referee has halted the game or a team has its time-out."""
 
     def on_running(self) -> Status:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.game import Restart
 
 
 @skill
-class IsRestart(Skill):
+class IsRestart(Condition):
     """SUCCESS from the stop before a restart until the ball is in play; at a penalty kick, until it ends.
 
     Args:

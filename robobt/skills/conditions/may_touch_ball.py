@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
 
 
 @skill
-class MayTouchBall(Skill):
+class MayTouchBall(Condition):
     """SUCCESS while the rules let this robot touch the ball.
 
     That is while the ball is in play, but for a kicker before anybody else has

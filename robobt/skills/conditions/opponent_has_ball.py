@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import owner
 
 
 @skill
-class OpponentHasBall(Skill):
+class OpponentHasBall(Condition):
     """Succeeds while a robot of the other team has the ball."""
 
     def on_running(self) -> Status:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import owner
 
 
 @skill
-class TeamHasBall(Skill):
+class TeamHasBall(Condition):
     """Succeeds while a robot of the own team has the ball.
 
     Args:

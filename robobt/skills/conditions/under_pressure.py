@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from math import hypot
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 
 
 @skill
-class UnderPressure(Skill):
+class UnderPressure(Condition):
     """SUCCESS while an opponent's centre is within ``distance`` of the ball.
 
     Args:

@@ -5,21 +5,19 @@ from __future__ import annotations
 from dataclasses import field
 from math import cos, sin, sqrt
 
-from robobt.motion.ball_model import DEFAULT_BALL, time_for
 from robobt.motion.ball_watch import BallWatch
 from robobt.motion.pilot import drive
 from robobt.motion.speeds import stop_time
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
+from robobt.world.ball_model import time_for
 from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.limits import RobotLimits
 
 _SLOW = 0.5
 """The robot does not dive for a slower ball [m/s]."""
-
-_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
 
 _THERE = 0.04
 """A robot this near to the line stops the ball with its front [m]."""
@@ -69,7 +67,7 @@ class BlockShot(DrivingSkill):
 
     def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
         """Return the least speed at ``place`` with which the robot is there before the ball [m/s]."""
-        me, ball = self.me, self.ball
+        me, ball, model = self.me, self.ball, self.frame.ball_model
         return dive_speed(
             me.position,
             (me.vx, me.vy),
@@ -80,6 +78,8 @@ class BlockShot(DrivingSkill):
             limits.max_speed,
             limits.acceleration,
             limits.braking,
+            model.slide_deceleration,
+            model.roll_deceleration,
         )
 
 
@@ -94,6 +94,8 @@ def dive_speed(
     top: float,
     acceleration: float,
     braking: float,
+    slide: float,
+    roll: float,
 ) -> float:
     """Return the least speed at ``place`` with which a robot is there before the ball [m/s].
 
@@ -107,11 +109,13 @@ def dive_speed(
         top: how fast the robot drives at most [m/s].
         acceleration: how fast it speeds up [m/s^2].
         braking: how fast it slows down [m/s^2].
+        slide: deceleration of the ball while it slides [m/s^2].
+        roll: the same while it rolls [m/s^2].
     """
     gap = distance(here, place)
     if speed < _SLOW or gap < _THERE:
         return 0.0
-    time = time_for(distance(ball, place), speed, rolling, _SLIDE, _ROLL)
+    time = time_for(distance(ball, place), speed, rolling, slide, roll)
     towards = (velocity[0] * (place[0] - here[0]) + velocity[1] * (place[1] - here[1])) / gap
     least, most = 0.0, top
     if _in_time_braking(gap - _THERE, towards, time, braking) or (

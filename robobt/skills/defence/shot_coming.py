@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import carries
 from robobt.world.state import ROBOT_RADIUS
 
 
 @skill
-class ShotComing(Skill):
+class ShotComing(Condition):
     """SUCCESS while the ball, straight on, crosses our goal line between the posts.
 
     A ball that a robot carries does not count as a shot. Writes where to block: the store's

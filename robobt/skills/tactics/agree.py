@@ -6,10 +6,12 @@ does until something else is clearly better.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from math import hypot, inf
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+from numpy.typing import NDArray
 
 from robobt.motion.arrival import arrival_times, meetings, movers_of
 from robobt.skills.plan import Plan, Task
@@ -17,6 +19,7 @@ from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.skills.team.teamwork import follow_restart
+from robobt.world.compiled import FloatArray
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
@@ -64,6 +67,14 @@ _SAME = 0.4
 _ROLLS, _RASTER = 0.5, 0.05
 
 
+@cache
+def solver() -> Callable[[FloatArray], tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Return what shares out tasks at the least cost; importing it takes as long as all skills together."""
+    from scipy.optimize import linear_sum_assignment
+
+    return linear_sum_assignment
+
+
 def agree(frame: Frame, team: TeamStore) -> Plan:
     """Bring the team's plan up to this frame, and return it."""
     plan = team.plan
@@ -101,7 +112,8 @@ def _look(frame: Frame, plan: Plan) -> None:
     everybody = movers_of(frame)
     plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
-    plan.meetings = meetings(everybody, state, plan.rolling, field.half_length, field.half_width)
+    slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
+    plan.meetings = meetings(everybody, state, plan.rolling, slide, roll, field.half_length, field.half_width)
     times = plan.meetings[:, 0].tolist()
     ours, theirs = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
@@ -224,7 +236,7 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
                     times[i, j] -= KEEP_GAIN
         # Crossing over is worse than two short ways: the longest counts most.
         cost = times + 0.15 * times * times
-        rows_taken, jobs_taken = linear_sum_assignment(cost)
+        rows_taken, jobs_taken = solver()(cost)
         for row, column in zip(rows_taken.tolist(), jobs_taken.tolist(), strict=True):
             task, place, what = jobs[column]
             number = free[row].id

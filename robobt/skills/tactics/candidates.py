@@ -15,6 +15,7 @@ from robobt.skills.tactics.lanes import (
     LONGEST_CHIP,
     RECEIVE_SPEED,
     arrive_chance,
+    ball_row,
     chip_chance,
     chip_speed,
     chip_time,
@@ -115,6 +116,7 @@ def passes(
                 AREA_GAP if frame.game.in_play else AREA_GAP_RESTART,
             )
         ),
+        ball_row(frame.ball_model),
     )
     found = []
     for (score, speed, wait, chip), index, point in zip(rated.tolist(), owners, points, strict=True):
@@ -148,6 +150,7 @@ def _rate(
     own: FloatArray,
     opponents: FloatArray,
     size: FloatArray,
+    ball: FloatArray,
 ) -> FloatArray:
     """Rate passes to points (G, 2) of the robots ``owners``.
 
@@ -180,12 +183,12 @@ def _rate(
             if chip:
                 if not chips or not SHORTEST <= length <= LONGEST_CHIP or out[g, 0] > 0.0:
                     continue
-                speed = chip_speed(length)
-                flight = chip_time(length)
+                speed = chip_speed(length, ball)
+                flight = chip_time(length, ball)
             else:
                 arrival = REDIRECT_SPEED if redirect else min(RECEIVE_SPEED, 0.8 + 0.4 * length)
-                speed = kick_speed(length, arrival)
-                flight = flight_time(length, speed)
+                speed = kick_speed(length, arrival, ball)
+                flight = flight_time(length, speed, ball)
             wait = delay
             if wait + flight < ready:
                 # The ball waits for the robot.
@@ -193,9 +196,9 @@ def _rate(
                 if wait > LONGEST_WAIT:
                     continue
             if chip:
-                chance = chip_chance(ox, oy, x, y, wait, opponents, own, i)
+                chance = chip_chance(ox, oy, x, y, wait, opponents, own, i, ball)
             else:
-                chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i)
+                chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i, ball)
             if chance < least:
                 continue
             worth = point_worth(ox, oy, x, y, wait + flight, opponents, half_length, half_goal)

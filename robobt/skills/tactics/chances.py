@@ -213,18 +213,20 @@ def rate_points(
     opponents: FloatArray,
     goal_x: float,
     half_goal: float,
+    ball: FloatArray,
 ) -> FloatArray:
     """Rate passes from (ox, oy) to every point: (G, 2), chance to arrive and worth there.
 
-    ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m].
+    ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m]; ``ball`` is a
+    :func:`~robobt.skills.tactics.lanes.ball_row`.
     """
     out = np.empty((len(points), 2))
     nobody = np.empty((0, 7))
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         length = hypot(x - ox, y - oy)
-        speed = kick_speed(length, RECEIVE_SPEED)
-        time = flight_time(length, speed)
-        out[g, 0] = arrive_chance(ox, oy, x, y, speed, delay, opponents, nobody, -1)
+        speed = kick_speed(length, RECEIVE_SPEED, ball)
+        time = flight_time(length, speed, ball)
+        out[g, 0] = arrive_chance(ox, oy, x, y, speed, delay, opponents, nobody, -1, ball)
         out[g, 1] = point_worth(ox, oy, x, y, delay + time, opponents, goal_x, half_goal)
     return out

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import exp, hypot, inf, sqrt
 
-from robobt.motion import ball_model
-from robobt.motion.ball_model import DEFAULT_BALL, DEFAULT_CHIP, time_for
+import numpy as np
+
+from robobt.world import ball_model
+from robobt.world.ball_model import BallModel, time_for
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -31,11 +34,6 @@ _FALLS = 0.15
 _CHIPPED = 0.9
 """Chance that a chipped ball is taken that gets there."""
 
-_CHIP_SPEED = DEFAULT_CHIP.kick_speed(1.0, CHIP_TOUCH_DOWNS)
-# Times grow with the root of the distance, ways with the distance: of a chip of 25 m, a share.
-_TOUCH_DOWNS = DEFAULT_CHIP.touch_downs(5.0 * _CHIP_SPEED)
-_LANDS, _LANDS_AT = _TOUCH_DOWNS[0][0] / 5.0, _TOUCH_DOWNS[0][1] / 25.0
-_ROLLS = _TOUCH_DOWNS[CHIP_TOUCH_DOWNS - 1][0] / 5.0
 _CHIP_SAMPLES = 4
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
@@ -46,22 +44,34 @@ _MARGIN = 0.12
 """Head start of the ball over an opponent that gives a chance of 0.73 [s]."""
 
 _SAMPLES = 8
-_SLIDE = DEFAULT_BALL.slide_deceleration
-_ROLL = DEFAULT_BALL.roll_deceleration
-_SHARE = DEFAULT_BALL.switch_share
+
+_SLIDE, _ROLL, _SHARE, _CHIP_SPEED, _LANDS, _LANDS_AT, _ROLLS = range(7)
+"""Columns of :func:`ball_row`; the last four are of a chip of 1 m."""
+
+
+@lru_cache(maxsize=8)
+def ball_row(model: BallModel) -> FloatArray:
+    """Return a ball's model as the functions of this module take it."""
+    chip = model.chip_speed(1.0, CHIP_TOUCH_DOWNS)
+    # Times grow with the root of the distance, ways with the distance. A chip of 25 m hops often enough.
+    downs = model.touch_downs(5.0 * chip)
+    lands, lands_at = downs[0][0] / 5.0, downs[0][1] / 25.0
+    rolls = downs[min(CHIP_TOUCH_DOWNS, len(downs)) - 1][0] / 5.0
+    flat = (model.slide_deceleration, model.roll_deceleration, model.switch_share)
+    return np.array((*flat, chip, lands, lands_at, rolls))
 
 
 @compiled
-def kick_speed(length: float, arrival: float) -> float:
+def kick_speed(length: float, arrival: float, ball: FloatArray) -> float:
     """Return the kick speed with which a ball has the speed ``arrival`` after ``length`` [m/s, m]."""
-    speed = ball_model.kick_speed(length, arrival, _SLIDE, _ROLL, _SHARE)
+    speed = ball_model.kick_speed(length, arrival, ball[_SLIDE], ball[_ROLL], ball[_SHARE])
     return min(PASS_SPEEDS[1], max(PASS_SPEEDS[0], speed))
 
 
 @compiled
-def flight_time(length: float, speed: float) -> float:
+def flight_time(length: float, speed: float, ball: FloatArray) -> float:
     """Return when a ball kicked at ``speed`` has gone ``length`` [s]; 10 where it rests before."""
-    time = time_for(length, speed, _SHARE * speed, _SLIDE, _ROLL)
+    time = time_for(length, speed, ball[_SHARE] * speed, ball[_SLIDE], ball[_ROLL])
     return time if time < inf else 10.0
 
 
@@ -93,7 +103,14 @@ def cannot_pass_by(robot: FloatArray, x: float, y: float, time: float) -> bool:
 
 @compiled
 def lane_margin(
-    ox: float, oy: float, x: float, y: float, speed: float, delay: float, robots: FloatArray
+    ox: float,
+    oy: float,
+    x: float,
+    y: float,
+    speed: float,
+    delay: float,
+    robots: FloatArray,
+    ball: FloatArray,
 ) -> float:
     """Return the least head start of a ball over every robot on its way from (ox, oy) to (x, y) [s].
 
@@ -104,7 +121,7 @@ def lane_margin(
     least = 10.0
     for k in range(1, _SAMPLES + 1):
         share = k / _SAMPLES
-        when = delay + flight_time(share * length, speed)
+        when = delay + flight_time(share * length, speed, ball)
         px, py = ox + share * dx, oy + share * dy
         for j in range(len(robots)):
             if cannot_pass_by(robots[j], px, py, least + when):
@@ -141,12 +158,13 @@ def arrive_chance(
     opponents: FloatArray,
     mates: FloatArray,
     skip: int,
+    ball: FloatArray,
 ) -> float:
     """Return the chance that a pass kicked at ``speed`` after ``delay`` gets from (ox, oy) to (x, y).
 
     Of ``mates``, which block by standing in the lane, the row ``skip`` is the receiver's.
     """
-    chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents) / _MARGIN)
+    chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents, ball) / _MARGIN)
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
     for i in range(len(mates)):
@@ -161,15 +179,15 @@ def arrive_chance(
 
 
 @compiled
-def chip_speed(length: float) -> float:
+def chip_speed(length: float, ball: FloatArray) -> float:
     """Return the speed of a chip that rolls after ``length`` [m/s, m]."""
-    return _CHIP_SPEED * sqrt(length)
+    return float(ball[_CHIP_SPEED] * sqrt(length))
 
 
 @compiled
-def chip_time(length: float) -> float:
+def chip_time(length: float, ball: FloatArray) -> float:
     """Return how long such a chip takes [s]."""
-    return _ROLLS * sqrt(length)
+    return float(ball[_ROLLS] * sqrt(length))
 
 
 @compiled
@@ -182,6 +200,7 @@ def chip_chance(
     opponents: FloatArray,
     mates: FloatArray,
     skip: int,
+    ball: FloatArray,
 ) -> float:
     """Return the chance that a pass chipped after ``delay`` gets from (ox, oy) to (x, y), where it rolls.
 
@@ -190,7 +209,7 @@ def chip_chance(
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
     ux, uy = dx / length, dy / length
-    lands = _LANDS_AT * length
+    lands = ball[_LANDS_AT] * length
     root = sqrt(length)
     least = 10.0
     for j in range(len(opponents)):
@@ -199,7 +218,7 @@ def chip_chance(
         for k in range(_CHIP_SAMPLES + 1):
             share = k / _CHIP_SAMPLES
             way = lands - _FALLS + share * (length - lands + _FALLS)
-            when = delay + root * (_LANDS + share * (_ROLLS - _LANDS))
+            when = delay + root * (ball[_LANDS] + share * (ball[_ROLLS] - ball[_LANDS]))
             px, py = ox + way * ux, oy + way * uy
             if not cannot_pass_by(opponents[j], px, py, least + when):
                 least = min(least, time_to_pass(opponents[j], px, py) - when)

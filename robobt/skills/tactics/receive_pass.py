@@ -8,7 +8,6 @@ from math import cos, hypot, sin
 import numpy as np
 
 from robobt.motion.arrival import arrival_time, movers
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.catch import MOUTH, catch
 from robobt.motion.path_planner import travel
 from robobt.skills.ball.intercept import earliest_meeting, meet
@@ -125,12 +124,12 @@ class ReceivePass(Skill):
         elif aside < _ON_LINE and ahead > 0.1:
             # On the line already: here, unless an opponent would be there before.
             place = max(ahead - MOUTH, 0.0)
-            time = DEFAULT_BALL.time_for(place, speed, rolling)
+            time = frame.ball_model.time_for(place, speed, rolling)
             first = min(plan.their_times.values(), default=10.0)
             if time < first - 0.1:
                 x, y = ball.x + place * ux, ball.y + place * uy
         way = hypot(x - ball.x, y - ball.y)
-        time = min(3.0, DEFAULT_BALL.time_for(way, speed, rolling))
+        time = min(3.0, frame.ball_model.time_for(way, speed, rolling))
         heading = self._redirect(x, y, time, speed, ux, uy)
         if heading is None:
             if ahead > MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
@@ -142,7 +141,7 @@ class ReceivePass(Skill):
         order = travel(frame, me, place_at, heading, limits)
         gap = hypot(dx, dy)
         if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
-            v = max(0.0, speed - 0.3 * min(time, 0.3))
+            v = max(0.0, speed - frame.ball_model.roll_deceleration * min(time, 0.3))
             c, s = cos(me.heading), sin(me.heading)
             order.kick_speed = (
                 redirect_kick((c * uy - s * ux) * v) + me.limits.kick_rebound * (c * ux + s * uy) * v
@@ -162,7 +161,7 @@ class ReceivePass(Skill):
         if way < 0.15:
             return None
         x, y = ball.x + way * ux, ball.y + way * uy
-        time = DEFAULT_BALL.time_for(way, speed, rolling)
+        time = frame.ball_model.time_for(way, speed, rolling)
         if hypot(x - target[0], y - target[1]) > _ASTRAY or time > _PASS_TIME:
             return None
         row = movers((self.me,))[0]

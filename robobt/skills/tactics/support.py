@@ -11,6 +11,7 @@ from robobt.motion.arrival import movers_of
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
+from robobt.skills.tactics.lanes import ball_row
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Restart
 from robobt.world.geometry import FloatArray, Point, distance
@@ -54,7 +55,14 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
     origin = _origin(frame, team)
     field = frame.field
     rated = rate_points(
-        points, origin[0], origin[1], 0.4, plan.their_movers, field.half_length, field.goal_width / 2.0
+        points,
+        origin[0],
+        origin[1],
+        0.4,
+        plan.their_movers,
+        field.half_length,
+        field.goal_width / 2.0,
+        ball_row(frame.ball_model),
     )
     value = rated[:, 0] * rated[:, 1]
     # Where no pass gets to now it may in a moment.

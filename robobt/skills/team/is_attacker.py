@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import inf
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
 
 
 @skill
-class IsAttacker(Skill):
+class IsAttacker(Condition):
     """SUCCESS for the one robot of the team that goes for the ball or takes the restart.
 
     Of the robots that ask it is the one with the shortest way to behind the ball;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import radians
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.skills.debounce import Debounce
 from robobt.tree import Status
 from robobt.world.geometry import direction, distance, wrap_angle
@@ -12,7 +12,7 @@ from robobt.world.rules import has_ball
 
 
 @skill
-class MateAimsAtMe(Skill):
+class MateAimsAtMe(Condition):
     """SUCCESS while a team-mate with the ball faces this robot from far enough for a pass.
 
     Source: RoboBulls' published code, AttackSupport, which waits 0.9 s.

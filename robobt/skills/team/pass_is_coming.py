@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robobt.skills.base import Skill, skill
+from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 
@@ -11,7 +11,7 @@ _LEAVING = 0.3
 
 
 @skill
-class PassIsComing(Skill):
+class PassIsComing(Condition):
     """SUCCESS from the kick of a pass to this robot until somebody has the ball or it comes no nearer.
 
     Args:

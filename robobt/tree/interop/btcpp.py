@@ -128,5 +128,5 @@ def tags_of(kind: str) -> list[str]:
 def long_tags(kind: NodeType) -> tuple[str, ...]:
     """Return the tags of the long form that a type may have, the usual one first."""
     if kind.leaf:
-        return ("Action", "Condition")
+        return ("Condition", "Action") if kind.condition else ("Action", "Condition")
     return ("Decorator",) if "one" in kind.branches.values() else ("Control",)

@@ -54,6 +54,11 @@ class NodeType:
         return not self.branches
 
     @property
+    def condition(self) -> bool:
+        """Whether it is a leaf that only looks."""
+        return bool(getattr(self.cls, "condition", False))
+
+    @property
     def reads(self) -> tuple[str, ...]:
         """Entries of the store that its nodes read."""
         return tuple(getattr(self.cls, "reads", ()))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import Any
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 from robobt.tree.interop.btcpp import OTHER_TAGS, TAGS, Attribute, Tag, long_tags, tags_of
 from robobt.tree.interop.hints import words_of
@@ -15,6 +15,7 @@ from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.verify import is_written_out
 from robobt.tree.interop.vocabulary import Vocabulary, takes_entry
 from robobt.tree.parameters import Parameter, ParameterError
+from robobt.tree.signatures import meanings_of
 
 
 def write_xml(file: TreeFile, vocabulary: Vocabulary) -> str:
@@ -123,6 +124,7 @@ class _Writer:
         return self.vocabulary.to_text(parameter, value)
 
     def _ports(self, kind: NodeType) -> Iterator[tuple[str, dict[str, str]]]:
+        meanings = meanings_of(kind.cls)
         for parameter in kind.parameters.values():
             port = {"name": parameter.name, "type": parameter.kind}
             if parameter.name in kind.reads and parameter.default is None:
@@ -134,6 +136,8 @@ class _Writer:
                 except ParameterError:
                     # A default that only Python can say; Groot2 leaves it out and so it holds.
                     pass
+            if parameter.name in meanings:
+                port[""] = meanings[parameter.name]
             yield "input_port", port
         for entry in dict.fromkeys((*kind.reads, *kind.writes)):
             if entry not in kind.parameters:
@@ -166,9 +170,19 @@ def _tag_name(kind: NodeType) -> str:
 
 
 def _model_lines(tag: str, name: str, ports: Iterable[tuple[str, dict[str, str]]]) -> list[str]:
-    inner = [f"      <{direction}{_attributes(port)}/>" for direction, port in ports]
+    inner = [f"      {_port(direction, port)}" for direction, port in ports]
     start = f"    <{tag} ID={quoteattr(name)}"
     return [f"{start}>", *inner, f"    </{tag}>"] if inner else [f"{start}/>"]
+
+
+def _port(direction: str, port: dict[str, str]) -> str:
+    """Return a port's element; what it means is under "" and becomes its text, as Groot2 has it."""
+    attributes = _attributes({name: value for name, value in port.items() if name})
+    return (
+        f"<{direction}{attributes}>{escape(port[''])}</{direction}>"
+        if "" in port
+        else f"<{direction}{attributes}/>"
+    )
 
 
 def _attributes(attributes: dict[str, str]) -> str:

@@ -32,6 +32,7 @@ from robobt.match.recording import (
 )
 from robobt.match.recording.stream import new_stream
 from robobt.match.scenario.scenario import load_scenario, scenario_from
+from robobt.sim import preset
 from robobt.skills.store import Store
 from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
@@ -175,6 +176,13 @@ def test_whatever_a_tree_does_is_recorded_as_it_was_seen(path: Path, seed: int) 
                 assert said.get(place, "") == words[place]
         told = [nodes[place].path for place in sorted(reached) if statuses[place] != "-"]
         assert recording.ticked_path(BLUE_1, tick) == told
+
+
+def test_frames_of_a_recording_tell_how_its_ball_moves(tmp_path: Path) -> None:
+    ball = preset("grsim").ball.model
+    with Recorder(tmp_path / "a.robobt", header(ball_model=ball)) as recorder:
+        recorder.tick(frame(0))
+    assert load_recording(tmp_path / "a.robobt").frame(0).ball_model == ball
 
 
 def test_a_robot_too_far_away_for_the_file_is_nowhere(path: Path) -> None:

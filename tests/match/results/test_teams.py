@@ -25,6 +25,7 @@ class Story:
         self.blue, self.yellow, self.time = blue, yellow, 0.0
         self.statistics = TeamStatistics()
         self.touch: RobotId | None = None
+        self.driving: dict[int, Point] = {}
 
     def frame(
         self,
@@ -33,7 +34,10 @@ class Story:
         game: GameState = OPEN,
         events: Iterable[RefereeEvent] = (),
     ) -> None:
-        own = tuple(RobotState(number, *place) for number, place in self.blue.items())
+        own = tuple(
+            RobotState(number, *place, 0.0, *self.driving.get(number, (0.0, 0.0)))
+            for number, place in self.blue.items()
+        )
         theirs = tuple(RobotState(number, *place, 3.14) for number, place in self.yellow.items())
         seen = Frame(
             self.time,
@@ -126,6 +130,16 @@ def test_a_ball_that_rolls_off_slowly_is_no_pass() -> None:
     story.frame((GAP, 0.0))
     story.kick((GAP, 0.0), (0.02, 2.0 - GAP), speed=0.6)
     assert story.of(Team.BLUE).passes == 0
+
+
+@pytest.mark.parametrize(("speed", "passes"), [(1.8, 0), (3.5, 1)])
+def test_a_ball_that_slips_from_a_robot_in_drive_was_not_kicked(speed: float, passes: int) -> None:
+    story = match()
+    story.driving[1] = (0.0, 1.5)
+    story.frame((0.0, GAP))
+    story.kick((0.0, GAP), (0.02, 2.0 - GAP), speed)
+    story.frame((0.02, 2.0 - GAP))
+    assert story.of(Team.BLUE).passes == passes
 
 
 @pytest.mark.parametrize(

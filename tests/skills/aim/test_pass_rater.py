@@ -10,6 +10,7 @@ from robobt.skills.base import Skill
 from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world import Frame, RobotCommand, RobotState
+from robobt.world.ball_model import DEFAULT_BALL
 from tests.simulation import Trial, blue, eventually
 from tests.skills.fixed_world import HELD, frame, held, robot
 
@@ -121,7 +122,7 @@ def test_the_head_start_is_the_balls_time_against_the_opponents() -> None:
     here = frame(ME, (0.0, 0.0), opponents=(opponent,))
     (start,) = RATER.head_starts(here, [(3.0, 0.0)], [4.0])
     by_then = (2 * (0.8 - 0.1115) / 3.0) ** 0.5 + RATER.reaction
-    assert start == pytest.approx(by_then - RATER.ball.time_to(3.0, 4.0))
+    assert start == pytest.approx(by_then - DEFAULT_BALL.time_to(3.0, 4.0))
     assert RATER.head_starts(frame(ME, (0.0, 0.0)), [(3.0, 0.0)], [4.0]) == [inf]
 
 

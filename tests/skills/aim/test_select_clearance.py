@@ -1,8 +1,8 @@
 from __future__ import annotations
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.skills.aim.select_clearance import SelectClearance
 from robobt.tree import Status
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import distance
 from tests.skills.fixed_world import Alone, frame, pass_to, robot, shot_at
 

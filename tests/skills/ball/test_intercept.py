@@ -4,11 +4,11 @@ from math import hypot, pi
 
 import pytest
 
-from robobt.motion.ball_model import DEFAULT_BALL
 from robobt.motion.pilot import travel_time
 from robobt.skills import Intercept
 from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.tree import Status
+from robobt.world.ball_model import DEFAULT_BALL
 from tests.simulation import Trial, always, blue, eventually, inside_the_field
 from tests.skills.fixed_world import Alone, frame, held, robot
 

@@ -4,12 +4,12 @@ from math import atan2, cos, degrees, hypot, nan, pi, radians, sin
 
 import pytest
 
-from robobt.motion.ball_model import DEFAULT_CHIP
 from robobt.skills import KickToTarget
 from robobt.skills.ball.kick_to_target import MAX_CHIP_SPEED, SHOT_SPEED
 from robobt.skills.store import Pass, Shot
 from robobt.tree import Status
 from robobt.world import Frame, KickTrigger, Team
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import wrap_angle
 from tests.simulation import Trial, blue, eventually, goal_for_us, inside_the_field, never, yellow
@@ -212,7 +212,7 @@ def test_a_chip_is_as_fast_as_its_first_touch_down_needs() -> None:
     ball = held(me)
     alone.tick(frame(me, ball=ball))
     assert alone.command.kick_angle == CHIP_ANGLE
-    assert alone.command.kick_speed == pytest.approx(DEFAULT_CHIP.kick_speed(2.0 - ball[0]))
+    assert alone.command.kick_speed == pytest.approx(DEFAULT_BALL.chip_speed(2.0 - ball[0]))
     far = Alone(KickToTarget(target=(9.0, 0.0), chip=True))
     far.tick(frame(me, ball=ball))
     assert far.command.kick_speed == MAX_CHIP_SPEED

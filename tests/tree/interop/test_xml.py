@@ -426,8 +426,13 @@ def test_a_switch_whose_cases_do_not_fit_its_children_is_an_error(switch: str) -
 def test_the_palette_lists_every_skill_with_parameters_and_entries() -> None:
     text = tree_xml(Stop(), "Main")
     root = ElementTree.fromstring(text)
-    models = {model.get("ID"): model for model in root.iter("Action")}
+    actions = {model.get("ID"): model for model in root.iter("Action")}
+    conditions = {model.get("ID"): model for model in root.iter("Condition")}
+    assert not set(actions) & set(conditions)
+    assert {"HasBall", "IsHalted", "ShotIsSteady"} <= set(conditions)
+    models = {**actions, **conditions}
     assert set(models) >= set(SKILLS)
+    assert models["BallInOwnHalf"][0].text == "where the own side ends [m]; 0 is the half-way line."
     ports = {port.get("name"): (port.tag, port.get("default")) for port in models["KickToTarget"]}
     assert ports["style"] == ("input_port", "default")
     assert ports["shot"] == ("input_port", "{shot}")

@@ -6,10 +6,10 @@ from math import hypot
 
 from pydantic import Field
 
-from robobt.motion.ball_model import DEFAULT_BALL, BallModel
 from robobt.skills.aim.raters.base import RATERS, ShotRater
 from robobt.skills.aim.raters.openings import opening_shots
 from robobt.skills.store import Shot
+from robobt.world.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
@@ -35,18 +35,21 @@ class MovingHorizon(ShotRater):
     reaction: float = Field(0.12, ge=0, le=2, description="of a robot at rest [s]")
     reacting_speed: float = Field(1.5, gt=0, le=20, description="from this speed on a robot needs none [m/s]")
     longest: float = Field(2.0, ge=0, le=10, description="horizon at most [s]")
-    ball: BallModel = Field(DEFAULT_BALL, description="how the ball travels")
+    ball: BallModel | None = Field(None, description="how the ball travels; by default as the frame says")
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""
         inset = frame.field.goal_width * (1.0 - self.goal_share) / 2.0
-        discs = [self.reach(robot, origin, delay) for robot in frame.others(me.id)]
+        ball = self.ball or frame.ball_model
+        discs = [self.reach(robot, origin, delay, ball) for robot in frame.others(me.id)]
         return opening_shots(frame.field, origin, me.heading, inset, discs, self.full_angle)
 
-    def reach(self, robot: RobotState, origin: Point, delay: float = 0.0) -> tuple[Point, float]:
+    def reach(
+        self, robot: RobotState, origin: Point, delay: float = 0.0, ball: BallModel = DEFAULT_BALL
+    ) -> tuple[Point, float]:
         """Return centre and radius of the disc in which ``robot`` can meet a ball from ``origin`` [m]."""
         speed = hypot(robot.vx, robot.vy)
-        travel = self.ball.time_to(hypot(robot.x - origin[0], robot.y - origin[1]), self.kick_speed)
+        travel = ball.time_to(hypot(robot.x - origin[0], robot.y - origin[1]), self.kick_speed)
         reaction = self.reaction * (1.0 - min(1.0, speed / self.reacting_speed))
         horizon = self.travel_share * travel + self.delay_share * delay - reaction
         body = ROBOT_RADIUS + BALL_RADIUS

@@ -5,11 +5,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robobt.motion.ball_model import BallModel, ChipModel
 from robobt.sim import SimSettings
-from robobt.world.state import ROBOT_HEIGHT
+from robobt.world.ball_model import BallModel
 
-BALL, CHIP = BallModel(), ChipModel()
+BALL = BallModel()
 
 
 def rolled(model: BallModel, speed: float, time: float) -> tuple[float, float]:
@@ -50,10 +49,8 @@ def test_no_distance_takes_no_time() -> None:
     assert BALL.time_to(0.0, 0.0) == 0.0
 
 
-def test_skills_believe_in_the_ball_of_the_default_simulator() -> None:
-    real = SimSettings().ball
-    for name in BallModel.model_fields:
-        assert getattr(BALL, name) == getattr(real, name)
+def test_without_more_knowledge_the_ball_is_that_of_the_default_simulator() -> None:
+    assert SimSettings().ball.model == BallModel()
 
 
 @given(time=st.floats(0.01, 3.0), speed=st.floats(2.0, 7.0), share=st.floats(0.6, 1.0))
@@ -72,10 +69,10 @@ def test_a_way_longer_than_the_ball_rolls_takes_for_ever() -> None:
 
 @given(distance=st.floats(0.1, 4.0), touch_downs=st.integers(1, 3))
 def test_a_chip_for_a_distance_touches_down_there(distance: float, touch_downs: int) -> None:
-    speed = CHIP.kick_speed(distance, touch_downs)
+    speed = BALL.chip_speed(distance, touch_downs)
     # Weak chips roll before they have touched down so often.
-    assume(len(CHIP.touch_downs(speed)) >= touch_downs)
-    assert CHIP.touch_downs(speed)[touch_downs - 1][1] == pytest.approx(distance)
+    assume(len(BALL.touch_downs(speed)) >= touch_downs)
+    assert BALL.touch_downs(speed)[touch_downs - 1][1] == pytest.approx(distance)
 
 
 # Source: a table worked out from Sumatra's constants.
@@ -91,17 +88,6 @@ def test_a_chip_for_a_distance_touches_down_there(distance: float, touch_downs: 
 def test_chips_go_as_far_as_sumatras(
     speed: float, over: tuple[float, float], downs: tuple[float, ...], rolls: float
 ) -> None:
-    found = CHIP.touch_downs(speed)
+    found = BALL.touch_downs(speed)
     assert [way for _, way in found] == pytest.approx(downs, abs=0.01)
-    assert CHIP.along(speed, len(found)) == pytest.approx(rolls, abs=0.05)
-    assert CHIP.clears(speed, ROBOT_HEIGHT) == pytest.approx(over, abs=0.01)
-
-
-def test_a_weak_chip_clears_no_robot() -> None:
-    assert CHIP.clears(2.4, ROBOT_HEIGHT) is None
-
-
-def test_skills_believe_in_the_hops_of_the_default_simulator() -> None:
-    real = SimSettings().ball
-    for name in ChipModel.model_fields:
-        assert getattr(CHIP, name) == getattr(real, name)
+    assert BALL.along(speed, len(found)) == pytest.approx(rolls, abs=0.05)

@@ -10,7 +10,9 @@ from pydantic import Field
 from robobt.config.validation import Settings
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.compiled import compilable
-from robobt.world.state import GRAVITY
+
+GRAVITY = 9.81
+"""Acceleration of free fall [m/s^2]."""
 
 _LAST_APEX = 0.01
 """A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
@@ -63,17 +65,24 @@ def kick_speed(distance: float, arrival_speed: float, slide: float, roll: float,
 
 
 class BallModel(Settings):
-    """A ball that slides, then rolls: what skills assume about the ball.
+    """How a kicked ball moves: it slides, then rolls; chipped, it flies and hops before it rolls.
 
-    A kicked ball slides with one deceleration down to ``switch_share`` of the
-    speed it was kicked with, and rolls with a smaller one from there to rest.
+    On the ground it slides with one deceleration down to ``switch_share`` of the
+    speed it was kicked with, and rolls with a smaller one from there to rest. A
+    chip leaves at 45 degrees. At each touch-down it keeps a share of its speed
+    along the ground and rises with a share of the speed with which it fell; it
+    rolls once the next hop would be lower than 1 cm.
+
     The defaults are those of the default simulator; parameters and names follow
-    the two-phase model of the league's vision packet (straight_two_phase).
+    the models of the league's vision packet (straight_two_phase, chip_fixed_loss).
     """
 
     slide_deceleration: float = Field(3.0, gt=0, le=50, description="while it slides [m/s^2]")
     switch_share: float = Field(0.66, gt=0.05, lt=1, description="share of the kick speed where it rolls")
     roll_deceleration: float = Field(0.3, gt=0, le=20, description="while it rolls [m/s^2]")
+    first_hop: float = Field(0.8, ge=0, le=1, description="share of its speed kept at the first touch-down")
+    other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
+    rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
 
     def time_to(self, distance: float, speed: float) -> float:
         """Return the seconds in which a ball kicked at ``speed`` [m/s] goes ``distance`` [m], else inf."""
@@ -97,19 +106,6 @@ class BallModel(Settings):
         slide, roll = self.slide_deceleration, self.roll_deceleration
         return kick_speed(max(0.0, distance), arrival_speed, slide, roll, self.switch_share)
 
-
-class ChipModel(Settings):
-    """A chipped ball that flies, hops and rolls: what skills assume about it.
-
-    It leaves at 45 degrees. At each touch-down it keeps a share of its speed along the ground and rises with
-    a share of the speed with which it fell; it rolls once the next hop would be lower than 1 cm. The defaults
-    are those of the default simulator; the model is that of the league's vision packet (chip_fixed_loss).
-    """
-
-    first_hop: float = Field(0.8, ge=0, le=1, description="share of the speed kept at the first touch-down")
-    other_hops: float = Field(0.85, ge=0, le=1, description="the same at all others")
-    rebound: float = Field(0.47, ge=0, lt=1, description="share of the speed of falling with which it rises")
-
     def touch_downs(self, speed: float) -> list[tuple[float, float]]:
         """Return when and how far from the kick a ball chipped at ``speed`` [m/s] touches down [s, m]."""
         rises = [speed * sin(CHIP_ANGLE)]
@@ -120,11 +116,11 @@ class ChipModel(Settings):
         return list(zip(accumulate(times), accumulate(ways), strict=True))
 
     def along(self, speed: float, touch_downs: int) -> float:
-        """Return its speed along the ground after so many touch-downs [m/s]."""
+        """Return the speed along the ground of such a chip after so many touch-downs [m/s]."""
         kept = self.first_hop * self.other_hops ** (touch_downs - 1) if touch_downs else 1.0
         return speed * cos(CHIP_ANGLE) * kept
 
-    def kick_speed(self, distance: float, touch_downs: int = 1) -> float:
+    def chip_speed(self, distance: float, touch_downs: int = 1) -> float:
         """Return the speed of the chip that is ``distance`` away at that touch-down [m/s, m].
 
         That is v in F v^2 sin(a) cos(a) 2 / g, where F sums the hops as shares of the first.
@@ -132,15 +128,5 @@ class ChipModel(Settings):
         share = sum(self.along(1.0, hop) * self.rebound**hop for hop in range(touch_downs))
         return sqrt(max(distance, 0.0) * GRAVITY / (2.0 * share * sin(CHIP_ANGLE)))
 
-    def clears(self, speed: float, height: float) -> tuple[float, float] | None:
-        """Return from where to where the first hop is above ``height``, None if it never is [m/s, m]."""
-        rise = speed * sin(CHIP_ANGLE)
-        under = rise * rise - 2.0 * GRAVITY * height
-        if under <= 0.0:
-            return None
-        along = speed * cos(CHIP_ANGLE) / GRAVITY
-        return along * (rise - sqrt(under)), along * (rise + sqrt(under))
-
 
 DEFAULT_BALL = BallModel()
-DEFAULT_CHIP = ChipModel()
