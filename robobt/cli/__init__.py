@@ -149,14 +149,14 @@ def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
 
 def application(only: str | None = None) -> typer.Typer:
     """Make the application; of one command or group alone where that is all that is asked for."""
+    known = only in _COMMANDS or only in _GROUPS
     made = typer.Typer(
         no_args_is_help=True,
-        add_completion=False,
+        add_completion=not known,
         pretty_exceptions_enable=False,
         help="Behaviour trees for robot soccer: play scenarios, look at plays and skills, measure.",
     )
     made.callback()(_main)
-    known = only in _COMMANDS or only in _GROUPS
     _enter(made, {name: place for name, place in _COMMANDS.items() if name == only or not known})
     for name, (about, commands) in _GROUPS.items():
         if name == only or not known:

@@ -82,7 +82,25 @@ Where = Annotated[
 ]
 """The option of every command that can play elsewhere; see ``world_of``."""
 
-Bundled = Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")]
+
+def complete_scenario(incomplete: str) -> list[str]:
+    """Return what a shell offers for a scenario that is being typed."""
+    from robobt.config.resources import bundled_scenarios
+
+    return [name for name in bundled_scenarios() if name.startswith(incomplete)]
+
+
+def complete_play(incomplete: str) -> list[str]:
+    """Return what a shell offers for a play that is being typed."""
+    from robobt.plays import PLAYS
+
+    return [name for name in PLAYS if name.startswith(incomplete)]
+
+
+Bundled = Annotated[
+    str,
+    typer.Argument(help="A scenario file, or the name of a bundled one.", autocompletion=complete_scenario),
+]
 """The argument of commands that play a scenario."""
 
 RECORDING = ".robobt.arrows"

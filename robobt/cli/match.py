@@ -21,6 +21,7 @@ from robobt.cli.common import (
     Progress,
     Seed,
     Where,
+    complete_scenario,
     console,
     cores,
     errors,
@@ -53,7 +54,11 @@ class OnError(StrEnum):
 
 def match(
     scenario: Annotated[
-        str, typer.Argument(help="A scenario file, or the name of a bundled one (see 'robobt scenarios').")
+        str,
+        typer.Argument(
+            help="A scenario file, or the name of a bundled one (see 'robobt scenarios').",
+            autocompletion=complete_scenario,
+        ),
     ],
     trials: Annotated[
         int | None,

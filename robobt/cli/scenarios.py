@@ -8,7 +8,6 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Imports, Json, console, import_files, print_json, say, table
-from robobt.config.yaml import read_yaml
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,6 +47,8 @@ def scenarios(
 
 def _print_list(files: Mapping[str, Path]) -> None:
     """Print what the files say; whether they can be played is looked at by what plays them."""
+    from robobt.config.yaml import read_yaml
+
     listed = table("scenario", "robots", "trials", "what it is")
     listed.columns[0].no_wrap = True
     for name, path in files.items():

@@ -14,6 +14,7 @@ from robobt.cli.common import (
     Imports,
     Json,
     Seed,
+    complete_play,
     errors,
     import_files,
     parse_assignments,
@@ -28,7 +29,11 @@ if TYPE_CHECKING:
 
 def tree(
     play: Annotated[
-        str, typer.Argument(help="Name of a play (see 'robobt plays'), or a tree file (.yaml, .xml).")
+        str,
+        typer.Argument(
+            help="Name of a play (see 'robobt plays'), or a tree file (.yaml, .xml).",
+            autocompletion=complete_play,
+        ),
     ],
     param: Annotated[
         list[str] | None,

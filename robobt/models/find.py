@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
@@ -39,6 +40,15 @@ def find_model(name_or_path: str | Path) -> Path:
         return path
     there = ", ".join(sorted({path.stem for folder in folders for path in list_models(folder)})) or "none"
     raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+
+
+def rename_models(value: object, rename: Callable[[str], str]) -> object:
+    """Return plain data with the model files that it names renamed: every text that ends like one."""
+    if isinstance(value, str):
+        return rename(value) if value.endswith(_ENDINGS) else value
+    if isinstance(value, dict):
+        return {name: rename_models(part, rename) for name, part in value.items()}
+    return [rename_models(part, rename) for part in value] if isinstance(value, list) else value
 
 
 def model_folders() -> list[Path]:

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from robobt.config.errors import short_repr, unknown_name
+from robobt.models.find import rename_models
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.private_files import join_play, private_files, split_play
 from robobt.plays.sources import PythonFileError
@@ -27,10 +28,24 @@ from robobt.tree.interop import (
     write_xml,
     write_yaml,
 )
+from robobt.tree.interop.model import Text, Value
 from robobt.tree.namespace import Namespace, within
 
+
+def _place_models(value: Value, folder: Path) -> Value:
+    """Return a value with its models as seen from where robobt runs, not from the tree file's folder."""
+    if isinstance(value, Text):
+        return Text(str(_place_models(value.text, folder)))
+    return rename_models(value, lambda file: str(folder / file))
+
+
 VOCABULARY = Vocabulary(
-    SKILLS, PLAYS, (RefereeSwitch, StayOut, AvoidCrash, TaskSwitch), {ShotRater: RATERS}, Store
+    SKILLS,
+    PLAYS,
+    (RefereeSwitch, StayOut, AvoidCrash, TaskSwitch),
+    {ShotRater: RATERS},
+    Store,
+    _place_models,
 )
 """What the files of plays may name."""
 

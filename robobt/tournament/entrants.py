@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -20,7 +21,7 @@ from robobt.league.programs.program import Program
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.models.file import ModelError
-from robobt.models.find import find_model
+from robobt.models.find import find_model, rename_models
 from robobt.plays import PLAYS
 from robobt.plays.files import contents_of, is_play_file, problem_with_play, rename_play
 from robobt.plays.private_files import join_play, split_play
@@ -115,17 +116,19 @@ class Entrant:
             part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)
         ]
         for said, part in zip(says, parts, strict=False):
-            # Python files count by what they hold, wherever they lie.
+            # Python files and models count by what they hold, wherever they lie.
             said["play"] = split_play(part.play)[1]
+            said["params"] = rename_models(part.params, lambda file: Path(file).name)
         digest = hashlib.blake2b(json.dumps(says, sort_keys=True).encode(), digest_size=16)
         for part in parts:
             for content in contents_of(part.play):
                 digest.update(content)
         trees = [Path(tree) for part in parts if is_play_file(tree := split_play(part.play)[1])]
         named = [word for part in parts for word in _words(part.params)]
-        named += [
-            word for path in trees for word in re.findall(r"[\w./\\-]+", path.read_text(errors="replace"))
-        ]
+        for path in trees:
+            words = re.findall(r"[\w./\\-]+", path.read_text(errors="replace"))
+            beside = partial(_beside, path.parent)
+            named += [str(rename_models(word, beside)) for word in words]
         for model in sorted({found for word in named if (found := _model(word)) is not None}):
             digest.update(model.read_bytes())
         return digest.hexdigest()
@@ -211,7 +214,8 @@ def _from_file(path: Path, data: dict[str, object]) -> Entrant:
             play = join_play(imports, play)
         if problem := problem_with_play(play):
             raise EntrantError(str(path), problem, f"{field}.play")
-        return part.model_copy(update={"play": play})
+        params = rename_models(part.params, lambda file: str(path.parent / file))
+        return part.model_copy(update={"play": play, "params": params})
 
     players = tuple([beside(part, f"players.{number}") for number, part in enumerate(read.players)])
     goalkeeper = None if read.goalkeeper is None else beside(read.goalkeeper, "goalkeeper")
@@ -232,6 +236,10 @@ def _from_side(name: str, text: str, scenario: Scenario, team: Team) -> Entrant:
     if not robots:
         raise EntrantError(text, f"{team.value} has no robot there")
     return Entrant(name, text, tuple(players or goalkeepers), goalkeepers[0] if goalkeepers else None)
+
+
+def _beside(folder: Path, file: str) -> str:
+    return str(folder / file)
 
 
 def _words(value: object) -> Iterator[str]:

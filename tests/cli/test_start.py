@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -43,3 +44,20 @@ def test_one_command_alone_is_the_same_as_among_all() -> None:
     assert names(application("shots")) == {"shots"}
     everything = names(application("no such command"))
     assert everything == names(application()) > {"match", "shots"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"), [("match striker", "striker_vs_goalie"), ("tree attack_m", "attack_main")]
+)
+def test_a_shell_completes_names(typed: str, offered: str) -> None:
+    environment = dict(
+        os.environ, _ROBOBT_COMPLETE="complete_bash", COMP_WORDS=f"robobt {typed}", COMP_CWORD="2"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", "from robobt.cli import main; main()"],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert done.stdout.split() == [offered]

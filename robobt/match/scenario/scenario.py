@@ -18,6 +18,7 @@ from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_inside, check_starts
 from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
+from robobt.models.find import rename_models
 from robobt.plays.files import rename_play
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.game import Team
@@ -271,7 +272,7 @@ def scenario_from(data: object, source: str) -> Scenario:
 
 
 def rename_files(data: object, rename: Callable[[str], str]) -> None:
-    """Rename the robots' files (trees, Python files, substitution rules) in a scenario's plain data."""
+    """Rename the robots' files (trees, Python files, models, rules) in a scenario's plain data."""
     robots = data.get("robots") if isinstance(data, dict) else None
     for team in robots.values() if isinstance(robots, dict) else ():
         for robot in team if isinstance(team, list) else ():
@@ -282,3 +283,5 @@ def rename_files(data: object, rename: Callable[[str], str]) -> None:
                 robot["play"] = rename_play(play, rename)
             if isinstance(rules, str):
                 robot["substitute"] = rename(rules)
+            if "params" in robot:
+                robot["params"] = rename_models(robot["params"], rename)

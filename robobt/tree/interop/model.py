@@ -122,6 +122,13 @@ class TreeFile:
     language: Literal["yaml", "xml"]
 
 
+def specs_of(spec: Spec) -> Iterator[Spec]:
+    """Yield a node or subtree, and all below it."""
+    yield spec
+    for child in spec.children() if isinstance(spec, Node) else ():
+        yield from specs_of(child)
+
+
 def parts_of(value: Value) -> Iterator[Value]:
     """Yield what a value is made of: itself, or the parts of a list or mapping, however deep."""
     if isinstance(value, list | dict):

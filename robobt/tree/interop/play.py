@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from robobt.config.yaml import read_limited
 from robobt.tree.interop.build import build_tree
-from robobt.tree.interop.model import Name, Text, TreeFile, TreeFileError
+from robobt.tree.interop.model import Name, Text, TreeFile, TreeFileError, specs_of
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.interop.xml_elements import MAX_BYTES
 from robobt.tree.interop.xml_reader import parse_xml
@@ -64,6 +64,10 @@ def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
         raise TreeFileError(str(path), f"its ending is none of {', '.join(FILE_ENDINGS)}")
     parse = parse_xml if path.suffix == ".xml" else parse_yaml
     file = parse(read_limited(path, MAX_BYTES, TreeFileError), vocabulary, str(path))
+    for definition in file.trees.values():
+        for spec in specs_of(definition.root):
+            placed = {name: vocabulary.place(value, path.parent) for name, value in spec.parameters.items()}
+            spec.parameters.update(placed)
     try_build(file, vocabulary)
     return file
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, Any, Protocol
 
 from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import short_repr
-from robobt.tree.interop.model import Entry
+from robobt.tree.interop.model import Entry, Value
 from robobt.tree.interop.node_types import CONTROL, NodeType, node_type
 from robobt.tree.parameters import Parameter, ParameterError, members_of
 
@@ -38,6 +39,7 @@ class Vocabulary:
         values: for parameters of a type, the classes by whose names a file may give
             one: ``{gaussian: {sigma: 0.1}}``.
         store: the class of the store, to check entries against; None to leave them unchecked.
+        place: a value as it is seen from the file's folder, where files name other files in values.
     """
 
     leaves: Named
@@ -45,6 +47,7 @@ class Vocabulary:
     controls: tuple[type[Behaviour], ...] = ()
     values: Mapping[type, Named] = field(default_factory=dict)
     store: type | None = None
+    place: Callable[[Value, Path], Value] = lambda value, _: value
     _types: dict[object, NodeType] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:

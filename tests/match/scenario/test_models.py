@@ -132,6 +132,28 @@ def test_a_match_with_a_missing_model_ends_before_it_begins(tmp_path: Path):
     )
 
 
+def test_models_lie_beside_the_file_that_names_them(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    away = tmp_path / "away"
+    (away / "models").mkdir(parents=True)
+    (away / "models" / "mine.pt").write_bytes(SCENE.read_bytes())
+    (away / "tree.yaml").write_text("play: t\ntree: {ChooseKick: {model: models/mine.pt}}\n")
+    (away / "tree.xml").write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="t">'
+        '<ChooseKick model="models/mine.pt"/></BehaviorTree></root>'
+    )
+    for play, params in (
+        ("attack_expected", {"model": "models/mine.pt"}),
+        ("tree.yaml", {}),
+        ("tree.xml", {}),
+    ):
+        load_scenario(written(away, play, params))
+    (away / "models" / "mine.pt").unlink()
+    assert "away/models/mine.pt: there is no such file" in refusal(
+        written(away, "attack_expected", {"model": "models/mine.pt"})
+    )
+
+
 def test_a_model_given_on_the_command_line_is_refused_too():
     settings = ["--set", "blue 0.play=attack_nn", "--set", "blue 0.model=/nowhere.pt"]
     result = CliRunner().invoke(app, ["match", "striker_vs_goalie", *settings])
