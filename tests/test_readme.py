@@ -1,4 +1,4 @@
-"""Every command and link in the README works."""
+"""Every command in the README works; its links are followed in test_docs."""
 
 from __future__ import annotations
 
@@ -59,8 +59,3 @@ def test_the_python_in_it_runs_and_plays(capsys: pytest.CaptureFixture[str]) -> 
     exec("".join(blocks).replace('"my_striker"', '"readme_striker"'), scope)
     assert scope["my_striker"]().name == "my striker"  # type: ignore[operator]
     assert "rate=" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)]+)\)", README))))
-def test_a_link_leads_somewhere(target: str) -> None:
-    assert target.startswith("https://") or (ROOT / target).exists()
