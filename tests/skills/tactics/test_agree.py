@@ -2,11 +2,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Task
+from robobt.skills.tactics.chances import rate_points
+from robobt.skills.tactics.lanes import ball_row
 from robobt.world import DIVISION_B, Team
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from tests.skills.fixed_world import held, robot
@@ -111,6 +115,29 @@ def test_supporters_stand_apart() -> None:
         plan = agreement.at(step / 60, held(own[5]), own=own)
     places = [plan.places[number] for number, task in plan.tasks.items() if task is Task.SUPPORT]
     assert min(distance(a, b) for i, a in enumerate(places) for b in places[:i]) > 0.7
+
+
+def test_who_has_passed_runs_to_where_the_ball_can_come_back_to_it() -> None:
+    passer, target, start = SIX[3], (1.0, -1.5), (-0.6, 0.0)
+    own = tuple(replace(it, ball_contact=it is passer) for it in SIX)
+    near = (*THEIRS[:3], robot(0.0, 0.1, number=3), robot(-0.2, 0.7, number=4))
+    agreement = Agreement()
+    for step in range(40):
+        agreement.at(step / 60, held(own[3]), own=own, theirs=near)
+    team = agreement.team
+    team.passer, team.receiver, team.pass_target, team.pass_time = passer.id, 5, target, 40 / 60
+    for step in range(40, 70):
+        way = (step - 39) * 3.0 / 60
+        share = way / distance(start, target)
+        ball = (start[0] + share * 1.6, start[1] - share * 1.5, 2.2, -2.0)
+        plan = agreement.at(step / 60, ball, theirs=near)
+    assert plan.tasks[passer.id] is Task.SUPPORT
+    rows = np.array([plan.places[passer.id], passer.position])
+    goal = DIVISION_B.half_length, DIVISION_B.goal_width / 2
+    there, stays = rate_points(rows, *target, 0.4, plan.their_movers, *goal, ball_row(DEFAULT_BALL))
+    # The chance that the ball comes back, times what it is worth there.
+    assert there[0] > 0.5
+    assert there[0] * there[1] > 1.5 * stays[0] * stays[1]
 
 
 def test_tasks_stay_while_nothing_changes() -> None:
