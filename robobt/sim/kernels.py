@@ -35,6 +35,7 @@ from robobt.sim.columns import (
     Z,
 )
 from robobt.sim.flight import fly, pass_over
+from robobt.sim.hinge import take_hold, tie
 from robobt.sim.motion import drive, friction
 from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick, let_in
 from robobt.sim.reports import BoolArray, IntArray, note_touch, report
@@ -138,7 +139,7 @@ def control_tick(
             high = False
             commands = new[a] if step >= switch[a] else old[a]
             glued = -1
-            held = fired = False
+            held = fired = shared = False
             pull[0] = pull[1] = 0.0
             for i in range(robots):
                 driven[i] = 0.0
@@ -175,9 +176,13 @@ def control_tick(
                 if p[CORE] > 0.0:
                     if begins:
                         holds = command[DRIBBLE] > 0.0 and keeps(ball, robot, p, wheels[a, i, HELD] > 0.0)
-                        wheels[a, i, HELD] = 1.0 if holds else 0.0
+                        if not holds:
+                            wheels[a, i, HELD] = 0.0
+                        elif wheels[a, i, HELD] == 0.0:
+                            take_hold(ball, robot, wheels[a, i])
                     if wheels[a, i, HELD] > 0.0:
                         held = True
+                        shared |= glued >= 0
                         glued = i
                 elif p[ROLLER] > 0.0:
                     driven[i] = command[DRIBBLE]
@@ -195,6 +200,8 @@ def control_tick(
                 ):
                     held = True
                     hold(ball, velocity, robot, p, p[IDLE_HOLD], dt, pull)
+            if shared and glued >= 0:
+                tie(rows, first, glued, wheels[a], wheel_parameters[a], dt)
             if glued >= 0:
                 carry(ball, rows[first + glued], p, dt, move)
                 x = ball[0] + move[0] * dt

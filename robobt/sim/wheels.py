@@ -52,9 +52,9 @@ from robobt.world.geometry import FloatArray
 
 # Columns of a robot's state: speeds of the rims, where they are to go, what comes after
 # the next frame, the acceleration that the loads follow, time to the next frame, impulses,
-# whether the dribbler holds the ball.
-_RIM, _TARGET, _NEXT, _LEAN, _CLOCK, _IMPULSE, HELD = 0, 4, 8, 12, 14, 15, 27
-WHEEL_STATE = 28
+# whether the dribbler holds the ball, and where in the robot's frame.
+_RIM, _TARGET, _NEXT, _LEAN, _CLOCK, _IMPULSE, HELD, AHEAD, ASIDE = 0, 4, 8, 12, 14, 15, 27, 28, 29
+WHEEL_STATE = 30
 
 _SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""
