@@ -42,7 +42,8 @@ class Plan:
         next_pass_time: when it was chosen last [s].
         meant: when each player was last the receiver of that pass, and where [s, m].
         own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
-        own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`.
+        own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`, opponents
+            with no more speed and acceleration than they are taken to use.
         meetings: when and where each robot can meet the ball, as :func:`robobt.motion.arrival.meetings`.
         attacker_since: since when the attacker is the one it is [s].
         ours: whether the ball counts as the own team's.

@@ -13,7 +13,7 @@ from math import hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.motion.arrival import arrival_times, meetings, movers_of
+from robobt.motion.arrival import BRAKING, TOP, arrival_times, meetings, movers_of
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
@@ -54,6 +54,13 @@ OURS_AFTER = 0.5
 
 TURNS_AFTER = 1.2
 """For how long it counts as theirs or ours at least [s]."""
+
+QUICKEST = 3.0
+"""Opponents are taken to use no more of their speed and acceleration than this [m/s, m/s^2].
+
+With all that grSim's robots have (5 and 4.15), 85 of 100 looks found no pass worth trying, though four of
+five passes that were played arrived.
+"""
 
 AHEAD_FROM = 0.6
 """The ball has to be so far beyond the half-way line to count as in the other half [m]."""
@@ -110,14 +117,16 @@ def _look(frame: Frame, plan: Plan) -> None:
     ball, field = frame.ball, frame.field
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
-    plan.own_movers, plan.their_movers = everybody[: len(frame.own)], everybody[len(frame.own) :]
+    plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
+    theirs[:, TOP:BRAKING] = np.minimum(theirs[:, TOP:BRAKING], QUICKEST)
+    plan.their_movers = theirs
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
     slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
     plan.meetings = meetings(everybody, state, plan.rolling, slide, roll, field.half_length, field.half_width)
     times = plan.meetings[:, 0].tolist()
-    ours, theirs = times[: len(frame.own)], times[len(frame.own) :]
+    ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
-    plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, theirs, strict=True)}
+    plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, rest, strict=True)}
 
 
 def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
