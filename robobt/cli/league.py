@@ -16,6 +16,7 @@ from robobt.signals import Terminated
 
 if TYPE_CHECKING:
     from robobt.league.serve.server import SimServer
+    from robobt.league.wire.endpoints import Endpoint
 
 
 class Clock(StrEnum):
@@ -114,7 +115,7 @@ def serve(
     from robobt.league.log.files import LogWriter
     from robobt.league.serve.server import SimServer
     from robobt.league.serve.serving import served_line_up, served_scenario
-    from robobt.league.wire.endpoints import Endpoints, parse_endpoint
+    from robobt.league.wire.endpoints import Endpoints
     from robobt.match import load_scenario
     from robobt.match.referee.settings import RefereeSettings
     from robobt.world import FIELDS
@@ -132,9 +133,9 @@ def serve(
             keepers = {f"{team.value}_keeper": number for team, number in loaded.goalkeepers().items()}
             rules = loaded.referee.model_copy(update=keepers)
     endpoints = Endpoints(
-        vision=parse_endpoint(vision),
-        tracker=parse_endpoint(tracker),
-        referee=parse_endpoint(publish),
+        vision=_address("--vision", vision),
+        tracker=_address("--tracker", tracker),
+        referee=_address("--publish", publish),
         grsim=grsim_port,
         control=control_port,
         blue=blue_port,
@@ -187,6 +188,15 @@ def serve(
             )
 
 
+def _address(option: str, text: str) -> Endpoint:
+    from robobt.league.wire.endpoints import parse_endpoint
+
+    try:
+        return parse_endpoint(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint=option) from error
+
+
 class _TellOnce:
     """Warns at the first slow stretch; the last line sums up."""
 
@@ -232,12 +242,14 @@ def log_packets(
     """
     from robobt.league.log.files import is_log
     from robobt.league.log.recorder import log_field
-    from robobt.league.wire.endpoints import Endpoints, parse_endpoint
+    from robobt.league.wire.endpoints import Endpoints
 
     if not is_log(out):
         raise typer.BadParameter(f"'{out}' must end in .log or .log.gz", param_hint="OUT")
     endpoints = Endpoints(
-        vision=parse_endpoint(vision), tracker=parse_endpoint(tracker), referee=parse_endpoint(referee)
+        vision=_address("--vision", vision),
+        tracker=_address("--tracker", tracker),
+        referee=_address("--referee", referee),
     )
     written = {
         kind.name.lower(): count for kind, count in log_field(out, endpoints, interface, seconds).items()

@@ -15,6 +15,7 @@ from robobt.league.wire.endpoints import Endpoints
 from robobt.league.world import LeagueWorld
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim.settings import PRESETS, SimSettings
+from robobt.world.game import Team
 
 SCHEME = "league://"
 
@@ -55,6 +56,8 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         raise AddressError(address, problem, "physics")
     endpoints = {name: given.pop(name) for name in Endpoints.model_fields if name in given}
     options: dict[str, object] = {"simulator": parts.netloc, "endpoints": endpoints, **given}
+    if given.get("teams", "both") not in ("both", *Team):
+        raise AddressError(address, f"is blue, yellow or both, not {given['teams']!r}", "teams")
     if "teams" in given:
         options["teams"] = ["blue", "yellow"] if given["teams"] == "both" else [given["teams"]]
     try:

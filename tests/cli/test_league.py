@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import socket
+import threading
 import time
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -11,8 +14,10 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.league.log.files import LogKind, read_log
-from robobt.league.wire.messages import Referee
+from robobt.league.wire.messages import Referee, SimulationSyncRequest
 from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.sockets import Receiver
+from robobt.league.wire.stream import MessageStream
 from robobt.league.wire.vision import read_vision
 from tests.league.served import free_endpoints
 
@@ -82,13 +87,66 @@ def test_serve_takes_a_scenario() -> None:
     assert "Serving 2 robots" in robobt("serve", "striker_vs_goalie", *quiet(), "--seconds", 0.1)
 
 
+def test_serve_takes_a_field_and_shares_it_among_cameras(tmp_path: Path) -> None:
+    log = tmp_path / "large.log"
+    given = ("--robots", 11, "--field", "division_a", "--cameras", 4, "--seconds", 0.2)
+    assert "Serving 22 robots" in robobt("serve", *given, *quiet(), "--log", log)
+    seen = [
+        read_vision(record.data, PacketCounts()) for record in read_log(log) if record.kind == LogKind.VISION
+    ]
+    assert {one.frame.camera for one in seen if one is not None and one.frame is not None} == {0, 1, 2, 3}
+    assert {one.field.length for one in seen if one is not None and one.field is not None} == {12.0}
+
+
+@pytest.mark.integration
+def test_serve_in_step_passes_only_the_time_that_is_asked_for() -> None:
+    ends = free_endpoints()
+    ports = [f"--{name}-port={getattr(ends, name)}" for name in ("grsim", "control", "blue", "yellow")]
+    steps = 5
+
+    def ask() -> None:
+        with suppress(OSError):
+            while not asked.wait(0.02):
+                with suppress(ConnectionRefusedError):
+                    stream = MessageStream(socket.create_connection(("127.0.0.1", ends.blue)), "the server")
+                    with closing(stream):
+                        for _ in range(steps):
+                            stream.send(SimulationSyncRequest(sim_step=2 / 60).SerializeToString())
+                            stream.receive(10.0)
+                    asked.set()
+
+    asked = threading.Event()
+    client = threading.Thread(target=ask)
+    client.start()
+    try:
+        where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}", *ports]
+        said = json.loads(robobt("serve", "--robots", 1, *where, "--in-step", "--seconds", 2.0, "--json"))
+    finally:
+        asked.set()
+        client.join()
+    assert said["simulated_s"] == pytest.approx(steps * 2 / 60)
+
+
+@pytest.mark.parametrize(
+    "command", [["serve", "--tracker"], ["serve", "--publish"], ["log", "x.log", "--vision"]]
+)
+def test_an_address_that_is_none_is_told_with_its_option(command: list[str]) -> None:
+    said = " ".join(robobt(*command, "here", "--seconds", 0.1, code=2).replace("│", " ").split())
+    assert f"{command[-1]}: 'here' is not an address like 224.5.23.2:10006" in said
+
+
+def test_a_port_that_is_taken_is_one_plain_line() -> None:
+    with Receiver("127.0.0.1", 0) as other:
+        said = robobt("serve", *quiet()[:3], f"--grsim-port={other.port}", "--seconds", 0.1, code=1)
+    assert said == f"robobt: cannot receive at 127.0.0.1:{other.port}: Address already in use\n"
+
+
 @pytest.mark.integration
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
         (["serve", "--preset", "moon"], "no simulator preset is called 'moon'"),
         (["serve", "--realism", "moon"], "no realism level is called 'moon'"),
-        (["serve", "--vision", "here"], "'here' is not an address like 224.5.23.2:10006"),
         (["serve", "--interface", "203.0.113.7"], "203.0.113.7"),
         (
             ["match", "striker_vs_goalie", "--world", "webots"],

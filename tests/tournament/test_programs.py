@@ -195,6 +195,7 @@ def test_a_program_that_is_not_there_has_lost(tmp_path: Path) -> None:
         ("program: {}\n", "program.command: is missing"),
         ("program: {command: []}\n", "program.command"),
         ("program: {command: [x], ready_within: 0}\n", "program.ready_within"),
+        ("program: {command: [x], lockstep: true}\n", "program.lockstep: needs {steps} in the command"),
         ("program: {command: [x]}\nplayers: [{play: stand_still}]\n", "program: plays all robots"),
         ("", "players: is missing, and there is no program either"),
     ],

@@ -62,8 +62,11 @@ class Program(Settings):
 
     @model_validator(mode="after")
     def _steps_in_lock_step(self) -> Self:
-        if "steps" in _named(self.command) and not self.lockstep:
+        asks = "steps" in _named(self.command)
+        if asks and not self.lockstep:
             raise FieldError("command", "{steps} is there with 'lockstep: true' only")
+        if self.lockstep and not asks:
+            raise FieldError("lockstep", "needs {steps} in the command, the port at which time is asked for")
         return self
 
     @property

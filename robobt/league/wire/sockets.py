@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from ipaddress import IPv4Address
 from typing import Self
 
+from robobt.config.errors import RobobtError
 from robobt.league.wire.packets import MAX_PACKET, PacketCounts
 
 LOOPBACK = "127.0.0.1"
@@ -29,6 +30,10 @@ _BUFFER = 1 << 20
 _IP_PKTINFO = 8
 _IP_MULTICAST_ALL = 49
 _SIOCGIFADDR = 0x8915
+
+
+class SocketError(RobobtError, OSError):
+    """A port or an interface cannot be used; the message is one line."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -91,7 +96,7 @@ class Receiver(_UdpSocket):
             dropped, and those of this machine accepted on any interface.
 
     Raises:
-        OSError: the port is taken, or no interface has the address.
+        SocketError: the port is taken, or no interface has the address.
         ValueError: ``address`` is not an IPv4 address.
     """
 
@@ -106,7 +111,9 @@ class Receiver(_UdpSocket):
         except OSError as error:
             self.close()
             where = "" if interface is None else f" on {interface}"
-            raise OSError(f"cannot receive at {address}:{port}{where}: {error.strerror or error}") from error
+            raise SocketError(
+                f"cannot receive at {address}:{port}{where}: {error.strerror or error}"
+            ) from error
         self.port: int = self._socket.getsockname()[1]
 
     def _bind(self, address: str, port: int, interface: str | None, group: bool) -> None:
@@ -170,7 +177,7 @@ class Sender(_UdpSocket):
         interface: own address of the interface that packets to a group leave by; the loopback by default.
 
     Raises:
-        OSError: no interface has the address.
+        SocketError: no interface has the address.
         ValueError: ``address`` is not an IPv4 address.
     """
 
@@ -189,7 +196,9 @@ class Sender(_UdpSocket):
                 self._join(address, interface)
             except OSError as error:
                 self.close()
-                raise OSError(f"cannot send on interface {interface}: {error.strerror or error}") from error
+                raise SocketError(
+                    f"cannot send on interface {interface}: {error.strerror or error}"
+                ) from error
 
     def send(self, data: bytes) -> None:
         """Send one datagram; one that cannot be sent is lost, as datagrams are."""
@@ -232,7 +241,7 @@ def _addresses() -> dict[str, int]:
 def _interface_index(interface: str) -> int:
     known = _addresses()
     if interface not in known:
-        raise OSError(
+        raise SocketError(
             f"no interface of this machine has the address {interface}; use one of {', '.join(known)}"
         )
     return known[interface]

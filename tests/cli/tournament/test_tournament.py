@@ -68,6 +68,11 @@ def test_a_sequential_test_exits_with_what_it_found(
     said = json.loads(shown.stdout)
     assert said["sprt"]["verdict"] == ("better", "not better")[code]
     assert said["matches"] < 100
+    assert (said["sprt"]["alpha"], said["sprt"]["beta"]) == (0.05, 0.05)
+    # Who may err more often knows sooner.
+    soon = json.loads(invoke(*given, "--alpha", 0.2, "--beta", 0.2, "--json").stdout)
+    assert (soon["sprt"]["alpha"], soon["sprt"]["beta"]) == (0.2, 0.2)
+    assert soon["matches"] < said["matches"]
 
 
 @pytest.mark.parametrize("options", [(), ("--json",)])

@@ -29,6 +29,8 @@ def test_a_place_that_is_not_there_is_told_with_those_that_are() -> None:
 def test_steps_are_for_lock_step() -> None:
     with pytest.raises(ValueError, match=r"{steps} is there with 'lockstep: true' only"):
         program("x", "{steps}")
+    with pytest.raises(ValueError, match=r"needs {steps} in the command"):
+        program("x", lockstep=True)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from robobt.league.wire.packets import MAX_PACKET
-from robobt.league.wire.sockets import Packet, Receiver, Sender
+from robobt.league.wire.sockets import Packet, Receiver, Sender, SocketError
 
 GROUP = "224.5.23.2"
 
@@ -95,10 +95,10 @@ def test_answers_of_anybody_else_are_left_out(receiver: Receiver) -> None:
 
 
 def test_an_unknown_interface_is_one_plain_error() -> None:
-    with pytest.raises(OSError, match=r"no interface of this machine has the address 203\.0\.113\.7"):
+    with pytest.raises(SocketError, match=r"no interface of this machine has the address 203\.0\.113\.7"):
         Receiver(GROUP, 0, "203.0.113.7")
 
 
 def test_a_taken_port_is_one_plain_error(receiver: Receiver) -> None:
-    with pytest.raises(OSError, match=rf"cannot receive at 127\.0\.0\.1:{receiver.port}: "):
+    with pytest.raises(SocketError, match=rf"cannot receive at 127\.0\.0\.1:{receiver.port}: "):
         Receiver("127.0.0.1", receiver.port)
