@@ -10,7 +10,8 @@ import numpy as np
 
 import robobt.learning  # noqa: F401 - registers the environments
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
-from robobt.learning.envs.scripted import straight_drive, turn_and_kick
+from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
+from robobt.learning.envs.scripted import drive_and_kick, straight_drive, turn_and_kick
 from robobt.learning.envs.shoot.task import ShootTask
 from robobt.learning.envs.task import FloatArray
 
@@ -22,21 +23,22 @@ _CHUNK = 2000
 
 _FEWEST = 20
 
-Task = GoToBallTask | ShootTask
+Task = GoToBallTask | ShootTask | ScoreOnGoalkeeperTask
 Decide = Callable[[FloatArray], FloatArray]
 
 
 def bench_env(seconds: float = 2.0) -> dict[str, float]:
-    """Measure both environments on one core, with 30 ms control and the default 4 physics steps.
+    """Measure the environments on one core, with 30 ms control and the default 4 physics steps.
 
-    The robots drive to the ball, or turn and kick, by hand-written policies, so
+    The robots drive to the ball, turn and kick, or do both, by hand-written policies, so
     that episodes start and end as in training; deciding is not in the time.
 
     Each figure takes ``seconds`` of CPU time, in chunks of which the fastest counts.
 
     Returns:
-        environment steps a second of CPU time: ``go_to_ball_...`` and
-        ``shoot_...`` with each of :data:`SIZES`, of the tasks that learners step;
+        environment steps a second of CPU time, a step of Score-On-Goalkeeper being two control
+        periods: ``go_to_ball_...``, ``shoot_...`` and ``score_...`` with each of :data:`SIZES`, of the
+        tasks that learners step;
         ``..._gymnasium`` of one environment from ``gymnasium.make``. And
         ``..._physics_share``, the part of a vector step's time that the physics
         alone takes with the same commands.
@@ -45,6 +47,7 @@ def bench_env(seconds: float = 2.0) -> dict[str, float]:
     cases: tuple[tuple[str, type[Task], Decide, str], ...] = (
         ("go_to_ball", GoToBallTask, straight_drive, "robobt/GoToBall-v0"),
         ("shoot", ShootTask, turn_and_kick, "robobt/ShootTowardsGoal-v0"),
+        ("score", ScoreOnGoalkeeperTask, drive_and_kick, "robobt/ScoreOnGoalkeeper-v0"),
     )
     for name, kind, decide, env_id in cases:
         for size, n in SIZES.items():
@@ -80,10 +83,10 @@ def _measure(task: Task, decide: Decide, seconds: float) -> tuple[float, float]:
 
 
 def _physics(task: Task, steps: int) -> float:
-    commands = np.zeros((task.n, 1, 6))
+    commands = np.zeros((task.n, task.robots, 6))
     commands[..., 2] = 1.0
     begin = process_time()
-    for _ in range(steps):
+    for _ in range(steps * task.settings.decide_every):
         task.arenas.step(commands)
     return (process_time() - begin) / steps
 

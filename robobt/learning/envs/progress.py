@@ -18,7 +18,8 @@ class Progress(Protocol):
         ticks_held: for how many in a row the ball has lain in the mouth with the dribbler on; where there
             is a goalkeeper, in its mouth.
         kick_tick: in which the kicker first fired; -1 before.
-        kick_rewarded: 1 once there was what the reward takes for a kick, 0 before.
+        kick_rewarded: 1 once there was what the reward takes for a kick, or while a shot that it took for
+            one is on its way; else 0.
         total_reward: undiscounted.
         ball_x, ball_y: the ball before the tick [m].
         carried_x, carried_y: where the ball came into the mouth it lies in; nan in none [m].

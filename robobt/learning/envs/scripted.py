@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from robobt.learning.envs.task import FloatArray
-from robobt.models.actions import SHOOT_ACTION, ActionScaling
+from robobt.models.actions import SCORE_ACTION, SHOOT_ACTION, ActionScaling
+from robobt.world.geometry import wrap_angles
 
 AIM_GAIN = 6.0
 """Turning rate for each radian off the aim [1/s]."""
@@ -21,6 +22,21 @@ BEHIND = 0.1
 
 _ROUND = 0.3
 """How far behind the ball and beside it the way leads round it [m]."""
+
+_IN_MOUTH = 0.13
+"""A ball whose centre is no farther lies in the mouth [m]."""
+
+_SHOOTING = 1.7
+"""How far from the goal it kicks at most [m]."""
+
+_CORNER = 0.85
+"""Where it aims between the goalkeeper's post, 0, and the other, 1."""
+
+_CARRYING, _CAREFUL_TURN = 0.4, 2.5
+"""Share of its top speed, and turning rate with the ball [rad/s]."""
+
+_AIMED = 0.05
+"""How far off it kicks [rad]."""
 
 
 def straight_drive(observation: FloatArray) -> FloatArray:
@@ -68,3 +84,27 @@ def turn_and_kick(
     omega = np.clip(AIM_GAIN * off, -most, most)
     kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
     return np.column_stack((omega / scaling.max_turn, kick))
+
+
+def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTION) -> FloatArray:
+    """Get the ball, carry it towards the goal, and kick from near at the corner farther from the goalkeeper.
+
+    It takes (n, 17), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, and answers (n, 4).
+    """
+    ball, posts = observation[:, 3:5], observation[:, 9:13].reshape(-1, 2, 2)
+    keeper = observation[:, 13:15]
+    angles = np.arctan2(posts[..., 1], posts[..., 0])
+    beside = np.abs(wrap_angles(np.arctan2(keeper[:, 1], keeper[:, 0])[:, None] - angles))
+    there = np.arange(len(observation)), beside.argmax(axis=1)
+    corner = _CORNER * posts[there] + (1.0 - _CORNER) * posts[there[0], 1 - there[1]]
+    has_it = (np.hypot(*ball.T) < _IN_MOUTH) & (np.abs(ball[:, 1]) < _IN_MOUTH / 2)
+    aim = np.where(has_it[:, None], corner, ball)
+    turn = np.arctan2(aim[:, 1], aim[:, 0])
+    near = np.hypot(*posts.mean(axis=1).T) < _SHOOTING
+    speed = np.where(has_it, np.where(near, 0.0, _CARRYING), 1.0)
+    way = np.where(has_it[:, None], posts.mean(axis=1), ball)
+    drive = speed[:, None] * way / np.hypot(*way.T)[:, None]
+    most = np.where(has_it, _CAREFUL_TURN / scaling.max_turn, 1.0)
+    omega = np.clip(AIM_GAIN / scaling.max_turn * turn, -most, most)
+    kick = np.where(has_it & near & (np.abs(turn) < _AIMED), 1.0, -1.0)
+    return np.column_stack((drive, omega, kick))

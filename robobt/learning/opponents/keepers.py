@@ -6,7 +6,7 @@ Four kinds are a few lines each and differ in what they watch; the fifth, "shipp
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin, sqrt
+from math import atan2, cos, hypot, sin, sqrt, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,8 @@ from robobt.world.state import ROBOT_RADIUS
 KINDS = ("line", "angle", "aim", "rush", "shipped")
 """What a goalkeeper does until a shot comes, onto whose line all of them drive.
 
-``line`` stays level with the ball, ``angle`` between ball and goal, ``aim`` where the nearest robot's
-heading crosses its line, ``rush`` comes out towards a near ball.
+``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does so too, but while the
+attacker's heading leads into the goal goes where it crosses its line; ``rush`` comes out to a near ball.
 """
 
 _LINE, _ANGLE, _AIM, _RUSH, SHIPPED = range(5)
@@ -155,10 +155,10 @@ def _place(
             return x, ball[1] + (x - ball[0]) * uy / ux
     if kind == _LINE:
         return line, min(max(ball[1], -half_goal), half_goal)
-    if kind == _AIM:
-        ahead = cos(attacker[2])
-        y = ball[1] + (line - ball[0]) * sin(attacker[2]) / ahead if ahead > 0.1 else 0.0
-        return line, min(max(y, -half_goal), half_goal)
+    if kind == _AIM and cos(attacker[2]) > 0.1:
+        slope = tan(attacker[2])
+        if abs(ball[1] + (goal_x - ball[0]) * slope) < half_goal:
+            return line, ball[1] + (line - ball[0]) * slope
     dx, dy = ball[0] - goal_x, ball[1]
     far = max(hypot(dx, dy), 1e-6)
     if kind == _RUSH:

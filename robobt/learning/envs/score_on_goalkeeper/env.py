@@ -80,17 +80,17 @@ class ScoreOnGoalkeeperEnv(SingleEnv):
     | lost | -0.3 where the episode ends without one |
     | time | -0.005 |
     | aimed | 0.5 on a kick between the posts |
-    | unreached | up to 1.5 on such a kick: the speed, over 2 m/s, with which the goalkeeper would have to get into its way |
+    | unreached | 1.5 on such a kick, 0.15 m or more farther beside the goalkeeper than it gets at 4 m/s^2 in the time; 0 as far inside |
     | miss | -0.1 on a kick that will not go between the posts |
     | approach, advance, facing | what the state is worth more than the one before, but for a shot on its way: -0.5 for each metre from robot to ball, -0.3 for each from ball to goal, 0.5 (1 + cos) of the heading to the goal with the ball in the mouth |
 
-    **Start**: the attacker from 3.5 m before the middle line to 0.4 m before the defence area, more often
+    **Start**: the attacker in the attacked half, up to 0.4 m before the defence area, more often
     near the goal and turned towards it; in six of ten episodes with the ball in its mouth, else the ball
     anywhere there, with up to 0.5 m/s.
 
     **End**: terminated by a goal, which is success; terminated by a ball over a line, one that the goalkeeper
-    has held for 8 periods or that rests where it is the goalkeeper's, and by an attacker in the
-    defence area, or partly inside with the ball; truncated after 334 periods (10 s).
+    has held for 8 periods or that rests where it is the goalkeeper's, and by an attacker in the defence area,
+    or partly inside with the ball; truncated after 334 periods (10 s).
 
     Args:
         settings: a :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings` or the mapping that makes

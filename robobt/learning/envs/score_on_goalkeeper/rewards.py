@@ -18,6 +18,9 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 _SLOW = 1.0
 """A shot that is slower than this is over [m/s]."""
 
+_SURE = 0.3
+"""Between a shot that is surely reached and one that surely is not [m]."""
+
 
 class ScoreReward(Settings):
     """Weights of the reward's terms."""
@@ -27,7 +30,7 @@ class ScoreReward(Settings):
     time: float = Field(0.005, ge=0, le=10, description="taken off every tick")
     aimed: float = Field(0.5, ge=0, le=100, description="on a kick that will go between the posts")
     unreached: float = Field(
-        1.5, ge=0, le=100, description="on such a kick, times how hard it is to reach in time"
+        1.5, ge=0, le=100, description="on such a kick, times how far it passes out of the goalkeeper's reach"
     )
     miss: float = Field(0.1, ge=0, le=100, description="taken off a kick that will not go between the posts")
     approach: float = Field(0.5, ge=0, le=10, description="for each metre nearer to the ball")
@@ -35,8 +38,8 @@ class ScoreReward(Settings):
     facing: float = Field(
         0.5, ge=0, le=10, description="for a ball in the mouth, times the cosine of the heading to the goal"
     )
-    unreachable: float = Field(
-        2.0, gt=0, le=20, description="a kick counts in full if the goalkeeper had to be so fast [m/s]"
+    reach: float = Field(
+        4.0, gt=0, le=50, description="acceleration with which the goalkeeper is thought to dive [m/s^2]"
     )
 
 
@@ -107,6 +110,7 @@ def kicked(weights: ScoreReward, goal_x: float, post_y: float, keeper: FloatArra
     ahead, beside = (dx * ball[2] + dy * ball[3]) / fast, abs(dy * ball[2] - dx * ball[3]) / fast
     lacking = beside - ROBOT_RADIUS - BALL_RADIUS
     time = max(ahead, 0.1) / fast
-    hard = min(max(lacking / (time * weights.unreachable), 0.0), 1.0)
+    beyond = lacking - 0.5 * weights.reach * time * time
+    hard = min(max(0.5 + beyond / _SURE, 0.0), 1.0)
     worth: float = weights.aimed + weights.unreached * hard
     return worth

@@ -33,7 +33,7 @@ class KeeperSettings(OrderedSettings):
 
 
 class ScoreStarts(OrderedSettings):
-    """Where episodes start; None for a range takes from 3.5 m before the middle line to near the area."""
+    """Where episodes start; None for a range takes the attacked half up to near the defence area."""
 
     held: float = Field(0.6, ge=0, le=1, description="share that starts with the ball in the mouth")
     robot_x: Span | None = None

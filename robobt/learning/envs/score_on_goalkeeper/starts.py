@@ -18,8 +18,6 @@ COLUMNS = (*ROBOT_COLUMNS, *(f"keeper_{name}" for name in ROBOT_COLUMNS), *BALL_
 
 _GAP = 3e-4
 """Between ball and front before the dribbler takes it [m]."""
-_BEHIND = 3.5
-"""How far behind the middle line attackers start at most [m]."""
 _BEFORE_AREA = 0.4
 """How far from the defence area they start at least [m]."""
 _INSET = 0.3
@@ -31,10 +29,7 @@ _APART = 0.2
 def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, count: int) -> FloatArray:
     """Draw ``count`` starts (count, 19), columns :data:`COLUMNS`; the ball in the mouth or anywhere."""
     starts, field, keepers = settings.starts, settings.field, settings.keepers
-    x = starts.robot_x or (
-        -min(_BEHIND, field.half_length - _INSET),
-        field.half_length - field.defense_depth - _BEFORE_AREA,
-    )
+    x = starts.robot_x or (0.0, field.half_length - field.defense_depth - _BEFORE_AREA)
     y = starts.robot_y or (_INSET - field.half_width, field.half_width - _INSET)
     rows = np.zeros((count, len(COLUMNS)))
     far, turned = rng.random(count), rng.uniform(-pi, pi, count)
