@@ -23,6 +23,7 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.layers import Layers, layer_names
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def live(
     record: Annotated[
         Path | None, typer.Option("--record", help="Record the first match to this file as well.")
     ] = None,
+    record_layers: Layers = "",
     blue: Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = "",
     yellow: Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = "",
     settings: Set = None,
@@ -84,7 +86,8 @@ def live(
 
         def make(trial: int) -> Match:
             seed = trial_seed(start, trial)
-            return Match(loaded, seed, factory, records.pop() if records else None, trial, referees)
+            recorded = records.pop() if records else None
+            return Match(loaded, seed, factory, recorded, trial, referees, layer_names(record_layers))
 
         with world_of(world) as factory:
             Live(server, speed, paused).play_on(make)

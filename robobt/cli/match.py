@@ -34,6 +34,7 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.layers import Layers, layer_names
 from robobt.cli.live import Host, Open, Port, page_server
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 from robobt.cli.team_figures import team_figures
@@ -87,6 +88,7 @@ def match(
             help=f"Which trial to record, from 0; without --replay to SCENARIO-N{RECORDING}.",
         ),
     ] = None,
+    record_layers: Layers = "",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -202,6 +204,7 @@ def match(
                 lambda _: progress.advance(),
                 referees,
                 play,
+                layer_names(record_layers),
             )
         if not run.results:
             errors.print("robobt: stopped before the first trial was finished")

@@ -28,6 +28,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
 from robobt.world.placement import check_inside, check_placement
 from robobt.world.protocol import Placement, World
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
 _RATE = 60.0
@@ -196,6 +197,10 @@ class LeagueWorld(World):
         check_inside("the ball", (x, y), self._feed.filter.field)
         if self.connection.places:
             self._link.place([], self._placer.place_ball(x, y))
+
+    def draw(self, sketch: Sketch) -> None:
+        """See :meth:`robobt.world.World.draw`: what the cameras reported last, and how sure the filter is."""
+        self._feed.filter.draw(sketch)
 
     @property
     def refereed(self) -> bool:

@@ -10,6 +10,7 @@ from robobt.config.validation import Settings
 from robobt.live.driving import Frames
 from robobt.match.referee.by_hand import Order
 from robobt.world.game import Team
+from robobt.world.sketch import MOST_LAYERS
 
 MOST_BYTES = 4096
 """The longest message [bytes]."""
@@ -61,6 +62,13 @@ class Past(Settings):
     """Send what is kept of the match."""
 
     do: Literal["past"]
+
+
+class Layers(Settings):
+    """Let skills draw these layers as long as this viewer looks."""
+
+    do: Literal["layers"]
+    shown: list[Annotated[str, Field(max_length=40)]] = Field(max_length=MOST_LAYERS)
 
 
 _Metres = Annotated[float, Field(ge=-20, le=20)]
@@ -197,7 +205,7 @@ Act = (
 )
 """What only the viewer that steers may ask for: it acts on the match."""
 
-Message = Act | Steer | Past
+Message = Act | Steer | Past | Layers
 
 _READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="do")])
 

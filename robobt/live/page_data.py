@@ -6,11 +6,13 @@ team, in which its outputs are. Arrays are little-endian and in base64: ``times`
 ``ball`` int16 x, y [mm], speed [mm/s], height [mm]; a robot's ``rows`` int16 x, y [mm], heading
 [mrad], speed [mm/s]; -32768 off the field. Changes are flat lists whose frame numbers count from the
 change before, in a chunk from its own first frame; texts and letters are places in the chunk's tables.
+What was drawn is JSON in JSON, for a page reads only that of the moment it shows.
 """
 
 from __future__ import annotations
 
 import base64
+import json
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
@@ -19,12 +21,14 @@ from numpy.typing import NDArray
 from pydantic import JsonValue
 
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
+from robobt.match.recording.capture import FIELD
 from robobt.match.recording.compared import CANDIDATES, Plans, Written, candidates
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stores import plain
 from robobt.skills.store import GoalLine
 from robobt.world.game import GameState, Team
 from robobt.world.rules import own_side
+from robobt.world.sketch import Shape
 
 _ABSENT = -(2**15)
 _SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
@@ -66,7 +70,7 @@ class ChunkEncoder:
 
     def __init__(self, header: RecordingHeader) -> None:
         self._header = header
-        self._written: dict[str, dict[str, JsonValue]] = {str(robot.id): {} for robot in header.robots}
+        self._published: dict[str, set[tuple[str, str]]] = {str(robot.id): set() for robot in header.robots}
         self._plans = {team.value: Plans() for team in Team}
 
     def chunk(
@@ -86,7 +90,7 @@ class ChunkEncoder:
         for slot, robot in enumerate(self._header.robots):
             rows = ticks.truth.robots[::stride, slot]
             speed = np.hypot(rows[:, 3], rows[:, 4])
-            written = ticks.written.get(str(robot.id), [])
+            written, drawn = ticks.written.get(str(robot.id), []), ticks.drawn.get(str(robot.id), [])
             robots.append(
                 {
                     "rows": _int16(np.column_stack((rows[:, 0], rows[:, 1], rows[:, 2], speed)) * 1000.0),
@@ -95,7 +99,9 @@ class ChunkEncoder:
                         ((tick, letters[word]) for tick, word in statuses[slot]), frames, stride
                     ),
                     "feedback": _feedback_steps(feedback[slot], texts, frames, stride),
-                    "outputs": _steps(self._outputs(str(robot.id), written, texts), frames, stride),
+                    "written": _written_steps(written, frames, stride),
+                    "numbers": self._numbers(str(robot.id), drawn, frames, stride),
+                    "drawn": _steps(_drawings(drawn), frames, stride),
                     "goal_line": _steps(_goal_lines(written, texts), frames, stride),
                     "candidates": _steps(candidates(written), frames, stride),
                 }
@@ -111,6 +117,8 @@ class ChunkEncoder:
                 team: _steps(known.follow(ticks.written.get(team, [])), frames, stride)
                 for team, known in self._plans.items()
             },
+            "drawn": _steps(_drawings(ticks.drawn.get(FIELD, [])), frames, stride),
+            "layers": sorted({it[0] for each in ticks.drawn.values() for _, shapes in each for it in shapes}),
             "games": _steps(((tick, _game(game)) for tick, game in ticks.games), frames, stride),
             "events": [
                 [
@@ -126,17 +134,20 @@ class ChunkEncoder:
             "letters": letters.entries,
         }
 
-    def _outputs(self, robot: str, changes: Written, texts: _Table) -> Iterator[tuple[int, int]]:
-        """Give what the skills of a robot have written so far, as one text whenever that changed."""
-        written = self._written[robot]
-        for tick, change in changes:
-            written.update(change)
-            parts = [
-                f"{entry} {_say(value)}"
-                for entry, value in written.items()
-                if value is not None and entry not in (_GOAL_LINE, CANDIDATES)
-            ]
-            yield tick, texts[" · ".join(parts)]
+    def _numbers(
+        self, robot: str, drawn: Timeline[list[Shape]], frames: int, stride: int
+    ) -> list[list[object]]:
+        """Return the numbers that a robot's skills publish: layer, name, and the changes; null is the end."""
+        known, changes = self._published[robot], dict[tuple[str, str], list[tuple[int, object]]]()
+        for tick, shapes in drawn:
+            now = {(layer, text[0]): value for layer, kind, value, *text in shapes if kind == "number"}
+            for name in known - now.keys():
+                changes.setdefault(name, []).append((tick, None))
+            for name, value in now.items():
+                changes.setdefault(name, []).append((tick, value))
+            known.clear()
+            known |= now.keys()
+        return [[*name, _steps(values, frames, stride)] for name, values in changes.items()]
 
 
 class _Table:
@@ -186,6 +197,21 @@ def _steps(changes: Iterable[tuple[int, object]], frames: int, stride: int) -> l
     return flat
 
 
+def _written_steps(changes: Written, frames: int, stride: int) -> list[object]:
+    """Return what skills wrote anew but what is told otherwise; changes of one frame are merged."""
+    by_frame: dict[int, dict[str, JsonValue]] = {}
+    for tick, change in changes:
+        told = {entry: value for entry, value in change.items() if entry not in (_GOAL_LINE, CANDIDATES)}
+        if told:
+            by_frame.setdefault(-(-tick // stride), {}).update(told)
+    return _steps(((frame * stride, told) for frame, told in by_frame.items()), frames, stride)
+
+
+def _drawings(changes: Timeline[list[Shape]]) -> Iterator[tuple[int, str]]:
+    for tick, shapes in changes:
+        yield tick, json.dumps([it for it in shapes if it[1] != "number"], separators=(",", ":"))
+
+
 def _feedback_steps(changes: Timeline[dict[int, str]], texts: _Table, frames: int, stride: int) -> list[int]:
     by_frame: dict[int, dict[int, str]] = {}
     for tick, said in changes:
@@ -214,14 +240,6 @@ def _goal_lines(changes: Written, texts: _Table) -> Iterator[tuple[int, tuple[Js
             yield tick, None
         else:
             yield tick, found
-
-
-def _say(value: JsonValue) -> str:
-    if isinstance(value, dict):
-        return ", ".join([f"{key} {_say(item)}" for key, item in value.items()])
-    if isinstance(value, list):
-        return "(" + ", ".join(map(_say, value)) + ")"
-    return f"{value:.3g}" if isinstance(value, float) else "none" if value is None else str(value)
 
 
 def _game(game: GameState) -> dict[str, object]:

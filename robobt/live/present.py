@@ -13,6 +13,7 @@ class Present:
         self._statuses: dict[str, str] = {}
         self._feedback: dict[str, dict[int, str]] = {}
         self._written: dict[str, dict[str, Any]] = {}
+        self._drawn: dict[str, list[Any]] = {}
         self._lasting: dict[str, Any] = {}
 
     def follow(self, changes: Mapping[str, Any]) -> None:
@@ -22,6 +23,7 @@ class Present:
             self._feedback.setdefault(robot, {}).update(said)
         for owner, values in changes.get("written", {}).items():
             self._written.setdefault(owner, {}).update(values)
+        self._drawn.update(changes.get("drawn", ()))
         for name in ("game", "touch"):
             if name in changes:
                 self._lasting[name] = changes[name]
@@ -31,6 +33,7 @@ class Present:
         told: dict[str, Any] = {
             "statuses": dict(self._statuses),
             "feedback": {robot: dict(said) for robot, said in self._feedback.items()},
+            "drawn": dict(self._drawn),
             "written": {owner: dict(values) for owner, values in self._written.items()},
         }
         return {**{name: value for name, value in told.items() if value}, **self._lasting}

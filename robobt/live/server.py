@@ -27,7 +27,7 @@ from websockets.http11 import Request, Response
 from robobt.config.errors import RobobtError
 from robobt.live.access import LOOPBACK, Access
 from robobt.live.http import RECORDING_TYPE, file_response, response
-from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Act, Past, Rest, Steer, read
+from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Act, Layers, Past, Rest, Steer, read
 from robobt.live.stream import Stream
 from robobt.live.viewer import Viewer
 
@@ -63,6 +63,7 @@ class Server:
         url: where the page is, once it is served.
         inbox: what the viewer that steers asks for, for the match, and when that came (perf_counter) [s].
         refused: how many requests and messages were refused, by reason.
+        layers: what viewers want skills to draw.
         situation: the scenario that was last made of the present situation, as YAML.
 
     Raises:
@@ -74,6 +75,7 @@ class Server:
         self.url = ""
         self.inbox: SimpleQueue[tuple[Act, float]] = SimpleQueue()
         self.refused: Counter[str] = Counter()
+        self.layers: frozenset[str] = frozenset()
         self.situation = ""
         self._viewers: dict[int, Viewer] = {}
         self._count = 0
@@ -239,10 +241,15 @@ class Server:
             said = socket.protocol.close_sent
             self.refused["too long"] += said is not None and said.code == CloseCode.MESSAGE_TOO_BIG
             del self._viewers[viewer.number]
+            self._look()
             if self._steerer is viewer:
                 self.inbox.put((Rest(do="rest"), perf_counter()))
                 self._steerer = next(iter(self._viewers.values()), None)
             self._wake.set()
+
+    def _look(self) -> None:
+        """Tell the match what is looked at."""
+        self.layers = frozenset[str]().union(*[viewer.layers for viewer in self._viewers.values()])
 
     def _state_for(self, viewer: Viewer) -> dict[str, Any]:
         return {**self._state, "steers": viewer is self._steerer, "viewers": len(self._viewers)}
@@ -278,6 +285,9 @@ class Server:
             self._wake.set()
         elif isinstance(message, Past):
             viewer.ask_past()
+        elif isinstance(message, Layers):
+            viewer.layers = frozenset(message.shown)
+            self._look()
         elif viewer is not self._steerer:
             return "not steering"
         elif self.inbox.qsize() >= _MOST_WAITING:

@@ -63,6 +63,8 @@ class Live:
         self._capture: Capture | None = None
         self._stream: Stream | None = None
         self._hands: Hands | None = None
+        self._layers: frozenset[str] | None = None
+        self._known = 0
         self.ticks = self.late = 0
 
     def play_on(self, make: Callable[[int], Match]) -> None:
@@ -134,6 +136,7 @@ class Live:
         if self._reset is not None or self._ended:
             return False
         self._hands.hold(self._clock())
+        self._draw()
         if not match.tick():
             self._tell(over=match.outcome and match.outcome.value)
             return False
@@ -206,7 +209,18 @@ class Live:
         capture = match.capture()
         if capture is not self._capture:
             self._capture, self._stream = capture, Stream(capture)
+            self._layers, self._known = None, 0
             self._server.show(self._stream)
+
+    def _draw(self) -> None:
+        """Let skills draw what viewers look at."""
+        assert self._capture is not None
+        if self._layers is not self._server.layers:
+            self._layers = self._server.layers
+            self._capture.look(self._server, self._layers)
+        if len(self._capture.layers) != self._known:
+            self._known = len(self._capture.layers)
+            self._server.tell(layers=sorted(self._capture.layers))
 
     def _do(self, act: Act, arrived: float, match: Match) -> None:
         if match.world.paced and isinstance(act, Pause | Step | Speed) and self._hands is not None:

@@ -30,6 +30,7 @@ from robobt.match.recording.reader import poses_of
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stream import new_stream
 from robobt.world.game import GameState
+from robobt.world.sketch import Shape
 
 VERSION = 1
 """Of the messages between server and page."""
@@ -207,6 +208,7 @@ def _as_recording(ticks: EncodedTicks, header: RecordingHeader) -> Recording:
     letters: list[Timeline[str]] = [[] for _ in slots]
     feedback: list[Timeline[dict[int, str]]] = [[] for _ in slots]
     written: dict[str, Timeline[dict[str, JsonValue]]] = {}
+    drawn: dict[str, Timeline[list[Shape]]] = {}
     games: Timeline[GameState] = []
     events = []
     for tick, changes in enumerate(ticks.changes):
@@ -216,6 +218,8 @@ def _as_recording(ticks: EncodedTicks, header: RecordingHeader) -> Recording:
             feedback[slots[robot]].append((tick, said))
         for owner, values in changes.get("written", {}).items():
             written.setdefault(owner, []).append((tick, values))
+        for owner, shapes in changes.get("drawn", {}).items():
+            drawn.setdefault(owner, []).append((tick, shapes))
         if "game" in changes:
             games.append((tick, changes["game"]))
         events += changes.get("events", ())
@@ -230,6 +234,7 @@ def _as_recording(ticks: EncodedTicks, header: RecordingHeader) -> Recording:
         letters=letters,
         feedback=feedback,
         written=written,
+        drawn=drawn,
         games=games,
         touches=[],
         events=events,

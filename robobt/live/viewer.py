@@ -29,6 +29,7 @@ class Viewer:
     Attributes:
         number: in the order in which viewers came.
         news: set whenever there may be something new to send.
+        layers: what it wants skills to draw.
         refused: messages of it that were refused.
         skipped: how often it could not keep up and was sent the present instead.
     """
@@ -37,6 +38,7 @@ class Viewer:
         self.number, self.socket = number, socket
         self.news = asyncio.Event()
         self.allowance = Allowance(now)
+        self.layers: frozenset[str] = frozenset()
         self.refused = self.skipped = 0
         self._stream: Stream | None = None
         self._told: dict[str, Any] = {}

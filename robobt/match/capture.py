@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from robobt.match.ends import Outcome
@@ -31,6 +31,7 @@ class MatchCapture:
         world: where it is played.
         players: the robots.
         record: file to record it to, None for none.
+        layers: what skills draw in these is recorded.
 
     Raises:
         OSError: the recording cannot be written.
@@ -44,11 +45,12 @@ class MatchCapture:
         world: World,
         players: Sequence[Player],
         record: Path | None,
+        layers: Container[str] = (),
     ) -> None:
         self._scenario, self._trial, self._seed = scenario, trial, seed
         self._world, self._players = world, players
         self._plays = {robot: setup.play for robot, setup in scenario.robots}
-        self._record, self._parts = record, 0
+        self._record, self._layers, self._parts = record, layers, 0
         self._capture: Capture | None = None
         self._recorder: Recorder | None = None
         if record is not None:
@@ -89,6 +91,7 @@ class MatchCapture:
             if outcome is not None and outcome in _END_EVENTS:
                 kind, team = _END_EVENTS[outcome]
                 self._capture.event(kind, truth.time, team=team)
+            self._world.draw(self._capture.field)
             # What a world shows that may differ from the truth is compared when it is written.
             self._capture.tick(truth, commands, None if self._world.shows_truth else observed, packed)
 
@@ -136,7 +139,7 @@ class MatchCapture:
             if self._parts > 1:
                 path = path.with_name(f"{path.name.removesuffix(_ENDING)}-{self._parts}{_ENDING}")
             with uninterrupted:
-                self._recorder = Recorder(path, capture)
+                self._recorder = Recorder(path, capture, layers=self._layers)
         return capture
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -49,6 +49,7 @@ class Match:
         record: file to record the match to; its name ends in ``.robobt.arrows``.
         trial: which repetition this is; only written down.
         referee: makes the referee; by default the scenario's own. It is closed with the match.
+        layers: what skills draw in these is recorded as well.
 
     Attributes:
         world: where it is played.
@@ -71,6 +72,7 @@ class Match:
         record: str | Path | None = None,
         trial: int = 0,
         referee: RefereeFactory = own_referee,
+        layers: Container[str] = (),
     ) -> None:
         self.scenario, self.seed, self.trial = scenario, seed, trial
         self.world = world_factory(scenario)
@@ -103,7 +105,7 @@ class Match:
         self._spoilers: set[RobotId] = set()
         self._time = 0.0
         path = None if record is None else Path(record)
-        self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path)
+        self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
 
     def __repr__(self) -> str:
         standing = "playing" if self.outcome is None else self.outcome.value

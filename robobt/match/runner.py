@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -61,6 +61,7 @@ def run_trials(
     on_result: Callable[[MatchResult], None] | None = None,
     referee: RefereeFactory = own_referee,
     play: Callable[[Match], MatchResult] = Match.play,
+    layers: Container[str] = (),
 ) -> Run:
     """Play a scenario many times.
 
@@ -78,6 +79,7 @@ def run_trials(
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes, and with those of ``out`` first.
         referee: makes the referee of each trial; by default the scenario's own.
+        layers: what skills draw in these is recorded as well.
         play: plays a match to its end; another than the usual one needs this process, and so one worker.
 
     Raises:
@@ -105,6 +107,7 @@ def run_trials(
         {trial: Path(path) for trial, path in record.items()},
         tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
         play,
+        layers,
     )
     results: dict[int, MatchResult] = {}
     interrupted = False
@@ -148,8 +151,12 @@ class _Job:
     record: Mapping[int, Path]
     plays: tuple[Play, ...]
     conduct: Callable[[Match], MatchResult]
+    layers: Container[str]
 
     def play(self, trial: int, _report: object) -> MatchResult:
         seed = trial_seed(self.seed, trial)
         record = self.record.get(trial)
-        return self.conduct(Match(self.scenario, seed, self.world_factory, record, trial, self.referee))
+        match = Match(
+            self.scenario, seed, self.world_factory, record, trial, self.referee, layers=self.layers
+        )
+        return self.conduct(match)

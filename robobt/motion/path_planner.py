@@ -10,15 +10,23 @@ tangents, side choice and moving obstacles are robobt's.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from robobt.motion.arrival import movers_of
-from robobt.motion.scene import allowed_numbers, scene_of, task_of
+from robobt.motion.scene import TARGET_X, TARGET_Y, allowed_numbers, scene_of, task_of
 from robobt.motion.speeds import numbers
 from robobt.motion.stadium import outside_stadium
 from robobt.motion.way import travel_numbers, waypoint_numbers
 from robobt.world.command import RobotCommand
-from robobt.world.geometry import Point
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
+
+PATHS, TARGETS = "paths", "targets"
+"""The layers of planned ways, and of where robots drive and kick to."""
+
+_MOST_LEGS = 6
 
 BALL_GAP = 0.01
 """Gap to an avoided ball below which a way is blocked [m]. Source: RoboBulls' published code."""
@@ -38,6 +46,7 @@ def travel(
     ball_gap: float = BALL_GAP,
     final_speed: float = 0.0,
     spare_mates: bool = False,
+    sketch: Sketch | None = None,
 ) -> RobotCommand:
     """:func:`~robobt.motion.pilot.drive` along a free path, within the rules.
 
@@ -60,6 +69,7 @@ def travel(
         ball_gap: how far to stay from an avoided ball, hull to ball [m].
         final_speed: speed allowed at the target [m/s].
         spare_mates: whether to give way to everybody, while the ball is in play too.
+        sketch: takes the whole way in the layer "paths", where somebody looks at it.
     """
     goal = outside_stadium(frame, me, target)
     task = task_of(
@@ -72,6 +82,10 @@ def travel(
         goalkeeper=goalkeeper,
         placing=placing,
     )
+    if sketch is not None:
+        sketch.point(TARGETS, target)
+        if sketch.wants(PATHS):
+            sketch.path(PATHS, _way(frame, me, task))
     own, other = numbers(me.limits), limits is not me.limits
     return RobotCommand(
         *travel_numbers(task, scene_of(frame), movers_of(frame), own, numbers(limits), other, spare_mates)
@@ -116,3 +130,16 @@ def next_waypoint(
     )
     x, y, speed = waypoint_numbers(task, scene_of(frame), movers_of(frame), numbers(me.limits))
     return (x, y), speed
+
+
+def _way(frame: Frame, me: RobotState, task: FloatArray) -> Iterator[Point]:
+    """Give the points of the whole way as it would be driven if all else stood still."""
+    task, scene, robots, own = task.copy(), scene_of(frame), movers_of(frame), numbers(me.limits)
+    target = task[TARGET_X], task[TARGET_Y] = allowed_numbers(task, scene)
+    yield me.position
+    for _ in range(_MOST_LEGS):
+        x, y, _ = waypoint_numbers(task, scene, robots, own)
+        yield x, y
+        if (x, y) == target:
+            break
+        task[0], task[1] = x, y

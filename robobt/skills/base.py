@@ -12,6 +12,7 @@ from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
 from robobt.world.geometry import Point, direction, distance
 from robobt.world.limits import RobotLimits
+from robobt.world.sketch import Sketch
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 FACING = radians(15.0)
@@ -50,6 +51,11 @@ class Skill(Leaf[Store]):
     def ball(self) -> BallState:
         """The ball."""
         return self.store.frame.ball
+
+    @property
+    def draw(self) -> Sketch:
+        """Draws on the field for whoever looks, in layers that it names: ``self.draw.line("plan", a, b)``."""
+        return self.store.draw
 
     @property
     def drive_limits(self) -> RobotLimits:
@@ -97,6 +103,7 @@ class Skill(Leaf[Store]):
             ball_gap=KICKER_GAP if has_kicked else BALL_GAP,
             goalkeeper=goalkeeper,
             spare_mates=spare_mates,
+            sketch=store.draw,
         )
 
 

@@ -71,6 +71,7 @@ class GoToPose(DrivingSkill):
             avoid_ball=self.avoid_ball or self.has_kicked,
             ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
             goalkeeper=self.goalkeeper,
+            sketch=self.draw,
         )
         x, y = allowed_target(frame, me, target, goalkeeper=self.goalkeeper)
         gap = hypot(x - me.x, y - me.y)

@@ -10,6 +10,7 @@ from robobt.skills.aims import Shot as Shot
 from robobt.skills.plan import Plan
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
 
 
@@ -67,6 +68,7 @@ class Store:
         goal_line: how a rater that judges every point of it did so then, None without one.
         pass_: the pass selected last, None without one.
         candidates: the passes compared last, the best first.
+        draw: takes what skills draw on the field.
     """
 
     frame: Frame
@@ -78,6 +80,7 @@ class Store:
     goal_line: GoalLine | None = None
     pass_: Pass | None = None
     candidates: list[Pass] = field(default_factory=list)
+    draw: Sketch = field(default_factory=Sketch, compare=False, repr=False)
 
     @property
     def time(self) -> float:
@@ -85,5 +88,5 @@ class Store:
         return self.frame.time
 
 
-GIVEN = ("frame", "me", "command", "team", "time")
+GIVEN = ("frame", "me", "command", "team", "draw", "time")
 """The entries of a :class:`Store` that are there without any leaf's doing."""

@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
 
@@ -126,6 +127,10 @@ class World(Protocol):
         """Return the events that the referee there has reported since this was asked last."""
         return ()
 
+    def draw(self, sketch: Sketch) -> None:  # noqa: ARG002
+        """Draw what this world knows besides frames, in world coordinates, where somebody looks at it."""
+        return
+
     @property
     def shows_truth(self) -> bool:
         """Whether :meth:`observe` always returns what :meth:`truth` does."""
@@ -201,6 +206,10 @@ class WrappedWorld(World):
     def reported(self) -> Sequence[ReportedEvent]:
         """See :meth:`World.reported`."""
         return self.world.reported()
+
+    def draw(self, sketch: Sketch) -> None:
+        """See :meth:`World.draw`."""
+        self.world.draw(sketch)
 
     @property
     def shows_truth(self) -> bool:

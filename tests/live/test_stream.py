@@ -52,15 +52,15 @@ def numbers(text: str, kind: str) -> np.ndarray[Any, Any]:
     return np.frombuffer(base64.b64decode(text), dtype=kind)
 
 
-Known = list[tuple[str, dict[int, str], str]]
+Known = list[tuple[str, dict[int, str], dict[str, Any]]]
 
 
 def shown(chunks: list[dict[str, Any]], tree_sizes: list[int]) -> Iterator[Known]:
-    """What a page knows of every robot after each chunk: letters, feedback, outputs."""
-    robots: Known = [("", {}, "") for _ in tree_sizes]
+    """What a page knows of every robot after each chunk: letters, feedback, what skills wrote."""
+    robots: Known = [("", {}, {}) for _ in tree_sizes]
     for chunk in chunks:
         for slot, news in enumerate(chunk["robots"]):
-            letters, said, outputs = robots[slot]
+            letters, said, written = robots[slot]
             if chunk["whole"]:
                 said = {}
             flat = news.get("feedback", [])
@@ -68,9 +68,9 @@ def shown(chunks: list[dict[str, Any]], tree_sizes: list[int]) -> Iterator[Known
                 said = {**said, node: chunk["texts"][text]}
             for place in news.get("statuses", [])[-1:]:
                 letters = chunk["letters"][place]
-            for place in news.get("outputs", [])[-1:]:
-                outputs = chunk["texts"][place]
-            robots[slot] = letters, said, outputs
+            for change in news.get("written", [])[1::2]:
+                written = {**written, **change}
+            robots[slot] = letters, said, written
         yield list(robots)
 
 

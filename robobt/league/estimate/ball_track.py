@@ -89,6 +89,11 @@ class BallTrack:
         """The estimate at ``time``."""
         return self._rolling if self._misfit_rolling < self._misfit_sliding else self._sliding
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the position in each direction [m]."""
+        return sqrt(max(0.0, self._covariance.pp))
+
     def advance(self, time: float, near_robot: bool) -> None:
         """Predict the estimate to ``time``."""
         dt = time - self.time

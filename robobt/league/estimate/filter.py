@@ -22,10 +22,17 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
+from robobt.world.sketch import Sketch
 from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT, BallState, Frame, RobotId, RobotState
 
 _MIN_ROBOT_NOISE, _MIN_BALL_NOISE, _MIN_HEADING_NOISE = 0.0013, 0.0014, 0.01
 """Noise that is always assumed [m, m, rad]. Source: ER-Force's Realistic."""
+
+DETECTIONS, COVARIANCE = "detections", "covariance"
+"""The layers of what the cameras reported, and of how sure the filter is of it."""
+
+_RADIUS_95 = 2.448
+"""Radius of the circle that holds 95 % of a normal distribution of two dimensions, in standard deviations."""
 
 _MIN_CONFIDENCE = 0.1
 """Detections of lower confidence are ignored."""
@@ -98,6 +105,7 @@ class VisionFilter:
         self._kick_watch = KickWatch(self.settings.body.face)
         self._flights = FlightWatch(self.settings.ball, self._ball_noise, self.cameras)
         self._cameras: dict[int, float] = {}
+        self._seen: dict[int, CameraFrame] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
         self._outliers = Outliers(_CONFIRMATIONS, _ROBOT_TIMEOUT)
@@ -135,6 +143,7 @@ class VisionFilter:
         if last is not None and time <= last:
             return False
         self._cameras[frame.camera] = time
+        self._seen[frame.camera] = frame
         self.captured = time if self.captured is None else max(time, self.captured)
         detections: dict[RobotId, list[RobotDetection]] = {}
         for robot in frame.robots:
@@ -153,6 +162,17 @@ class VisionFilter:
     def robots(self) -> list[RobotId]:
         """Return the robots on the field."""
         return sorted(self._robots)
+
+    def draw(self, sketch: Sketch) -> None:
+        """Draw each camera's last detections, and the area in which the filter has each object at 95 %."""
+        if sketch.wants(DETECTIONS):
+            for seen in self._seen.values():
+                places = [(it.x, it.y) for it in seen.robots] + [(it.x, it.y) for it in seen.balls]
+                for place in places:
+                    sketch.point(DETECTIONS, place)
+        if sketch.wants(COVARIANCE):
+            for track in (*self._robots.values(), *([self._ball] if self._ball is not None else ())):
+                sketch.circle(COVARIANCE, (track.motion.x, track.motion.y), _RADIUS_95 * track.spread)
 
     def ball_unseen(self) -> float:
         """Return how long the ball has not been detected; infinity if it never was [s]."""

@@ -96,6 +96,11 @@ class RobotTrack:
         )
         self.time = time
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the position in each direction [m]."""
+        return sqrt(max(0.0, self._position.pp))
+
     def deviation(self, x: float, y: float) -> float:
         """Return the distance of a detection at the track's time from the prediction [m]."""
         return hypot(x - self.motion.x, y - self.motion.y)

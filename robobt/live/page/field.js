@@ -125,9 +125,9 @@ const judgedBy = (robot, frame) => {
   return line && (!robot.judges.length || asked(robot, robot.judges, frame)) ? line : null;
 };
 /* The passes that a robot compares, the best one bold, each with its score. */
-const outlined = (text, x, y) => {
+const outlined = (text, x, y, ink = "#fff") => {
   pen.font = `600 11px Inter, system-ui, "DejaVu Sans", sans-serif`; pen.textBaseline = "middle"; pen.textAlign = "center";
-  pen.lineWidth = 3; pen.lineJoin = "round"; pen.strokeStyle = "rgba(8,16,22,.75)"; pen.fillStyle = "#fff";
+  pen.lineWidth = 3; pen.lineJoin = "round"; pen.strokeStyle = "rgba(8,16,22,.75)"; pen.fillStyle = ink;
   pen.strokeText(text, x, y); pen.fillText(text, x, y);
 };
 const drawCompared = (robot, frame, from) => {
@@ -141,11 +141,38 @@ const drawCompared = (robot, frame, from) => {
     pen.globalAlpha = 1; outlined(score.toFixed(2), u, v - 10);
   });
 };
+/* What skills draw themselves, each layer in a colour of its own. */
+const INKS = ["#7fe3ff", "#ffd166", "#ff9ad5", "#b9ff8a", "#ffb38a", "#c9b6ff", "#8affd8", "#ffffff"];
+export const inkOf = layer => INKS[[...match.layers].sort().indexOf(layer) % INKS.length] || INKS[0];
+const drawShape = ([layer, kind, x, y, u, v], side) => {
+  const a = px(side * x), b = py(side * y);
+  pen.strokeStyle = pen.fillStyle = inkOf(layer); pen.lineWidth = 1.5; pen.lineCap = "round";
+  if (kind === "text") { outlined(u, a, b - 9, pen.fillStyle); return; }
+  pen.beginPath();
+  if (kind === "line") { pen.moveTo(a, b); pen.lineTo(px(side * u), py(side * v)); }
+  else if (kind === "circle") pen.arc(a, b, u * view.scale, 0, 7);
+  else { pen.moveTo(a - 4, b - 4); pen.lineTo(a + 4, b + 4); pen.moveTo(a - 4, b + 4); pen.lineTo(a + 4, b - 4); }
+  pen.stroke();
+};
+const shapesOf = (changes, frame) => { const text = valueAt(changes, frame, ""); return text && text !== "[]" ? JSON.parse(text).filter(([layer]) => state.layers.has(layer)) : []; };
+const drawDrawn = (frame, places) => {
+  for (const shape of shapesOf(match.drawn, frame)) drawShape(shape, 1);
+  match.robots.forEach((robot, slot) => {
+    if (!places[slot]) return;
+    for (const shape of shapesOf(robot.drawn, frame)) drawShape(shape, robot.view);
+    let row = 0;
+    for (const known of robot.numbers.values()) {
+      const value = state.layers.has(known.layer) ? valueAt(known, frame, null) : null;
+      if (value !== null) outlined(`${known.name} ${Number(value.toPrecision(3))}`, px(places[slot].x), py(places[slot].y) + .14 * view.scale + 13 * ++row, inkOf(known.layer));
+    }
+  });
+};
 /* Whom a team marks, the opponents it fears by rank, and where its attacker is to meet the rolling ball. */
+const PLANS = ["marking", "threats", "meeting"];
 const drawPlans = (frame, places) => {
   const { robots } = match, placeOf = (team, number) => places[robots.findIndex(robot => robot.team === team && robot.number === Number(number))];
   for (const { team, changes } of match.plans) {
-    const [marks, threats, meets] = valueAt(changes, frame, [{}, [], []]), others = team === "blue" ? "yellow" : "blue";
+    const [marks, threats, meets] = valueAt(changes, frame, [{}, [], []]).map((each, i) => state.layers.has(PLANS[i]) ? each : []), others = team === "blue" ? "yellow" : "blue";
     pen.strokeStyle = colours[team]; pen.lineWidth = 2; pen.setLineDash([3, 4]);
     for (const [marker, marked] of Object.entries(marks || {})) {
       const a = placeOf(team, marker), b = placeOf(others, marked);
@@ -202,13 +229,13 @@ export const drawMatch = () => {
   }
   const there = between(ball, 4, frame, share);
   if (there) drawTrail(frame, there);
-  if (there) {
+  if (there && state.layers.has("goal line")) {
     const judging = robots.filter(robot => judgedBy(robot, frame));
     for (const robot of judging.includes(state.robot) ? [state.robot] : judging) drawJudged(robot, judgedBy(robot, frame), there);
   }
   const places = robots.map(robot => between(robot.rows, 4, frame, share));
-  if (there) for (const robot of robots) drawCompared(robot, frame, there);
-  drawPlans(frame, places);
+  if (there && state.layers.has("passes")) for (const robot of robots) drawCompared(robot, frame, there);
+  drawPlans(frame, places); drawDrawn(frame, places);
   robots.forEach((robot, slot) => { if (places[slot]) drawRobot(robot, places[slot], frame, robot === state.robot); });
   if (there) {
     const radius = Math.max(2.6, .0215 * view.scale), height = ball[4 * frame + 3] / 1000;

@@ -1,6 +1,7 @@
 /* The page of a match that is being played. */
 import { $, make, put, words } from "./base.js";
 import { connect, on, send, VERSION } from "./link.js";
+import { showLayers, wanted } from "./layers.js";
 import { append, endTime, forget, frameOf, match, openMatch, startTime, state } from "./match.js";
 import { buildFigures, buildHead, chip, choose } from "./panel.js";
 import { delays, showDriving } from "./drive.js";
@@ -36,6 +37,7 @@ Object.assign(bridge, { act, say, now: () => now });
 addEventListener("picked", event => choose(event.detail));
 
 /* ---------------------------------------------------------------- controls */
+const look = layers => send({ do: "layers", shown: layers });
 const control = (name, title, action) => {
   const button = make("button", "toggle", name);
   button.title = title;
@@ -60,7 +62,7 @@ count.setAttribute("role", "status");
 document.querySelector(".stage").append(count);
 const showState = () => {
   put(count, now.countdown || ""); count.classList.toggle("words", (now.countdown || "").length > 2);
-  showHead(); showSteering(now); showDriving(now);
+  showHead(); showSteering(now); showDriving(now); showLayers(now.layers || [], look);
   nowButton.hidden = state.follow;
   steerButton.setAttribute("aria-pressed", String(now.steers));
   for (const button of [nextButton, againButton]) button.disabled = !now.steers;
@@ -89,6 +91,7 @@ on("hello", message => {
   if (message.past) send({ do: "past" });
   state.follow = true; measured.matches++;
   openMatch(header); buildFigures({}); start(); showState();
+  if (state.layers.size) look(wanted());
 });
 on("now", message => {
   for (const chunk of message.chunks) {

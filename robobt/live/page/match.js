@@ -4,7 +4,7 @@ import { buffer } from "./base.js";
 export const ABSENT = -32768;
 export const match = { frames: 0 };
 /* What is shown of it, and where in time; follow: the newest tick, as it comes. */
-export const state = { time: 0, playing: false, follow: false, speed: 1, robot: null, node: 0, labels: false, show: () => {} };
+export const state = { time: 0, playing: false, follow: false, speed: 1, robot: null, node: 0, labels: false, layers: new Set(["goal line", "passes", "marking", "threats", "meeting"]), show: () => {} };
 
 /* Values and the frames from which on they hold. */
 const changes = () => ({ frames: [], values: [] });
@@ -23,11 +23,12 @@ export const openMatch = header => {
   Object.assign(match, header, {
     frames: 0, times: new Float32Array(0), ball: new Int16Array(0), games: changes(), events: [],
     refereed: false, forgotten: { blue: 0, yellow: 0 },
+    drawn: changes(), layers: match.layers || new Set(),
     plans: ["blue", "yellow"].map(team => ({ team, changes: changes() })),
     robots: header.robots.map(robot => ({
       team: robot.team, view: robot.view, number: robot.number, play: robot.play, radius: robot.radius, mouth: robot.mouth,
       name: `${robot.team} ${robot.number}`, rows: new Int16Array(0),
-      flags: changes(), statuses: changes(), outputs: changes(), compared: changes(), judged: changes(), said: robot.tree.map(changes),
+      flags: changes(), statuses: changes(), written: new Map(), numbers: new Map(), drawn: changes(), compared: changes(), judged: changes(), said: robot.tree.map(changes),
       compares: robot.tree.flatMap(([name, type], place) => type === "ChooseKick" ? [place] : []),
       judges: robot.tree.flatMap(([name, type], place) => type === "SelectShot" ? [place] : []),
       nodes: robot.tree.map(([name, type, kind, depth, glyph, detail, path]) => ({ name, type, kind, depth, glyph, detail, path })),
@@ -45,6 +46,8 @@ const extended = (array, start, more) => {
   array.set(more, start);
   return array;
 };
+/* The changes of what has this name; such names are free text. */
+const named = (known, name) => { if (!known.has(name)) known.set(name, changes()); return known.get(name); };
 /* Flat pairs (frames since the change before, value). */
 const extend = (changes, flat, frame, read) => {
   if (!flat) return;
@@ -63,7 +66,13 @@ export const append = chunk => {
     robot.rows = extended(robot.rows, 4 * start, new Int16Array(buffer(news.rows)));
     extend(robot.flags, news.flags, start);
     extend(robot.statuses, news.statuses, start, place => letters[place]);
-    extend(robot.outputs, news.outputs, start, place => texts[place]);
+    for (let i = 0, frame = start, flat = news.written || []; i < flat.length; i += 2) {
+      frame += flat[i];
+      for (const [entry, value] of Object.entries(flat[i + 1])) { const known = named(robot.written, entry); known.frames.push(frame); known.values.push(value); }
+    }
+    if (chunk.whole) for (const known of robot.numbers.values()) { known.frames.push(start); known.values.push(null); }
+    for (const [layer, name, flat] of news.numbers || []) extend(Object.assign(named(robot.numbers, `${layer}: ${name}`), { layer, name }), flat, start);
+    extend(robot.drawn, news.drawn, start);
     extend(robot.compared, news.candidates, start);
     extend(robot.judged, news.goal_line, start, line => line && [line[0], texts[line[1]]]);
     if (chunk.whole) for (const said of robot.said) { said.frames.push(start); said.values.push(""); }
@@ -74,6 +83,8 @@ export const append = chunk => {
       said.frames.push(frame); said.values.push(texts[words[i + 2]]);
     }
   });
+  extend(match.drawn, chunk.drawn, start);
+  for (const layer of chunk.layers || []) match.layers.add(layer);
   for (const { team, changes } of match.plans) extend(changes, chunk.plans[team], start);
   extend(match.games, chunk.games, start);
   match.refereed ||= (chunk.games || []).some((game, i) => i % 2 && (game.blue || game.yellow));
@@ -91,10 +102,10 @@ export const forget = count => {
   match.ball.copyWithin(0, 4 * count, 4 * match.frames);
   for (const robot of match.robots) {
     robot.rows.copyWithin(0, 4 * count, 4 * match.frames);
-    for (const each of [robot.flags, robot.statuses, robot.outputs, robot.compared, robot.judged, ...robot.said]) shorten(each, count);
+    for (const each of [robot.flags, robot.statuses, robot.drawn, robot.compared, robot.judged, ...robot.said, ...robot.written.values(), ...robot.numbers.values()]) shorten(each, count);
   }
   for (const { changes } of match.plans) shorten(changes, count);
-  shorten(match.games, count);
+  shorten(match.games, count); shorten(match.drawn, count);
   match.frames -= count;
   const kept = match.events.findIndex(event => event.time >= match.times[0]);
   for (const event of match.events.splice(0, kept < 0 ? match.events.length : kept)) if (event.kind === "goal" && event.team) match.forgotten[event.team]++;

@@ -96,6 +96,11 @@ const markNode = () => {
   rows.forEach((entry, i) => entry.row.classList.toggle("chosen", i === state.node));
   $("strip").textContent = state.robot.nodes[state.node].name;
 };
+const told = value => Array.isArray(value) ? `(${value.map(told).join(", ")})`
+  : typeof value === "number" ? String(Number.isInteger(value) ? value : Number(value.toPrecision(3)))
+    : value === null ? "none" : typeof value === "object" ? Object.entries(value).map(([key, item]) => `${key} ${told(item)}`).join(", ") : String(value);
+const wroteOf = (robot, frame) => [...robot.written].map(([entry, changes]) => [entry, valueAt(changes, frame, null)])
+  .filter(([, value]) => value !== null).map(([entry, value]) => `${entry} ${told(value)}`).join(" · ");
 export const showPanel = frame => {
   picks.forEach((button, slot) => button.classList.toggle("gone", !match.frames || match.robots[slot].rows[4 * frame] === ABSENT));
   const robot = state.robot;
@@ -109,7 +114,7 @@ export const showPanel = frame => {
   put($("f-ball"), (flags & 1 ? "in the mouth" : "–") + (flags & 4 ? ", kicks" : flags & 2 ? ", dribbles" : ""));
   $("f-ball").classList.toggle("on", Boolean(flags & 1));
   const letters = lettersOf(robot, frame);
-  put($("wrote"), valueAt(robot.outputs, frame, ""));
+  put($("wrote"), wroteOf(robot, frame));
   put($("why"), robot.nodes.map((node, i) => letters[i] === "F" && node.kind === "leaf" ? valueAt(robot.said[i], frame, "") && `${node.name}: ${valueAt(robot.said[i], frame, "")}` : "").filter(Boolean).join(" · "));
   rows.forEach((entry, i) => {
     const status = letters[i] || "-";

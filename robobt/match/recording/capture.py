@@ -7,7 +7,7 @@ and in any thread.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -19,7 +19,11 @@ from robobt.tree.drawing import describe
 from robobt.tree.recording import TreeState, TreeWatch, node_ids
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, Team
+from robobt.world.sketch import Shape, Sketch
 from robobt.world.state import Frame, RobotId
+
+FIELD = "field"
+"""What the world itself draws is under this name, among those of the robots."""
 
 _LOOK_AGAIN = 1.0
 """How often every node of the trees is looked at, for what one may have done to another unseen [s]."""
@@ -61,6 +65,8 @@ class Capture:
         trees: of each captured tree the robot and what looks at it.
         stores: what looks at the stores.
         takers: are called with each tick.
+        field: what the world itself draws.
+        layers: the names of all layers that were drawn to so far, wanted or not.
     """
 
     def __init__(
@@ -75,6 +81,14 @@ class Capture:
         self.trees = [(robot.id, TreeWatch(runners[robot.id])) for robot in robots if robot.id in runners]
         self.stores = stores_of(runners, stores or {})
         self.takers: list[Callable[[CapturedTick], None]] = []
+        self.field = Sketch()
+        self.layers: set[str] = set()
+        self._sketches = {str(robot): store.draw for robot, store in (stores or {}).items()}
+        self._sketches[FIELD] = self.field
+        self._drawn: dict[str, list[Shape]] = {}
+        self._lookers: dict[object, Container[str]] = {}
+        self._looked_at = False
+        self.look(None, ())
         self._game: GameState | None = None
         self._touch: RobotId | None = None
         self._events: list[Event] = []
@@ -128,6 +142,10 @@ class Capture:
             self._touch = changes["touch"] = frame.last_touch
         if self._events:
             changes["events"] = self.events_left()
+        if self._looked_at or self._drawn:
+            drawn = self._take_drawn()
+            if drawn:
+                changes["drawn"] = drawn
         tick = CapturedTick(
             frame.time,
             truth,
@@ -140,6 +158,14 @@ class Capture:
         )
         for take in self.takers:
             take(tick)
+
+    def look(self, who: object, layers: Container[str]) -> None:
+        """Let skills draw the layers that one of those who look at this wants, from now on."""
+        self._lookers[who] = layers
+        wanted = _Layers([each for each in self._lookers.values() if each])
+        self._looked_at = bool(wanted.of)
+        for sketch in self._sketches.values():
+            sketch.want(wanted, self.layers)
 
     def event(
         self,
@@ -159,10 +185,33 @@ class Capture:
             team = robot.team
         self._events.append(Event(round(time, 6), kind, team, robot, text))
 
+    def _take_drawn(self) -> dict[str, list[Shape]]:
+        """Return what is drawn otherwise than at the tick before, by who drew it."""
+        drawn = {}
+        for name, sketch in self._sketches.items():
+            shapes = sketch.take()
+            if shapes != self._drawn.get(name, []):
+                drawn[name] = shapes
+                if shapes:
+                    self._drawn[name] = shapes
+                else:
+                    del self._drawn[name]
+        return drawn
+
     def events_left(self) -> list[Event]:
         """Return the events that no tick has taken yet, which none will then."""
         events, self._events = self._events, []
         return events
+
+
+@dataclass(slots=True, frozen=True)
+class _Layers:
+    """The layers that anybody wants."""
+
+    of: list[Container[str]]
+
+    def __contains__(self, layer: object) -> bool:
+        return any(layer in wanted for wanted in self.of)
 
 
 def _shape(runner: TreeRunner) -> list[tuple[str, type]]:

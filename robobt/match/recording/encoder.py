@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from robobt.match.recording.numbers import TickNumbers
 from robobt.match.recording.stores import StoreChanges
 from robobt.match.recording.stream import COLUMNS
 from robobt.tree.recording import TreeChanges
+from robobt.world.sketch import Shape
 
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), default=asdict).encode
 
@@ -53,9 +54,16 @@ class EncodedTicks:
 
 
 class TickEncoder:
-    """Encodes the ticks of a capture, all of them and in their order."""
+    """Encodes the ticks of a capture, all of them and in their order.
 
-    def __init__(self, capture: Capture) -> None:
+    Args:
+        capture: what the ticks are of.
+        layers: what is kept of what others may have let skills draw; None for all of it.
+    """
+
+    def __init__(self, capture: Capture, layers: Container[str] | None = None) -> None:
+        self._layers = layers
+        self._drawn: dict[str, list[Shape]] = {}
         self._trees = [(robot, str(robot), TreeChanges(watch)) for robot, watch in capture.trees]
         self._stores = StoreChanges(capture.stores)
         self._numbers = TickNumbers([robot.id for robot in capture.header.robots])
@@ -88,7 +96,19 @@ class TickEncoder:
             if change.error is not None:
                 error = Event(round(tick.time, 6), "error", robot.team, robot, change.error)
                 changes["events"] = [*changes.get("events", ()), error]
+        if self._layers is not None and "drawn" in changes:
+            drawn = self._kept(changes.pop("drawn"), self._layers)
+            if drawn:
+                changes["drawn"] = drawn
         written = self._stores.plain(tick.written) if tick.written else None
         if written:
             changes["written"] = written
         return changes
+
+    def _kept(self, drawn: dict[str, list[Shape]], layers: Container[str]) -> dict[str, list[Shape]]:
+        kept = {}
+        for name, shapes in drawn.items():
+            these = [shape for shape in shapes if shape[0] in layers]
+            if these != self._drawn.get(name, []):
+                kept[name] = self._drawn[name] = these
+        return kept

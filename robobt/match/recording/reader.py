@@ -9,11 +9,13 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import JsonValue, ValidationError
 
+from robobt.match.recording.capture import FIELD
 from robobt.match.recording.header import Event, RecordedNode, RecordingError, RecordingHeader, RobotFlag
 from robobt.match.recording.numbers import BALL, COMMAND, POSE, numbers_of
 from robobt.match.recording.recording import Poses, Recording, Timeline
 from robobt.match.recording.stream import TickChanges, invalid, open_stream, read_bytes, too_large
 from robobt.world.game import GameState, Team
+from robobt.world.sketch import Shape
 from robobt.world.state import RobotId
 
 MOST_TEXT = 32 * 2**20
@@ -62,6 +64,7 @@ class _Reader:
         self._written: dict[str, Timeline[dict[str, JsonValue]]] = {
             name: [] for name in (*Team, *self._slots)
         }
+        self._drawn: dict[str, Timeline[list[Shape]]] = {}
         self._games: Timeline[GameState] = []
         self._touches: Timeline[RobotId | None] = []
         self._events: list[Event] = []
@@ -113,6 +116,7 @@ class _Reader:
             letters=self._letters,
             feedback=self._feedback,
             written=self._written,
+            drawn=self._drawn,
             games=self._games,
             touches=self._touches,
             events=self._events,
@@ -139,6 +143,10 @@ class _Reader:
             if owner not in self._written:
                 raise self._error(tick, "written", f"there is no robot or team {owner!r}")
             self._written[owner].append((tick, values))
+        for owner, shapes in changes.drawn.items():
+            if owner not in self._slots and owner != FIELD:
+                raise self._error(tick, "drawn", f"there is no robot {owner!r}")
+            self._drawn.setdefault(owner, []).append((tick, shapes))
         if changes.game is not None:
             self._games.append((tick, changes.game))
         if "touch" in changes.model_fields_set:

@@ -9,7 +9,7 @@ by doing the work of many ticks at once, where they are written.
 from __future__ import annotations
 
 import atexit
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -41,6 +41,7 @@ class Recorder:
         header: what stays the same, or the capture of a match that has it.
         runners: the runner of each robot whose tree is recorded; of a capture its own.
         stores: the store of each robot of which it is recorded what its skills write; likewise.
+        layers: what skills draw in these is recorded.
 
     Attributes:
         capture: what is recorded.
@@ -54,12 +55,14 @@ class Recorder:
         header: RecordingHeader | Capture,
         runners: Mapping[RobotId, TreeRunner] | None = None,
         stores: Mapping[RobotId, Store] | None = None,
+        layers: Container[str] = (),
     ) -> None:
         self.path = Path(path)
         self.capture = header if isinstance(header, Capture) else Capture(header, runners, stores)
         self.header = self.capture.header
         self.tick, self.event = self.capture.tick, self.capture.event
-        self._encoder = TickEncoder(self.capture)
+        self._encoder = TickEncoder(self.capture, layers)
+        self.capture.look(self, layers)
         # What is still to be written.
         self._ticks: list[CapturedTick] = []
         # Few enough writes, and a kill loses no more than that.

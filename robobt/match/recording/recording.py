@@ -15,6 +15,7 @@ from pydantic import JsonValue
 from robobt.match.recording.header import Event, RecordedNode, RecordingHeader, RobotFlag
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.game import OPEN_PLAY, GameState, Team
+from robobt.world.sketch import Shape
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 T = TypeVar("T")
@@ -59,6 +60,8 @@ class Recording:
             was ticked, s, f, r where it kept the status of an earlier tick, - without.
         feedback: for each robot the new feedback of nodes, by their place.
         written: by robot ("blue 3") or team ("blue") what skills wrote anew into that store, by entry.
+        drawn: by robot what its skills drew in the layers that were recorded, in its team's view, and by
+            "field" what the world did, whenever that changed; see :mod:`robobt.world.sketch`.
         games: what the referee said, whenever that changed.
         touches: who touched the ball last, whenever that changed.
         events: in the order they were recorded.
@@ -75,6 +78,7 @@ class Recording:
     letters: list[Timeline[str]]
     feedback: list[Timeline[dict[int, str]]]
     written: dict[str, Timeline[dict[str, JsonValue]]]
+    drawn: dict[str, Timeline[list[Shape]]]
     games: Timeline[GameState]
     touches: Timeline[RobotId | None]
     events: list[Event]

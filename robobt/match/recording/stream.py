@@ -22,13 +22,22 @@ from typing import Annotated, BinaryIO
 
 import pyarrow as pa
 import pyarrow.ipc
-from pydantic import BaseModel, ConfigDict, Field, JsonValue, StringConstraints, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    JsonValue,
+    StringConstraints,
+    ValidationError,
+)
 
 from robobt import __version__
 from robobt.match.recording.header import FORMAT, VERSION, Event, RecordingError, RecordingHeader
 from robobt.match.recording.numbers import BALL, COMMAND, POSE
 from robobt.match.recording.version_3 import BALL_3, COMMAND_3, from_version_3
 from robobt.world.game import GameState
+from robobt.world.sketch import MOST_SHAPES, check_shape
 from robobt.world.state import RobotId
 
 COLUMNS = ("time", "truth", "observed", "commands", "changes")
@@ -47,6 +56,7 @@ _READ = ("3", str(VERSION))
 _OLD = (b"\x1f\x8b", b'{"format":"robobt-recording"')
 """How recordings of versions 1 and 2 begin, packed by gzip or plain."""
 
+_Shape = Annotated[list[JsonValue], AfterValidator(check_shape)]
 _Letters = Annotated[str, StringConstraints(pattern="^[SFRsfr-]*$")]
 
 
@@ -65,6 +75,11 @@ class TickChanges(BaseModel):
     )
     written: dict[str, dict[str, JsonValue]] = Field(
         {}, description='what skills wrote into their stores, by robot, or "blue" and "yellow", and entry'
+    )
+    drawn: dict[str, Annotated[list[_Shape], Field(max_length=10 * MOST_SHAPES)]] = Field(
+        {},
+        description="what skills draw from this tick on, by robot, in its team's view: each a layer's name, "
+        'line, point, circle, text or number, and its numbers [m] and text; "field" is what the world draws',
     )
     game: GameState | None = Field(None, description="what the referee says, in blue's coordinates")
     touch: RobotId | None = Field(None, description="who touched the ball last")

@@ -14,6 +14,7 @@ from robobt.tree import Status
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.sketch import Sketch
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 _IN_LINE = radians(25.0)
@@ -28,7 +29,15 @@ _PULL_ACCELERATION = 0.8
 
 
 def pull(
-    frame: Frame, me: RobotState, held: bool, place: Point, free: RobotLimits, speed: float, *, placing: bool
+    frame: Frame,
+    me: RobotState,
+    held: bool,
+    place: Point,
+    free: RobotLimits,
+    speed: float,
+    *,
+    placing: bool,
+    sketch: Sketch,
 ) -> tuple[RobotCommand, str]:
     """Take the ball from the side of ``place`` and drive backwards to there, for one tick.
 
@@ -44,6 +53,7 @@ def pull(
         free: how to drive without the ball.
         speed: top speed with it [m/s].
         placing: whether it may enter the opponents' defence area.
+        sketch: takes the planned way.
 
     Returns:
         The command, and what the robot is about to do.
@@ -63,7 +73,9 @@ def pull(
     if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
         return grab(me, frame.ball, _GRAB_SPEED, frame.period), "taking it"
     behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
-    way = travel(frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True, placing=placing)
+    way = travel(
+        frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True, placing=placing, sketch=sketch
+    )
     return way, "going behind it"
 
 
@@ -89,6 +101,13 @@ class FetchBall(DrivingSkill):
         if distance(self.ball.position, place) < 0.3:
             return self.succeed("the ball is back")
         self.store.command, doing = pull(
-            self.frame, self.me, self.me.ball_contact, place, self.drive_limits, _PULL_SPEED, placing=False
+            self.frame,
+            self.me,
+            self.me.ball_contact,
+            place,
+            self.drive_limits,
+            _PULL_SPEED,
+            placing=False,
+            sketch=self.draw,
         )
         return self.run(doing)

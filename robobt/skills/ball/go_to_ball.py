@@ -173,6 +173,7 @@ def geometric(store: Store, approach: Approach) -> RobotCommand:
         avoid_ball=round_it,
         goalkeeper=approach.goalkeeper,
         final_speed=0.0 if round_it else _ARRIVAL_SPEED,
+        sketch=store.draw,
     )
 
 
@@ -196,7 +197,7 @@ class LearnedApproach:
 
     def __call__(self, store: Store, approach: Approach) -> RobotCommand:
         """Compute the command of one tick."""
-        command, limits = self._control.decide(store.frame, store.me), approach.limits
+        command, limits = self._control.decide(store.frame, store.me, store.draw), approach.limits
         speed = hypot(command.vx, command.vy)
         fastest = min(limits.max_speed, _closing_speed(store))
         if speed > fastest:

@@ -16,6 +16,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
+from robobt.world.sketch import Sketch
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
 _FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
@@ -77,6 +78,7 @@ def meet(
     *,
     goalkeeper: bool = False,
     slack: float = 0.0,
+    sketch: Sketch | None = None,
 ) -> RobotCommand:
     """Meet the ball for one tick: drive onto its line, face it, and take it once it is near and slow.
 
@@ -87,6 +89,7 @@ def meet(
         rolling: speed at which the ball begins to roll [m/s].
         goalkeeper: may enter the own defence area.
         slack: how far off it may look while the ball is not yet near [rad].
+        sketch: takes the planned way.
     """
     ball = frame.ball
     dx, dy = ball.x - me.x, ball.y - me.y
@@ -100,7 +103,7 @@ def meet(
     place = (x + _FRONT * ux, y + _FRONT * uy)
     if gap > _SOON:
         heading = roughly(me.heading, heading, slack)
-    order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper)
+    order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper, sketch=sketch)
     order.dribbler = gap < 1.0
     return order
 
@@ -127,7 +130,9 @@ class Intercept(DrivingSkill):
         """Drive one tick."""
         frame, me = self.frame, self.me
         rolling = self._watch.rolling_speed(frame)
-        self.store.command = meet(frame, me, self.drive_limits, rolling, goalkeeper=self.goalkeeper)
+        self.store.command = meet(
+            frame, me, self.drive_limits, rolling, goalkeeper=self.goalkeeper, sketch=self.draw
+        )
         if self._grip.held_for(frame, me) >= self.settle - 1e-9:
             return self.succeed("it has the ball")
         return self.run("meeting the ball")

@@ -7,7 +7,7 @@ from math import atan2, cos, radians, sin
 from typing import Literal
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
-from robobt.motion.path_planner import allowed_target, next_waypoint, travel
+from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
 from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
@@ -163,6 +163,7 @@ class KickToTarget(DrivingSkill):
         order = self._order()
         if order is None:
             return self.fail("no target")
+        self.draw.line(TARGETS, self.ball.position, order.target)
         if self._robobulls is not None:
             return self._as_robobulls(self._robobulls, order)
         gap = distance(self.me.position, self.ball.position)
@@ -254,6 +255,7 @@ class KickToTarget(DrivingSkill):
             avoid_ball=not in_line and not at_wall,
             goalkeeper=self.goalkeeper,
             final_speed=final_speed,
+            sketch=self.draw,
         )
         self.store.command.dribbler = near
 

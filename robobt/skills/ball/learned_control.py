@@ -16,6 +16,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
+    OBSERVATIONS,
     SHOOT,
     go_to_ball_of,
     go_to_ball_to_shoot_of,
@@ -23,6 +24,7 @@ from robobt.world.features import (
 )
 from robobt.world.geometry import FloatArray
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
 
 OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
@@ -34,6 +36,9 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
 """The function that makes each observation from a frame."""
 
 P = TypeVar("P")
+
+OBSERVATION = "observation"
+"""The layer of what trained policies observe and answer."""
 
 _LIMIT = 1.0 + 1e-4
 """Largest action that rounding in single precision explains."""
@@ -72,18 +77,29 @@ class LearnedControl:
         self._infer: Callable[[FloatArray], list[float]] = policy.single()
         self._scaling = self.card.action
 
-    def decide(self, frame: Frame, me: RobotState) -> RobotCommand:
-        """Compute the command of one tick.
+    def decide(self, frame: Frame, me: RobotState, sketch: Sketch | None = None) -> RobotCommand:
+        """Compute the command of one tick; ``sketch`` takes what it observes and answers.
 
         Raises:
             PolicyError: the policy's answer is not finite or lies outside [-1, 1].
         """
-        action = self._infer(self._observe(frame, me))
+        observed = self._observe(frame, me)
+        action = self._infer(observed)
+        if sketch is not None and sketch.wants(OBSERVATION):
+            self._draw(sketch, observed, action)
         for entry in action:
             if not -_LIMIT <= entry <= _LIMIT:
                 said = "no number" if isnan(entry) else f"{entry:.3g}, outside [-1, 1]"
                 raise PolicyError(f"the policy {self.card.name} answers {said}")
         return command_of(action, self._scaling)
+
+    def _draw(self, sketch: Sketch, observed: FloatArray, action: list[float]) -> None:
+        for (name, _), value in zip(
+            OBSERVATIONS[self.card.observation.name].entries, observed.tolist(), strict=True
+        ):
+            sketch.number(OBSERVATION, name, value)
+        for place, value in enumerate(action):
+            sketch.number(OBSERVATION, f"action {place}", value)
 
 
 def find_policy(

@@ -36,7 +36,7 @@ class LearnedSkill(Skill):
         if self._control is None:
             return self.fail("it has been given no model")
         try:
-            self.store.command = self._control.decide(self.frame, self.me)
+            self.store.command = self._control.decide(self.frame, self.me, self.draw)
         except PolicyError as error:
             self.store.command = RobotCommand()
             return self.fail(str(error))

@@ -7,6 +7,7 @@ from dataclasses import field
 from math import atan2, cos, hypot, inf, sin, sqrt
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
+from robobt.motion.path_planner import TARGETS
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Store
@@ -97,6 +98,7 @@ def geometric(store: Store) -> RobotCommand:
     """
     frame, me, ball = store.frame, store.me, store.frame.ball
     aim, tolerance = _aim(store)
+    store.draw.line(TARGETS, ball.position, aim)
     heading = direction(ball.position, aim)
     decided = turn_with_ball(me, heading, dribbling_limits(max_turn=_MAX_TURN), frame.period)
     sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
@@ -118,7 +120,7 @@ class LearnedShot:
 
     def __call__(self, store: Store) -> RobotCommand:
         """Compute the command of one tick."""
-        decided, me = self._control.decide(store.frame, store.me), store.me
+        decided, me = self._control.decide(store.frame, store.me, store.draw), store.me
         held = me.limits.hold_acceleration
         # A ball at distance L that is turned with at w needs w^2 L.
         fastest = sqrt(held / _TOUCHING)

@@ -29,6 +29,13 @@ class ReturnToGoal(DrivingSkill):
         home = (self.before_goal - self.frame.field.half_length, 0.0)
         facing = direction(home, (0.0, 0.0))
         self.store.command = travel(
-            self.frame, me, home, facing, self.drive_limits, avoid_ball=True, goalkeeper=True
+            self.frame,
+            me,
+            home,
+            facing,
+            self.drive_limits,
+            avoid_ball=True,
+            goalkeeper=True,
+            sketch=self.draw,
         )
         return self.run("home")

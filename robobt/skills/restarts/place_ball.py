@@ -87,7 +87,14 @@ class PlaceBall(DrivingSkill):
             outwards = direction(goal, ball.position)
             place = (goal[0] - _HELD * cos(outwards), goal[1] - _HELD * sin(outwards))
             self.store.command, doing = pull(
-                frame, me, has_ball(me, ball), place, self.drive_limits, _PULL_SPEED, placing=True
+                frame,
+                me,
+                has_ball(me, ball),
+                place,
+                self.drive_limits,
+                _PULL_SPEED,
+                placing=True,
+                sketch=self.draw,
             )
             return self.run(doing)
         self._there = True
@@ -107,7 +114,9 @@ class PlaceBall(DrivingSkill):
             # One way out is settled on: near a wall there are two, which are equally long.
             if self._refuge is None:
                 self._refuge = way_out(frame, me, (ball.position, ball.position), _CLEAR * 1.1)
-            self.store.command = travel(frame, me, self._refuge, me.heading, me.limits, avoid_ball=True)
+            self.store.command = travel(
+                frame, me, self._refuge, me.heading, me.limits, avoid_ball=True, sketch=self.draw
+            )
         return self.run("backing off")
 
     def _via(self, spot: Point) -> Point:

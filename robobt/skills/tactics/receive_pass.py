@@ -135,10 +135,10 @@ class ReceivePass(Skill):
             if ahead > MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
                 store.command = catch(me, ball, limits, frame.period)
             else:
-                store.command = meet(frame, me, limits, rolling, slack=_FACING)
+                store.command = meet(frame, me, limits, rolling, slack=_FACING, sketch=self.draw)
             return self.run("taking the ball")
         place_at = (x - MOUTH * cos(heading), y - MOUTH * sin(heading))
-        order = travel(frame, me, place_at, heading, limits)
+        order = travel(frame, me, place_at, heading, limits, sketch=self.draw)
         gap = hypot(dx, dy)
         if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
             v = max(0.0, speed - frame.ball_model.roll_deceleration * min(time, 0.3))

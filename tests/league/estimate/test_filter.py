@@ -19,6 +19,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
+from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
 PERIOD = 1 / 60
@@ -356,3 +357,17 @@ def test_the_balls_closed_form_is_that_of_its_two_phases(speed: float) -> None:
     assert (end.x, end.vx) == (pytest.approx(total), 0.0)
     halves = predict_ball(predict_ball(motion, 0.3, settings), 0.4, settings)
     assert halves.x == pytest.approx(predict_ball(motion, 0.7, settings).x)
+
+
+def test_what_cameras_report_and_how_sure_the_filter_is_can_be_drawn() -> None:
+    watched, sketch = Watched(), Sketch()
+    sketch.want({"detections", "covariance"}, set())
+    for _ in range(10):
+        watched.see([(ME, 1.0, 0.5, 0.0)], [(-1.0, 0.25)])
+    watched.filter.draw(sketch)
+    shapes = sketch.take()
+    assert ["detections", "point", 1.0, 0.5] in shapes
+    assert ["detections", "point", -1.0, 0.25] in shapes
+    circles = [shape for shape in shapes if shape[0] == "covariance"]
+    assert len(circles) == 2
+    assert all(0.0 < radius < 0.05 for *_, radius in circles)

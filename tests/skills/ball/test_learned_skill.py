@@ -41,6 +41,15 @@ def test_it_drives_as_its_policy_says_in_the_robots_frame(tmp_path: Path) -> Non
     assert isclose(alone.command.omega, -1.395, rel_tol=1e-6)
 
 
+def test_what_it_observes_can_be_looked_at(tmp_path: Path) -> None:
+    alone = Alone(LearnedSkill(model=str(write_model(tmp_path, Straight()))))
+    alone.store.draw.want({"observation"}, set())
+    alone.tick(frame(robot(0.0, 0.0, 0.0), (3.0, 0.0)))
+    numbers = {name: value for _, _, value, name in alone.store.draw.take()}
+    assert numbers["ball_distance"] == 3.0
+    assert {"action 0", "action 1", "action 2"} <= numbers.keys()
+
+
 def test_its_robot_gets_to_the_ball(tmp_path: Path) -> None:
     tree = LearnedSkill(model=str(write_model(tmp_path, Straight())))
     trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 2.0)}, ball=(1.0, 1.0), period=0.03)

@@ -1,0 +1,22 @@
+"""The option that says what of the skills' drawings is recorded."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+Layers = Annotated[
+    str,
+    typer.Option(
+        "--record-layers",
+        metavar="NAMES",
+        help="Record what skills draw in these layers as well: names separated by commas, as in "
+        "'paths, targets, observation'.",
+    ),
+]
+
+
+def layer_names(text: str) -> frozenset[str]:
+    """Return the names in an option's text."""
+    return frozenset({name.strip() for name in text.split(",")} - {""})
