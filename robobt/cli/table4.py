@@ -13,7 +13,9 @@ from robobt.cli.common import (
     Progress,
     Seed,
     Where,
+    Workers,
     console,
+    cores,
     one_of,
     print_json,
     say,
@@ -26,6 +28,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robobt.experiments.table4_rows import PaperRow, Spread, Trial
+
+
+_FEW = 100
+"""So many runs take less time than processes of this machine take to start."""
 
 
 def table4(
@@ -83,6 +89,7 @@ def table4(
     host: Host = "127.0.0.1",
     port: Port = 0,
     open_page: Open = None,
+    workers: Workers = None,
     world: Where = "sim",
     as_json: Json = False,
 ) -> None:
@@ -107,21 +114,27 @@ def table4(
     best_hand_written, which kicks first; to_ball and to_kick, the learned one against it
     (n, mean, low, high, effect), negative where the learned one is faster.
     """
+    from robobt.engines.run import engine
     from robobt.experiments.table4 import COMBINATIONS, TRIALS
     from robobt.experiments.table4 import table4 as run
     from robobt.experiments.table4_picture import draw_table4
     from robobt.experiments.table4_starts import LIMITS
     from robobt.sim.settings import PRESETS, REALISM
+    from robobt.worlds import SIM
 
     one_of([preset], PRESETS, "--preset")
     one_of([] if realism is None else [realism], REALISM, "--realism")
     one_of(only or [], COMBINATIONS, "--only")
     one_of(limits or [], LIMITS, "--limits")
     one_of([starts], ("drawn", "paper"), "--starts")
+    if (human or world != SIM) and workers not in (None, 1):
+        here = "with a person at the robot" if human else "to play over the network"
+        raise typer.BadParameter(f"must be 1 {here}", param_hint="--workers")
     combinations, chosen = tuple(only or COMBINATIONS), tuple(limits or LIMITS)
     if human:
         combinations, chosen = tuple(only or ()), tuple(limits or ("paper",))
     total = (runs + 1) * (len(combinations) + human) * len(chosen) * len(TRIALS)
+    few = total < _FEW and engine() is None
     with ExitStack() as stack:
         show = None
         if human:
@@ -143,6 +156,7 @@ def table4(
             world=factory,
             out=out,
             human=show,
+            workers=workers or (1 if human or world != SIM or few else cores()),
         )
     if picture is not None:
         draw_table4(result, picture)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import nullcontext
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import fmean, stdev
-
-from pydantic import ConfigDict
+from typing import NamedTuple
 
 from robobt.experiments.table4_rows import (
     PAPER,
@@ -21,22 +18,10 @@ from robobt.experiments.table4_rows import (
     Table4,
     Trial,
 )
-from robobt.experiments.table4_starts import (
-    LIMITS,
-    SHOOTER,
-    Starts,
-    drawn_starts,
-    gap,
-    minimum_times,
-    table4_scenario,
-)
-from robobt.match.loop import Match, WorldFactory
-from robobt.match.results.file import TrialsFile
+from robobt.experiments.table4_runs import Attempt, Series, Show, play_series
+from robobt.experiments.table4_starts import LIMITS, Starts, drawn_starts, table4_scenario
+from robobt.match.loop import WorldFactory
 from robobt.match.results.results import Rate
-from robobt.match.runner import trial_seed
-from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import settings_from
-from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
 from robobt.statistics import mean_interval
 from robobt.worlds import sim_world
 
@@ -67,53 +52,6 @@ HAND_WRITTEN = ("robobulls", "geometric, kick", "geometric, kick, quick", "geome
 HUMAN = "human, game controller"
 """The row of a person who drives the robot in the live page."""
 
-Show = Callable[[Match], Callable[[], bool]]
-"""Shows a match to somebody and returns what plays its next tick, False when it is over."""
-
-_GOAL = "goal_blue"
-
-
-@dataclass(frozen=True, slots=True)
-class Attempt:
-    """One run.
-
-    Attributes:
-        trial: its number, from 0.
-        approach: start until robot and ball are 0.2 m apart, between two frames by their straight line [s].
-        to_ball: start until the ball first lies in the mouth, as the paper counts [s].
-        shoot: from then until the kick [s].
-        goal: whether it went in.
-        minimum: the shortest possible times from this start, as a :class:`Minimum`'s; None where the start
-            was not seen.
-        trace: hash over all that happened; equal for runs that repeat each other.
-
-    Times are None for what never happened.
-    """
-
-    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
-
-    trial: int
-    approach: float | None
-    to_ball: float | None
-    shoot: float | None
-    goal: bool
-    minimum: dict[str, float] | None
-    trace: str
-
-    @property
-    def pick_up(self) -> float | None:
-        """From the end of the approach until the ball lies in the mouth [s]."""
-        return None if self.approach is None or self.to_ball is None else self.to_ball - self.approach
-
-    @property
-    def total(self) -> float | None:
-        """Start to kick [s]."""
-        return None if self.to_ball is None or self.shoot is None else self.to_ball + self.shoot
-
-    def to_json(self) -> dict[str, object]:
-        """Return plain data; the keys are the attributes' names."""
-        return asdict(self)
-
 
 def table4(
     runs: int = 25,
@@ -129,6 +67,7 @@ def table4(
     world: WorldFactory = sim_world,
     out: Path | None = None,
     human: Show | None = None,
+    workers: int = 1,
 ) -> Table4:
     """Play both trials with every combination.
 
@@ -147,94 +86,52 @@ def table4(
         progress: called after every run.
         world: where it is played.
         out: folder that keeps the runs as they finish; those that it holds are not played again.
-        human: lets a person drive, for one more row, which has no run from the paper's start.
+        human: lets a person drive, for one more row, which has no run from the paper's start; takes 1 worker.
+        workers: number of processes; a world of the league takes 1.
 
     Raises:
         KeyError: no such preset, realism level, combination or limits.
         ResultsFileError: the folder holds runs of other settings.
         ScenarioError: a play cannot be made, as where a model is missing.
+        RunError: a run raised or its worker died.
     """
-    found: dict[str, dict[str, Trial]] = {}
-    for name in limits:
-        found[name] = {}
-        for trial in trials:
-            attempts: dict[str, list[Attempt]] = {}
-            rows: dict[str, Row] = {}
-            for combination in (*combinations, *([] if human is None else [HUMAN])):
-                # A person needs no play, but the rest of the scenario.
-                params = COMBINATIONS.get(combination, COMBINATIONS["robobulls"])
-                show = human if combination == HUMAN else None
-                scenario = table4_scenario(trial, params, preset, realism, LIMITS[name])
-                first = scenario.seed if seed is None else seed
-                drawn = drawn_starts(scenario) if starts == "drawn" else scenario
-                kept = None if out is None else out / _file_name(name, trial, combination)
-                attempts[combination] = _attempts(drawn, first, runs, world, kept, progress, show)
-                beside = None if show else play_attempt(scenario, trial_seed(first, 0), world)
-                progress()
-                rows[combination] = _row_of(attempts[combination], beside)
-            found[name][trial] = _trial_of(attempts, rows)
+    given = (*combinations, *([] if human is None else [HUMAN]))
+    rows = dict.fromkeys([_Place(name, trial, one) for name in limits for trial in trials for one in given])
+    series = []
+    for row in rows:
+        # A person needs no play, but the rest of the scenario.
+        params = COMBINATIONS.get(row.combination, COMBINATIONS["robobulls"])
+        scenario = table4_scenario(row.trial, params, preset, realism, LIMITS[row.limits])
+        first = scenario.seed if seed is None else seed
+        drawn = drawn_starts(scenario) if starts == "drawn" else scenario
+        kept = None if out is None else out / row.file_name
+        show = human if row.combination == HUMAN else None
+        series.append(Series(str(row), drawn, first, None if show else scenario, kept, show))
+    played = dict(zip(rows, play_series(series, runs, workers, world, progress), strict=True))
+    found = {
+        name: {
+            trial: _trial_of({row.combination: of for row, of in played.items() if row[:2] == (name, trial)})
+            for trial in trials
+        }
+        for name in limits
+    }
     return Table4(runs=runs, preset=preset, realism=realism, starts=starts, paper=PAPER, limits=found)
 
 
-def _file_name(limits: str, trial: str, combination: str) -> str:
-    return re.sub(r"[^\w.]+", "-", f"{limits} {trial} {combination}") + ".jsonl"
+class _Place(NamedTuple):
+    """Where a row stands."""
 
+    limits: str
+    trial: str
+    combination: str
 
-def _attempts(
-    scenario: Scenario,
-    seed: int,
-    runs: int,
-    world: WorldFactory,
-    kept: Path | None,
-    progress: Callable[[], object],
-    show: Show | None = None,
-) -> list[Attempt]:
-    """Play a combination's runs, except for those that the file ``kept`` holds already."""
-    where = getattr(world, "address", None)
-    attempts = []
-    with TrialsFile(Attempt, kept, scenario, seed, where) if kept is not None else nullcontext() as file:
-        for run in range(runs):
-            attempt = None if file is None else file.done.get(run)
-            if attempt is None:
-                attempt = play_attempt(scenario, trial_seed(seed, run), world, run, show)
-                if file is not None:
-                    file.add(attempt)
-            attempts.append(attempt)
-            progress()
-    return attempts
+    def __str__(self) -> str:
+        return f"{self.combination!r} (trial {self.trial}, limits {self.limits})"
 
-
-def play_attempt(
-    scenario: Scenario,
-    seed: int,
-    world: WorldFactory = sim_world,
-    trial: int = 0,
-    show: Show | None = None,
-) -> Attempt:
-    """Play one run to its end, as fast as can be or as it is shown."""
-    approach: float | None = None
-    with Match(scenario, seed, world) as match:
-        before = match.world.truth()
-        minimum: dict[str, float] | None = None
-        if before.own:
-            least = minimum_times(before, settings_from(scenario.simulator))
-            minimum = {"to_ball": least["to_ball"], "to_kick": least["to_kick"]}
-        tick = match.tick if show is None else show(match)
-        while tick():
-            now = match.world.truth()
-            if not (now.own and before.own):
-                # Over a network robots may be out of sight.
-                before = now
-                continue
-            if approach is None and gap(now) <= HANDOVER_DISTANCE:
-                way, left = gap(before) - gap(now), gap(before) - HANDOVER_DISTANCE
-                share = min(1.0, max(0.0, left / way)) if way > 0.0 else 1.0
-                approach = before.time + share * (now.time - before.time)
-            before = now
-        result = match.result()
-    figures = result.robots[SHOOTER]
-    goal = result.outcome == _GOAL
-    return Attempt(trial, approach, figures.go_to_ball, figures.shoot, goal, minimum, result.trace)
+    @property
+    def file_name(self) -> str:
+        """Return the name of the file that keeps its runs."""
+        return re.sub(r"[^\w.]+", "-", " ".join(self)) + ".jsonl"
 
 
 def _row_of(attempts: Sequence[Attempt], beside: Attempt | None) -> Row:
@@ -270,8 +167,10 @@ def _spread(given: Iterable[float | None]) -> Spread:
     return {"n": len(values), "mean": mean, "variance": variance, "low": low, "high": high}
 
 
-def _trial_of(attempts: Mapping[str, Sequence[Attempt]], rows: dict[str, Row]) -> Trial:
+def _trial_of(played: Mapping[str, tuple[list[Attempt], Attempt | None]]) -> Trial:
     """Compare the learned combination with the best hand-written one: most goals, then the first kick."""
+    attempts = {name: runs for name, (runs, _) in played.items()}
+    rows = {name: _row_of(runs, beside) for name, (runs, beside) in played.items()}
     minima = [one.minimum for played in attempts.values() for one in played if one.minimum is not None]
     minimum = None
     if minima:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import pickle
+from collections.abc import Iterable, Iterator
 from math import radians
 from pathlib import Path
 
@@ -10,15 +12,18 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.experiments.table4 import COMBINATIONS, Attempt, play_attempt, table4
+from robobt.engines.run import running_on
+from robobt.engines.work import Work
+from robobt.experiments.table4 import COMBINATIONS, table4
 from robobt.experiments.table4 import LEARNED as LEARNED_ROW
 from robobt.experiments.table4_picture import draw_table4
 from robobt.experiments.table4_rows import PAPER
+from robobt.experiments.table4_runs import Attempt, play_attempt
 from robobt.experiments.table4_starts import LIMITS, drawn_starts, minimum_times, table4_scenario
 from robobt.match import load_scenario
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.results.file import ResultsFileError
-from robobt.match.runner import trial_seed
+from robobt.match.runner import RunError, trial_seed
 from robobt.match.scenario.scenario import Scenario
 from robobt.models.policy import load_policy
 from robobt.sim.settings import settings_from
@@ -69,7 +74,7 @@ def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: p
         played.append(trial)
         return play_attempt(scenario, seed, world, trial)
 
-    monkeypatch.setattr("robobt.experiments.table4.play_attempt", killed_at_the_second)
+    monkeypatch.setattr("robobt.experiments.table4_runs.play_attempt", killed_at_the_second)
     with pytest.raises(KeyboardInterrupt):
         table4(3, out=tmp_path, **kinds)
     (file,) = tmp_path.iterdir()
@@ -81,6 +86,38 @@ def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: p
     assert played == [0, -1, 1, 2, 0]
     with pytest.raises(ResultsFileError, match="holds results of seed 1"):
         table4(3, 2, out=tmp_path, **kinds)
+
+
+def test_runs_are_the_same_wherever_they_are_played(tmp_path: Path) -> None:
+    kinds = {"combinations": QUICK, "limits": ["own"], "trials": ["1"]}
+    here = table4(2, **kinds)
+    played: list[object] = []
+
+    class Elsewhere:
+        workers = 2
+
+        def run(self, work: Work, tasks: Iterable[object], workers: int, **_: object) -> Iterator[object]:
+            sent = pickle.loads(work.packed())
+            for task in reversed(list(tasks)):
+                played.append(task)
+                yield sent.attempt(task, print)
+
+    with running_on(Elsewhere()):
+        assert table4(2, workers=2, out=tmp_path, **kinds) == here
+    assert len(played) == 6
+    assert {path.name: len(path.read_text().splitlines()) for path in tmp_path.iterdir()} == {
+        "own-1-robobulls.jsonl": 3,
+        "own-1-geometric-kick.jsonl": 3,
+    }
+
+
+def test_what_goes_wrong_in_a_run_is_named_with_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> Attempt:
+        raise ZeroDivisionError("on purpose")
+
+    monkeypatch.setattr("robobt.experiments.table4_runs.play_attempt", broken)
+    with pytest.raises(RunError, match=r"run 0 of 'robobulls' \(trial 1, limits own\): ZeroDivisionError"):
+        table4(1, combinations=QUICK[:1], limits=["own"])
 
 
 def test_runs_that_are_all_the_same_have_no_interval() -> None:
@@ -206,6 +243,8 @@ def test_the_command_prints_and_is_read_by_programs() -> None:
         ["--realism", "dreamy"],
         ["--only", "nobody"],
         ["--runs", "0"],
+        ["--workers", "2", "--world", "league://grsim"],
+        ["--workers", "2", "--human"],
     ],
 )
 def test_what_there_is_not_is_said(wrong: list[str]) -> None:

@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from robobt.experiments.table4 import HUMAN, play_attempt, table4
+from robobt.experiments.table4 import HUMAN, table4
 from robobt.experiments.table4_human import HumanRuns
 from robobt.experiments.table4_rows import PAPER
+from robobt.experiments.table4_runs import play_attempt
 from robobt.experiments.table4_starts import LIMITS, drawn_starts, table4_scenario
 from robobt.live.server import Server
 from robobt.live.session import Live
