@@ -76,6 +76,12 @@ def test_the_ball_stays_in_an_area_for_the_divisions_time(
     assert (held.kind, held.team) == (EventKind.KEEPER_HELD_BALL, us)
 
 
+def test_the_time_in_an_area_is_that_of_the_settings(us: Team) -> None:
+    game = Watching(us, keeper_hold_time=3.0).roll(-4.0, 0.0).wait(2.9)
+    assert game.events == []
+    assert game.wait(0.2).kinds == [EventKind.KEEPER_HELD_BALL]
+
+
 def test_out_of_the_area_the_time_begins_anew(us: Team) -> None:
     game = Watching(us, no_progress_time=None).roll(-4.0, 0.0).wait(9.0).roll(-3.4, 0.0)
     assert game.roll(-4.0, 0.0).wait(9.0).events == []

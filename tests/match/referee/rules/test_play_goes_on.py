@@ -29,6 +29,14 @@ def test_a_tenth_of_a_metre_is_progress(us: Team, way: float, stuck: bool) -> No
     assert game.kinds == [EventKind.NO_PROGRESS_IN_GAME] * stuck
 
 
+def test_time_and_way_are_those_of_the_settings(us: Team) -> None:
+    game = (
+        Watching(us, no_progress_time=3.0, no_progress_distance=0.5).roll(1.0, 1.0).wait(1.5).roll(1.4, 1.0)
+    )
+    assert game.wait(1.3).events == []
+    assert game.wait(0.3).kinds == [EventKind.NO_PROGRESS_IN_GAME]
+
+
 def test_the_time_of_a_stop_does_not_count(us: Team) -> None:
     assert Watching(us).wait(9.0).now(STOP).wait(3.0).now(PLAY).wait(9.0).events == []
 

@@ -73,6 +73,12 @@ def test_robots_are_slow_in_stop_from_two_seconds_on(us: Team, speed: float, fas
     assert game.wait(5.0).kinds == [FAST] * fast
 
 
+def test_how_fast_and_from_when_on_are_settings(us: Team) -> None:
+    game = Watching(us, game=STOP, stop_speed=0.5, grace=1.0).ours(1, -1.0, 1.0, vx=0.6)
+    assert game.wait(1.2).events == []
+    assert game.wait(0.3).kinds == [FAST]
+
+
 def test_a_short_burst_is_forgiven(us: Team) -> None:
     game = Watching(us, game=STOP).wait(2.1).ours(1, -1.0, 1.0, vx=2.0).wait(0.28)
     assert game.ours(1, -1.0, 1.0, vx=1.0).wait(0.1).ours(1, -1.0, 1.0, vx=2.0).wait(0.28).events == []
