@@ -1,13 +1,14 @@
 """Intervals, paired tests and folds for figures that come from trials; usable by itself.
 
-scipy is imported by the functions that need it: matches use this module too and start quickly.
+scipy is imported by the functions that need it: matches use this module too, and play without it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from functools import lru_cache
+from math import atan, cos, log, pi, sin, sqrt
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -80,12 +81,39 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
         raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
     if len(sample) == 1:
         return Interval(-np.inf, np.inf)
-    from scipy.special import stdtrit
-
-    quantile = float(stdtrit(len(sample) - 1, 0.5 + confidence / 2.0))
+    quantile = _student_quantile(len(sample) - 1, 0.5 + confidence / 2.0)
     half = quantile * float(sample.std(ddof=1)) / sqrt(len(sample))
     middle = float(sample.mean())
     return Interval(middle - half, middle + half)
+
+
+@lru_cache(maxsize=256)
+def _student_quantile(degrees: int, probability: float) -> float:
+    """Return the value below which Student's distribution has this probability, of more than a half."""
+    low, high = 0.0, 1.0
+    while _student_inside(degrees, high) < 2.0 * probability - 1.0:
+        low, high = high, 2.0 * high
+    while (middle := (low + high) / 2.0) not in (low, high):
+        if _student_inside(degrees, middle) < 2.0 * probability - 1.0:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _student_inside(degrees: int, t: float) -> float:
+    """Return how probable it is by Student's distribution to be within ``t`` of zero.
+
+    Source: Abramowitz and Stegun, "Handbook of Mathematical Functions", 1964, 26.7.3 and 26.7.4.
+    """
+    angle = atan(t / sqrt(degrees))
+    odd = degrees % 2
+    k = np.arange(2 + odd, degrees, 2)
+    # Each term is the one before times (k - 1) / k and the squared cosine.
+    series = sin(angle) * (1.0 + float(np.cumprod(cos(angle) ** 2 * (k - 1.0) / k).sum()))
+    if not odd:
+        return series
+    return 2.0 / pi * (angle + (cos(angle) * series if degrees > 1 else 0.0))
 
 
 class PairedTest(NamedTuple):
@@ -159,14 +187,15 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
     Source: McNemar, "Note on the sampling error of the difference between
     correlated proportions or percentages", 1947.
     """
-    from scipy.special import bdtr
-
     a, b = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
     if a.ndim != 1 or a.shape != b.shape:
         raise ValueError("both lists must judge the same trials")
     only_first, only_second = int((a & ~b).sum()), int((b & ~a).sum())
     fewer, trials = min(only_first, only_second), only_first + only_second
-    p = 1.0 if 2 * fewer == trials else min(1.0, 2.0 * float(bdtr(fewer, trials, 0.5)))
+    # As few or fewer of so many tosses of a coin, in logarithms: there may be a million.
+    k = np.arange(fewer)
+    ways = np.concatenate([[0.0], np.cumsum(np.log((trials - k) / (k + 1.0)))]) - trials * log(2.0)
+    p = 1.0 if 2 * fewer == trials else min(1.0, 2.0 * float(np.exp(ways).sum()))
     return McNemar(only_first, only_second, p)
 
 

@@ -201,3 +201,13 @@ class TestSurelyNegative:
     def test_what_is_out_of_range_is_refused(self, given: tuple[list[float], float]) -> None:
         with pytest.raises(ValueError, match="values from -1 to 1, and an error between"):
             surely_negative(*given)
+
+
+def test_students_quantile_is_scipys() -> None:
+    for degrees in (1, 2, 3, 4, 5, 9, 10, 99, 100, 999, 4000):
+        for confidence in (0.5, 0.9, 0.95, 0.999):
+            sample = np.zeros(degrees + 1)
+            sample[0] = 1.0
+            half = mean_interval(sample, confidence).high - sample.mean()
+            scale = sample.std(ddof=1) / np.sqrt(degrees + 1)
+            assert half / scale == pytest.approx(stats.t.ppf(0.5 + confidence / 2.0, degrees), rel=1e-9)

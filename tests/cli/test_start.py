@@ -36,6 +36,15 @@ def test_a_list_needs_little(command: str, needed: set[str]) -> None:
     assert set(done.stdout.splitlines()[-1].split()) == needed
 
 
+def test_a_match_plays_without_scipy() -> None:
+    code = (
+        "import sys; sys.modules['scipy'] = None; import robobt\n"
+        "print(robobt.run_trials(robobt.load_scenario('team_v_baseline').lasting(0.2), 2).summary().trace)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_one_command_alone_is_the_same_as_among_all() -> None:
     def names(app: object) -> set[str]:
         return {info.name for info in (*app.registered_commands, *app.registered_groups)}  # type: ignore[attr-defined]

@@ -6,20 +6,17 @@ does until something else is clearly better.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
 from math import hypot, inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robobt.motion.arrival import BRAKING, TOP, arrival_times, meetings, movers_of
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import Pass, TeamStore
+from robobt.skills.tactics.assignment import assign
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.skills.team.teamwork import follow_restart
-from robobt.world.compiled import FloatArray
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
@@ -72,14 +69,6 @@ _OWN_REACH = 0.12
 _BEHIND_BALL = 0.3
 _SAME = 0.4
 _ROLLS, _RASTER = 0.5, 0.05
-
-
-@cache
-def solver() -> Callable[[FloatArray], tuple[NDArray[np.int64], NDArray[np.int64]]]:
-    """Return what shares out tasks at the least cost; importing it takes as long as all skills together."""
-    from scipy.optimize import linear_sum_assignment
-
-    return linear_sum_assignment
 
 
 def agree(frame: Frame, team: TeamStore) -> Plan:
@@ -245,8 +234,7 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
                     times[i, j] -= KEEP_GAIN
         # Crossing over is worse than two short ways: the longest counts most.
         cost = times + 0.15 * times * times
-        rows_taken, jobs_taken = solver()(cost)
-        for row, column in zip(rows_taken.tolist(), jobs_taken.tolist(), strict=True):
+        for row, column in assign(cost):
             task, place, what = jobs[column]
             number = free[row].id
             tasks[number] = task

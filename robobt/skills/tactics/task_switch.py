@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 from math import inf
 
 from robobt.skills.plan import Task
 from robobt.skills.store import Store
-from robobt.skills.tactics.agree import agree, solver
-from robobt.tree import Behaviour
+from robobt.skills.tactics.agree import agree
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
 from robobt.world.game import Restart
@@ -54,13 +52,6 @@ class TaskSwitch(Switch, Bound[Store]):
     """
 
     kind = Part
-
-    def __init__(
-        self, name: str, cases: Mapping[str, Behaviour], *, otherwise: Behaviour | None = None
-    ) -> None:
-        super().__init__(name, cases, otherwise=otherwise)
-        # Now, because a first tick that waits for it comes late on a field.
-        solver()
 
     def case(self) -> str:
         """Return the robot's present part."""

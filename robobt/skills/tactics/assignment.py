@@ -1,0 +1,72 @@
+"""Share out tasks so that all together cost least."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.world.compiled import FloatArray, compiled
+
+_NOBODY = -1
+
+
+def assign(cost: FloatArray) -> list[tuple[int, int]]:
+    """Return who does what at the least total cost, as pairs (row, column) in the order of the rows.
+
+    ``cost`` (n, m) is finite; of the longer side some are left over. Nothing bigger than numpy is asked for
+    that, so that a match starts quickly.
+
+    Source: Jonker and Volgenant, "A shortest augmenting path algorithm for dense and sparse linear
+    assignment problems", 1987.
+    """
+    if cost.shape[0] <= cost.shape[1]:
+        return list(enumerate(_columns(np.ascontiguousarray(cost)).tolist()))
+    pairs = enumerate(_columns(np.ascontiguousarray(cost.T)).tolist())
+    return sorted([(row, column) for column, row in pairs])
+
+
+@compiled
+def _columns(cost: FloatArray) -> NDArray[np.int64]:
+    """Return the column of each row, (n,), of costs with at least as many columns as rows.
+
+    Row by row the cheapest way is found to a free column, on which rows before may move on to others; the
+    prices keep every reduced cost at zero or more.
+    """
+    rows, columns = cost.shape
+    row_price, column_price = np.zeros(rows), np.zeros(columns)
+    row_of = np.full(columns, _NOBODY)
+    column_of = np.full(rows, _NOBODY)
+    for begin in range(rows):
+        reached = np.full(columns, np.inf)
+        from_row = np.full(columns, begin)
+        settled = np.zeros(columns, dtype=np.bool_)
+        row, length, end = begin, 0.0, _NOBODY
+        while end == _NOBODY:
+            nearest = _NOBODY
+            for column in range(columns):
+                if settled[column]:
+                    continue
+                way = length + cost[row, column] - row_price[row] - column_price[column]
+                if way < reached[column]:
+                    reached[column], from_row[column] = way, row
+                if nearest == _NOBODY or reached[column] < reached[nearest]:
+                    nearest = column
+            length = reached[nearest]
+            settled[nearest] = True
+            if row_of[nearest] == _NOBODY:
+                end = nearest
+            else:
+                row = row_of[nearest]
+        row_price[begin] += length
+        for column in range(columns):
+            if settled[column] and row_of[column] != _NOBODY:
+                row_price[row_of[column]] += length - reached[column]
+            if settled[column]:
+                column_price[column] -= length - reached[column]
+        while True:
+            row = from_row[end]
+            row_of[end] = row
+            end, column_of[row] = column_of[row], end
+            if row == begin:
+                break
+    return column_of
