@@ -1,5 +1,6 @@
 /* Shows the match at a time, and moves that time: play, step, jump, by buttons, keys and pointer. */
 import { $, clock, make, readColours, words } from "./base.js";
+import { drawChart, drawChartBase } from "./chart.js";
 import { canvas, drawMatch, fit, look, robotAt, spotOf, view } from "./field.js";
 import { endTime, frameOf, match, scoreOf, startTime, state, valueAt } from "./match.js";
 import { buildEvents, buildPicker, choose, showEvents, showPanel } from "./panel.js";
@@ -34,7 +35,7 @@ const show = () => {
     else $("clock").replaceChildren(clock(state.time), make("span", "", ` / ${clock(endTime())}${remote.toggle ? "" : ` · frame ${frame + 1}`}`));
   }
   line.setAttribute("aria-valuenow", state.time.toFixed(2)); line.setAttribute("aria-valuetext", clock(state.time));
-  showPanel(frame); showEvents(); drawMatch(); drawLine();
+  showPanel(frame); showEvents(); drawMatch(); drawLine(); drawChart();
 };
 state.show = show;
 
@@ -147,11 +148,11 @@ const listen = () => {
 };
 
 /* ---------------------------------------------------------------- start */
-export const redraw = () => { readColours(); fit(); fitLine(); drawBase(); show(); };
+export const redraw = () => { readColours(); fit(); fitLine(); drawBase(); drawChartBase(); show(); };
 /* What is new on the line of time and in the list of events. */
 export const refresh = () => {
   line.setAttribute("aria-valuemin", startTime().toFixed(2)); line.setAttribute("aria-valuemax", endTime().toFixed(2));
-  buildEvents(go); drawBase();
+  buildEvents(go); drawBase(); drawChartBase();
 };
 /* Show the match that was opened; the first of a page also starts to listen. */
 let listening = false;
