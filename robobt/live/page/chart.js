@@ -139,6 +139,7 @@ opener.addEventListener("click", () => {
   box.hidden = !box.hidden; opener.setAttribute("aria-pressed", String(!box.hidden));
   if (!series.length) series = offered().filter(({ name }) => name === "ball speed [m/s]");
   showSeries();
+  dispatchEvent(new Event("resize"));
 });
 const choosing = make("div", "group");
 choosing.append(add, save);

@@ -16,7 +16,7 @@ export const look = (zoom, x, y) => {
 export const fit = () => {
   view.worldWidth = match.field.length + 2 * match.field.goal_line_margin; view.worldHeight = match.field.width + 2 * match.field.margin;
   const stage = canvas.parentElement;
-  const most = Math.max(220, (window.innerHeight - 285) * view.worldWidth / view.worldHeight);
+  const most = Math.max(220, (window.innerHeight - (document.querySelector(".chart:not([hidden])") ? 465 : 285)) * view.worldWidth / view.worldHeight);
   const wide = matchMedia("(max-width: 1020px)").matches ? stage.clientWidth : Math.min(stage.clientWidth, most);
   view.dpr = window.devicePixelRatio || 1;
   view.width = Math.max(60, Math.floor(wide)); view.whole = view.width / view.worldWidth;
