@@ -128,7 +128,7 @@ class RayEngine:
                         batch, attempt = list(islice(waiting, size)), 1
                     if not batch:
                         break
-                    flying[do.remote(key, shared, batch, reports)] = batch, attempt
+                    flying[do.remote(key, shared, os.getcwd(), batch, reports)] = batch, attempt
                 if not flying:
                     break
                 ready, _ = ray.wait(list(flying), num_returns=1, timeout=_POLL)
@@ -185,12 +185,15 @@ _works: dict[bytes, Work[Any, Any, Any]] = {}
 
 
 def _do(
-    key: bytes, packed: bytes, tasks: list[object], reports: Any
+    key: bytes, packed: bytes, folder: str, tasks: list[object], reports: Any
 ) -> tuple[list[tuple[str, object]], float]:
     """Do tasks in a worker of the cluster, and tell how long they took [s].
 
     Exceptions are returned, for Ray would wrap them; one ends the batch.
     """
+    # Relative paths are the driver's, not of where the cluster was started; a node need not have its folder.
+    with suppress(OSError):
+        os.chdir(folder)
     if key not in _works:
         tell_warnings()
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -49,6 +50,19 @@ def test_every_task_gives_one_result_and_its_reports(engine: RayEngine) -> None:
         found = sorted(run_tasks(SQUARES, range(20), 2, on_report=reports.append))
     assert found == [task * task for task in range(20)]
     assert sorted(reports) == sorted(f"{task} squared" for task in range(20))
+
+
+def _note(task: Path, report: Callable[[str], None]) -> str:
+    task.write_text("done")
+    return str(task)
+
+
+def test_a_path_is_the_drivers_wherever_the_cluster_was_started(
+    engine: RayEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert list(engine.run(Work(_note, "note", OSError), [Path("here.txt")], 1)) == ["here.txt"]
+    assert (tmp_path / "here.txt").read_text() == "done"
 
 
 def test_a_task_that_raises_is_named(engine: RayEngine) -> None:
