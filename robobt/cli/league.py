@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
+from robobt.cli.live import Host, Open, Port, page_server
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
@@ -102,6 +103,13 @@ def serve(
         Path | None,
         typer.Option("--log", help="Write everything that is sent to this league log (*.log, *.log.gz)."),
     ] = None,
+    live: Annotated[
+        bool,
+        typer.Option("--live", help="Show the field in the browser, where robots and ball can be moved."),
+    ] = False,
+    host: Host = "127.0.0.1",
+    port: Port = 0,
+    open_page: Open = None,
     as_json: Json = False,
 ) -> None:
     """Serve a simulated field: other teams' software connects to it as it does to grSim.
@@ -120,6 +128,8 @@ def serve(
     from robobt.match.referee.settings import RefereeSettings
     from robobt.world import FIELDS
 
+    if live and in_step:
+        raise typer.BadParameter("cannot be shown live", param_hint="--in-step")
     rules = RefereeSettings() if referee else None
     if scenario is None:
         if field not in FIELDS:
@@ -159,6 +169,12 @@ def serve(
                 clock=clock.value,
             )
         )
+        watched = None
+        if live:
+            from robobt.league.serve.watched import WatchedField
+
+            page = stack.enter_context(page_server(host, port, open_page))
+            watched = WatchedField(page, scenario or "robobt serve", server.referee)
         if not as_json:
             _announce(server)
         # A signal is how one stops serving.
@@ -168,8 +184,8 @@ def serve(
 
                 stack.enter_context(StepServer(server, interface)).run(seconds)
             else:
-                server.run(seconds, on_slow=_TellOnce())
-    packets = {port: asdict(counts) for port, counts in server.counts.items()}
+                server.run(seconds, watched, on_slow=_TellOnce())
+    packets = {name: asdict(counts) for name, counts in server.counts.items()}
     figures = {
         "frames": server.frames,
         "simulated_s": served.time,
@@ -180,11 +196,11 @@ def serve(
         print_json(figures)
         return
     say(f"Served {server.frames} frames, {served.time:.1f} s, at {server.kept:.1%} of the speed asked for.")
-    for port, counts in server.counts.items():
+    for name, counts in server.counts.items():
         if counts.dropped:
             say(
-                f"{port}: "
-                + ", ".join(f"{number} {name}" for name, number in packets[port].items() if number)
+                f"{name}: "
+                + ", ".join(f"{number} {what}" for what, number in packets[name].items() if number)
             )
 
 

@@ -23,13 +23,13 @@ from robobt.live.messages import (
     Skill,
     Take,
     TakeOff,
+    robot_of,
 )
 from robobt.live.server import Server
 from robobt.match.loop import Match
 from robobt.match.steering import Steering, SteeringError
 from robobt.plays import PLAYS
 from robobt.tree.parameters import Parameter
-from robobt.world.game import Team
 from robobt.world.state import RobotId
 
 _GRIP = 0.5
@@ -95,18 +95,18 @@ class Hands:
                     self._held.pop(name, None)
             case TakeOff(robot=robot):
                 self._held.pop(robot, None)
-                steering.take_off(_robot(robot))
+                steering.take_off(robot_of(robot))
             case GiveOrder(order=order, team=team):
                 steering.order(order, team)
             case AskForm(robot=robot, path=path):
-                self._tell_form(_robot(robot), path)
+                self._tell_form(robot_of(robot), path)
             case Play(robot=robot, play=play, params=params):
                 for each in self._meant(act):
                     steering.play(each, play, params)
-                self._tell_form(_robot(robot), "")
+                self._tell_form(robot_of(robot), "")
             case Skill(robot=robot, path=path, params=params):
-                steering.change_skill(_robot(robot), path, params)
-                self._tell_form(_robot(robot), path)
+                steering.change_skill(robot_of(robot), path, params)
+                self._tell_form(robot_of(robot), path)
             case Situation():
                 self._server.situation = write_yaml(steering.situation())
                 self._situations += 1
@@ -134,7 +134,7 @@ class Hands:
 
     def _drive(self, act: Drive | Rest | Take | Release, arrived: float) -> None:
         if isinstance(act, Take):
-            self.take(_robot(act.robot))
+            self.take(robot_of(act.robot))
         elif isinstance(act, Release):
             self.release()
         elif self._driver is None:
@@ -149,10 +149,10 @@ class Hands:
         if isinstance(move, MoveBall):
             self._steering.move_ball(move.x, move.y, move.vx, move.vy, move.held)
         else:
-            self._steering.move_robot(_robot(move.robot), move.x, move.y, move.heading, move.held)
+            self._steering.move_robot(robot_of(move.robot), move.x, move.y, move.heading, move.held)
 
     def _meant(self, act: Play) -> list[RobotId]:
-        robot = _robot(act.robot)
+        robot = robot_of(act.robot)
         if not act.team:
             return [robot]
         keeper = self._match.scenario.goalkeepers().get(robot.team)
@@ -163,11 +163,6 @@ class Hands:
         fields = [_field(parameter, value) for parameter, value in self._steering.parameters(robot, path)]
         setup = self._steering.setup(robot)
         self._server.tell(form={"robot": str(robot), "path": path, "play": setup.play, "fields": fields})
-
-
-def _robot(name: str) -> RobotId:
-    team, _, number = name.partition(" ")
-    return RobotId(Team(team), int(number))
 
 
 def _field(parameter: Parameter, value: Any) -> dict[str, Any]:

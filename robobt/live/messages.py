@@ -11,6 +11,7 @@ from robobt.live.driving import Frames
 from robobt.match.referee.by_hand import Order
 from robobt.world.game import Team
 from robobt.world.sketch import MOST_LAYERS
+from robobt.world.state import RobotId
 
 MOST_BYTES = 4096
 """The longest message [bytes]."""
@@ -75,6 +76,12 @@ _Metres = Annotated[float, Field(ge=-20, le=20)]
 _MetresPerSecond = Annotated[float, Field(ge=-15, le=15)]
 _Robot = Annotated[str, Field(pattern=r"^(blue|yellow) \d{1,2}$")]
 _Parameters = Annotated[dict[str, JsonValue], Field(max_length=50)]
+
+
+def robot_of(name: str) -> RobotId:
+    """Return the robot of a message's name for it."""
+    team, _, number = name.partition(" ")
+    return RobotId(Team(team), int(number))
 
 
 class MoveBall(Settings):

@@ -8,6 +8,7 @@ as well: they need no framework beside it.
 from __future__ import annotations
 
 import asyncio
+import socket
 import sys
 import threading
 from collections import Counter
@@ -42,6 +43,9 @@ _IDLE_BEAT = 0.5
 _MOST_WAITING = 1000
 """Messages that wait for the match; more are refused."""
 
+
+_KEPT_BY_SYSTEM = 2**17
+"""What the system keeps for a viewer at most [bytes]."""
 
 _SWITCH = 0.0005
 """How long this thread may keep the match's from going on [s]."""
@@ -149,6 +153,9 @@ class Server:
         )
         try:
             async with serving as server:
+                for listening in server.sockets:
+                    # The system would keep megabytes for a viewer that reads nothing, who then sees the past.
+                    listening.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _KEPT_BY_SYSTEM)
                 self._listen(server)
                 self._ready.set()
                 beat = asyncio.create_task(self._beat())
@@ -217,11 +224,11 @@ class Server:
             body = self._stream.recording()
             return response(HTTPStatus.OK, body, host, RECORDING_TYPE, "live.robobt.arrows")
 
-    async def _meet(self, socket: ServerConnection) -> None:
+    async def _meet(self, connection: ServerConnection) -> None:
         """Serve one viewer until it leaves."""
         assert self._wake is not None
         self._count += 1
-        viewer = Viewer(self._count, socket, monotonic())
+        viewer = Viewer(self._count, connection, monotonic())
         self._viewers[viewer.number] = viewer
         if self._steerer is None:
             self._steerer = viewer
@@ -238,7 +245,7 @@ class Server:
             pass
         finally:
             reading.cancel()
-            said = socket.protocol.close_sent
+            said = connection.protocol.close_sent
             self.refused["too long"] += said is not None and said.code == CloseCode.MESSAGE_TOO_BIG
             del self._viewers[viewer.number]
             self._look()

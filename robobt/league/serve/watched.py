@@ -1,0 +1,93 @@
+"""A served field in the live page, where one can drag its robots and the ball."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from queue import Empty
+
+from robobt.league.serve.referee import ServedReferee
+from robobt.league.serve.served_field import ServedField
+from robobt.league.wire.commands import BallTeleport, Teleport
+from robobt.live.messages import Act, MoveBall, MoveRobot, TakeOff, robot_of
+from robobt.live.server import Server
+from robobt.live.stream import Stream
+from robobt.match.recording import RecordedRobot, RecordingHeader
+from robobt.match.recording.capture import Capture
+from robobt.world.state import Frame, RobotId
+
+_GRIP = 0.5
+"""What is held is let go when its page says nothing for so long [s]."""
+
+
+class WatchedField:
+    """Shows a served field to a server's viewers; called after every step.
+
+    Args:
+        server: where it is watched.
+        name: what the page calls it.
+        referee: who decides the game, None without one.
+    """
+
+    def __init__(self, server: Server, name: str, referee: ServedReferee | None) -> None:
+        self._server, self._name, self._referee = server, name, referee
+        self._capture: Capture | None = None
+        self._robots: frozenset[RobotId] = frozenset()
+        self._held: dict[str, tuple[MoveBall | MoveRobot, float]] = {}
+        self._said = 0
+        server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None)
+
+    def __call__(self, field: ServedField) -> None:
+        """Do what viewers ask for, and show what there is now."""
+        with suppress(Empty):
+            while True:
+                self._do(self._server.inbox.get_nowait()[0], field)
+        for name, (move, since) in list(self._held.items()):
+            if field.time > since + _GRIP:
+                del self._held[name]
+            else:
+                self._move(move, field)
+        truth = field.truth()
+        if self._referee is not None:
+            truth.game = self._referee.referee.game
+        capture = self._captured(truth, field.period)
+        for robot in field.kicked:
+            capture.event("kick", truth.time, robot=robot)
+        capture.tick(truth)
+
+    def _captured(self, truth: Frame, period: float) -> Capture:
+        """Return what captures the field, another one where a robot has come that was never there."""
+        seen = self._robots.union(truth.robots())
+        if self._capture is None or seen != self._robots:
+            self._robots = seen
+            robots = tuple([RecordedRobot(team=robot.team, number=robot.number) for robot in sorted(seen)])
+            header = RecordingHeader(scenario=self._name, period=period, field=truth.field, robots=robots)
+            self._capture = Capture(header)
+            self._server.show(Stream(self._capture))
+        return self._capture
+
+    def _do(self, act: Act, field: ServedField) -> None:
+        match act:
+            case MoveBall() | MoveRobot():
+                name = act.robot if isinstance(act, MoveRobot) else "ball"
+                self._move(act, field)
+                if act.held:
+                    self._held[name] = act, field.time
+                else:
+                    self._held.pop(name, None)
+            case TakeOff(robot=robot):
+                self._held.pop(robot, None)
+                self._tell(field.teleport(Teleport(robot_of(robot), present=False)))
+            case _:
+                self._tell("Others decide on a served field: here only robots and ball can be moved.")
+
+    def _move(self, move: MoveBall | MoveRobot, field: ServedField) -> None:
+        if isinstance(move, MoveBall):
+            self._tell(field.teleport_ball(BallTeleport(move.x, move.y, move.vx, move.vy)))
+        else:
+            robot = robot_of(move.robot)
+            self._tell(field.teleport(Teleport(robot, move.x, move.y, move.heading, present=True)))
+
+    def _tell(self, problem: str | None) -> None:
+        if problem is not None:
+            self._said += 1
+            self._server.tell(said=[self._said, problem])

@@ -1,0 +1,54 @@
+"""A served field in the live page."""
+
+from time import perf_counter
+
+import pytest
+
+from robobt.league.serve.served_field import ServedField
+from robobt.league.serve.watched import WatchedField
+from robobt.league.wire.commands import Teleport
+from robobt.live.messages import Act, MoveBall, MoveRobot, Pause, TakeOff
+from robobt.live.server import Server
+from robobt.world import DIVISION_B, Placement, RobotId, Team
+from tests.live.test_stream import decoded
+
+BLUE_3, YELLOW_5 = RobotId(Team.BLUE, 3), RobotId(Team.YELLOW, 5)
+
+
+def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
+    field = ServedField(DIVISION_B, Placement({BLUE_3: (-1.0, 0.0, 0.0)}, (0.0, 0.0, 0.0, 0.0)))
+    server = Server()
+    watched = WatchedField(server, "served", None)
+
+    def step(*acts: Act) -> None:
+        for act in acts:
+            server.inbox.put((act, perf_counter()))
+        field.step()
+        watched(field)
+
+    step()
+    stream = server._stream
+    assert stream is not None
+    assert stream.header["scenario"] == "served"
+    step(
+        MoveBall(do="ball", x=1.0, y=0.5, vx=0.0, vy=2.0),
+        MoveRobot(do="robot", robot="blue 3", x=2.0, y=-1.0, heading=1.5),
+        Pause(do="pause", on=True),
+    )
+    truth = field.truth()
+    assert (truth.ball.x, truth.ball.vy) == pytest.approx((1.0, 2.0))
+    assert truth.robots()[BLUE_3].position == pytest.approx((2.0, -1.0))
+    assert "only robots and ball" in server._state["said"][1]
+    step(MoveBall(do="ball", x=15.0, y=0.5))
+    assert "outside the walls" in server._state["said"][1]
+    step(TakeOff(do="off", robot="blue 3"))
+    step()
+    assert stream.advance()
+    chunk = decoded(stream.messages(0, 2**20)[0][0])
+    assert chunk["frames"] == 5
+    # A robot that comes later begins another stream, in which it is told of.
+    field.teleport(Teleport(YELLOW_5, 1.0, 1.0, 0.0, present=True))
+    step()
+    assert server._stream is not stream
+    assert server._stream is not None
+    assert [robot["number"] for robot in server._stream.header["robots"]] == [3, 5]
