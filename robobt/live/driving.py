@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot
+from math import hypot, pi, radians
 from typing import Literal
 
 from robobt.world.command import RobotCommand
-from robobt.world.geometry import to_robot_frame
+from robobt.world.geometry import direction, distance, to_robot_frame, wrap_angle
 from robobt.world.rules import own_side
 from robobt.world.state import Frame, RobotState
 
@@ -22,6 +22,18 @@ HELD_UP = 0.1
 
 _WINDOW = 30.0
 """How long the shortest way is remembered, for clocks drift apart [s]."""
+
+_MEANT = radians(35.0)
+"""A mate further off the heading is not who a pass is meant for."""
+
+_SURE = radians(2.5)
+"""How far off a pass may be."""
+
+_TURN, _GAIN = 3.0, 10.0
+"""How fast an assisted robot turns with the ball [rad/s], and that by the angle that is left [1/s]."""
+
+_ARRIVAL = 2.5
+"""How fast an assisted pass arrives [m/s]."""
 
 Frames = Literal["field", "robot"]
 
@@ -41,7 +53,7 @@ class HandDriver:
         self._clock = clock
         # The last tick that still follows a command lasts for a period.
         self.deadline = STOPS_IN - period - _SLACK
-        self._wanted: tuple[float, float, float, Frames, bool, float] | None = None
+        self._wanted: tuple[float, float, float, Frames, bool, float, bool] | None = None
         self._at = 0.0
         self._way = _ShortestWay()
 
@@ -54,6 +66,7 @@ class HandDriver:
         frame: Frames,
         dribbler: bool,
         kick: float,
+        assist: bool = False,
     ) -> bool:
         """Take a command; False for one that was held up on its way.
 
@@ -66,10 +79,11 @@ class HandDriver:
             frame: which of them.
             dribbler: whether the dribbler turns.
             kick: speed of a kick [m/s], 0 for none.
+            assist: whether a kick is turned into a pass to the mate whom the robot about looks at.
         """
         if self._way.excess(arrived, arrived - sent) > HELD_UP:
             return False
-        self._wanted = (*velocity, omega, frame, dribbler, kick)
+        self._wanted = (*velocity, omega, frame, dribbler, kick, assist)
         self._at = arrived
         return True
 
@@ -86,7 +100,11 @@ class HandDriver:
         """Return the command of this tick."""
         if self._wanted is None or not self.told:
             return RobotCommand()
-        x, y, omega, frame, dribbler, kick = self._wanted
+        x, y, omega, frame, dribbler, kick, assist = self._wanted
+        if assist and kick > 0.0:
+            passed = _passed(view, me, kick)
+            if passed is not None:
+                return passed
         size = max(1.0, hypot(x, y))
         x, y = x / size * me.limits.max_speed, y / size * me.limits.max_speed
         if frame == "field":
@@ -94,6 +112,20 @@ class HandDriver:
             side = -own_side(view.team)
             x, y = to_robot_frame(side * x, side * y, me.heading)
         return RobotCommand(x, y, omega * me.limits.max_turn, kick, dribbler=dribbler)
+
+
+def _passed(view: Frame, me: RobotState, most: float) -> RobotCommand | None:
+    """Return the command that turns to the mate who is meant and passes to it; None where nobody is."""
+    mates = [mate for mate in view.own if mate.id != me.id]
+    offs = [(wrap_angle(direction(me.position, mate.position) - me.heading), mate) for mate in mates]
+    off, meant = min(offs, key=lambda each: abs(each[0]), default=(pi, me))
+    if abs(off) > _MEANT:
+        return None
+    turn = min(_TURN, max(-_TURN, _GAIN * off))
+    if abs(off) > _SURE:
+        return RobotCommand(omega=turn, dribbler=True)
+    speed = view.ball_model.kick_speed(distance(me.position, meant.position), _ARRIVAL)
+    return RobotCommand(omega=turn, kick_speed=min(most, speed), dribbler=True)
 
 
 class _ShortestWay:

@@ -47,6 +47,7 @@ class Hands:
         server.tell(
             movable=self._steering.movable,
             orders=self._steering.orders,
+            game_controller=match.world.refereed or (match.referee is not None and not self._steering.orders),
             plays=list(PLAYS),
             form=None,
             said=None,
@@ -143,7 +144,8 @@ class Hands:
             self._driver.stop()
         else:
             velocity = (act.vx, act.vy)
-            self._driver.command(act.at, arrived, velocity, act.omega, act.frame, act.dribbler, act.kick)
+            ordered = (act.omega, act.frame, act.dribbler, act.kick, act.assist)
+            self._driver.command(act.at, arrived, velocity, *ordered)
 
     def _move(self, move: MoveBall | MoveRobot) -> None:
         if isinstance(move, MoveBall):

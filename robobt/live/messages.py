@@ -190,6 +190,7 @@ class Drive(Settings):
     frame: Frames
     dribbler: bool = False
     kick: float = Field(0.0, ge=0, le=8)
+    assist: bool = False
 
 
 Act = (

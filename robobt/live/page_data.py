@@ -250,4 +250,18 @@ def _game(game: GameState) -> dict[str, object]:
         "restart": game.restart,
         "team": game.restart_team,
         "placement": plain(game.placement),
+        "stage": game.stage.name,
+        "upcoming": None if game.upcoming is None else game.upcoming.name,
+        "happened": list(game.events[-5:]),
+        "teams": [
+            {
+                "team": team.value,
+                "keeper": game.status(team).keeper,
+                "most": game.status(team).max_robots,
+                "yellow": game.status(team).yellow_cards,
+                "red": game.status(team).red_cards,
+                "substituting": game.status(team).substituting,
+            }
+            for team in Team
+        ],
     }

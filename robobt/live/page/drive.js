@@ -3,10 +3,10 @@ import { $, make, put } from "./base.js";
 import { state } from "./match.js";
 import { bridge } from "./steering.js";
 
-const DEADZONE = .12, CHARGE = 800, KICK_TIME = 300, LEAST_KICK = .15;
+const DEADZONE = .12, CHARGE = 800, KICK_TIME = 300, ASSISTED_TIME = 1200, LEAST_KICK = .15;
 /* From a key to its command [ms], for whoever measures. */
 export const delays = [];
-const settings = { frame: "field", kick: 6.5 };
+const settings = { frame: "field", kick: 6.5, assist: false };
 const held = new Set(), sticks = { move: null, turn: null };
 let robot = null, dribbler = false, charged = null, kicking = { until: 0, speed: 0 }, wasPressed = new Set(), toDrive = () => {};
 
@@ -18,7 +18,7 @@ const charge = on => {
   if (on && charged === null) charged = performance.now();
   if (on || charged === null) return;
   const share = Math.min(1, LEAST_KICK + (1 - LEAST_KICK) * (performance.now() - charged) / CHARGE);
-  kicking = { until: performance.now() + KICK_TIME, speed: share * settings.kick };
+  kicking = { until: performance.now() + (settings.assist ? ASSISTED_TIME : KICK_TIME), speed: share * settings.kick };
   charged = null;
 };
 const pressed = (pad, place, action) => {
@@ -45,7 +45,7 @@ const attentive = () => document.visibilityState === "visible" && document.hasFo
 const send = () => {
   if (!robot) return;
   const speed = performance.now() < kicking.until ? kicking.speed : 0;
-  bridge.act({ do: "drive", at: Math.round(performance.now()) / 1000, frame: settings.frame, dribbler, kick: Math.round(100 * speed) / 100, ...wanted() });
+  bridge.act({ do: "drive", at: Math.round(performance.now()) / 1000, frame: settings.frame, assist: settings.assist, dribbler, kick: Math.round(100 * speed) / 100, ...wanted() });
 };
 const rest = () => {
   held.clear(); charged = null; sticks.move = sticks.turn = null;
@@ -99,6 +99,9 @@ const drive = plain("Drive", "Drive the chosen robot by keyboard, game controlle
 const frame = plain("Field frame", "Whether “up” is up on the picture or ahead of the robot");
 const kick = plain("Kick", "Hold for a stronger kick (K, right trigger)");
 const roll = plain("Dribbler", "Dribbler on or off (F, button B)");
+const assist = plain("Pass assist", "A kick goes to the mate whom the robot about looks at, as fast as it takes");
+assist.setAttribute("aria-pressed", "false");
+assist.addEventListener("click", () => { settings.assist = !settings.assist; assist.setAttribute("aria-pressed", String(settings.assist)); });
 const meter = make("span", "meter"), pads = make("div", "pads"), keys = make("div", "group driving");
 const help = make("p", "dim", "W A S D drive, Q E turn, shift slowly, hold K to kick, F dribbler; or a game controller's sticks, right trigger and B.");
 export const most = make("input");
@@ -121,7 +124,7 @@ const kicker = make("div", "stick kick", "kick");
 kicker.addEventListener("pointerdown", event => { kicker.setPointerCapture(event.pointerId); charge(true); event.preventDefault(); });
 for (const end of ["pointerup", "pointercancel"]) kicker.addEventListener(end, () => charge(false));
 pads.append(stick("move", "move"), kicker, stick("turn", "turn"));
-keys.append(drive, frame, kick, most, roll, meter);
+keys.append(drive, frame, kick, most, roll, assist, meter);
 const card = document.querySelector(".steering");
 card.append(keys, help, pads);
 
@@ -131,7 +134,7 @@ export const showDriving = now => {
   drive.disabled = !now.steers;
   drive.setAttribute("aria-pressed", String(Boolean(driven)));
   put(drive, driven ? "Let go" : "Drive");
-  for (const each of [frame, kick, most, roll, pads, help]) each.hidden = !driven;
+  for (const each of [frame, kick, most, roll, assist, pads, help]) each.hidden = !driven;
   if (driven && !robot && matchMedia("(pointer: coarse)").matches) $("field").scrollIntoView();
   if (driven && !robot) { dribbler = false; held.clear(); requestAnimationFrame(beat); }
   robot = driven;

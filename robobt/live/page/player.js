@@ -1,5 +1,5 @@
 /* Shows the match at a time, and moves that time: play, step, jump, by buttons, keys and pointer. */
-import { $, clock, make, readColours, words } from "./base.js";
+import { $, clock, make, put, readColours, words } from "./base.js";
 import { drawChart, drawChartBase } from "./chart.js";
 import { canvas, drawMatch, fit, look, robotAt, spotOf, view } from "./field.js";
 import { endTime, frameOf, match, scoreOf, startTime, state, valueAt } from "./match.js";
@@ -12,6 +12,13 @@ export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 /* ---------------------------------------------------------------- showing */
 const STOPPED = /^(HALT|TIMEOUT)/, WAITING = /^(STOP|PREPARE|BALL_PLACEMENT)/;
+/* What a game controller says besides: where none does, no goalkeeper is named. */
+const stageOf = ({ stage, upcoming, teams, happened }) => teams.some(team => team.keeper !== null) ? [
+  words(stage), upcoming && `next ${words(upcoming).toLowerCase()}`,
+  ...teams.map(({ team, keeper, most, yellow, red, substituting }) => `${team}: ` + [
+    keeper !== null && `goalkeeper ${keeper}`, most !== null && `at most ${most} robots`, yellow && `${yellow} yellow`, red && `${red} red`, substituting && "substitutes",
+  ].filter(Boolean).join(", ")), happened.length && happened.map(name => name.replace(/_/g, " ")).join(", "),
+].filter(Boolean).join(" · ") : "";
 let shownGame;
 const show = () => {
   const N = match.frames, frame = frameOf(state.time), game = N ? valueAt(match.games, frame, null) : null;
@@ -26,6 +33,7 @@ const show = () => {
     const lamp = make("span", "lamp" + (STOPPED.test(game.command) ? " stop" : WAITING.test(game.command) ? " wait" : ""));
     const restart = game.restart ? ` · ${game.restart.replace(/_/g, " ")}${game.team ? " for " + game.team : ""}` : "";
     $("word").replaceChildren(lamp, words(game.command) + restart);
+    put($("stage"), stageOf(game));
   }
   const clockText = N ? `${clock(state.time)} / ${clock(endTime())}` : "No frame was recorded.";
   if ($("clock").dataset.now !== clockText) {

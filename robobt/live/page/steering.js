@@ -107,7 +107,8 @@ for (const name of ["blue", "yellow"]) team.append(new Option(words(name), name)
 const order = (name, of) => button(words(name), "As the referee", () => bridge.act({ do: "order", order: name, team: of ? team.value : null }));
 referee.append(order("halt"), order("stop"), order("continue"), order("force start"), team, order("kick-off", true), order("free kick", true), order("penalty", true));
 const heading = make("h3", "", "Steering");
-card.append(heading, note, moving, referee, forms);
+const controlled = make("p", "dim");
+card.append(heading, note, moving, referee, controlled, forms);
 document.querySelector("aside").insertBefore(card, $("figures"));
 
 /* A node's id as recordings have it: names from the root, and a number where two would be the same. */
@@ -186,8 +187,10 @@ export const showSteering = now => {
     : movable ? "Drag robots and the ball; flick the ball to roll it; shift turns a robot; beyond the wall it is taken off."
       : "Nothing can be dragged here: these are no robots of our simulator.");
   for (const each of moving.children) each.disabled = !steers || !movable && /Turn|Take/.test(each.textContent);
+  referee.hidden = Boolean(now.game_controller);
   for (const each of referee.children) each.disabled = !steers || !orders;
-  referee.title = orders ? "" : "No referee of robobt's own decides this match: " + (now.game_controller ? "the game controller does." : "it is played freely.");
+  referee.title = orders ? "" : "Nobody referees this match: it is played freely.";
+  put(controlled, now.game_controller ? "A game controller decides this match; what it says is above the field." : "");
   if (steers) showForm(now.form || null, now.plays || []); else showForm(null);
   if (now.situation && now.situation > saved && steers) location.assign("situation.yaml");
   saved = now.situation || 0;

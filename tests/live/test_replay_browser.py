@@ -1,6 +1,7 @@
-"""Numbers over time, in a real browser."""
+"""The replay page in a real browser: its charts, and what a game controller says."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from selenium.webdriver.support.ui import Select
 from robobt.live.replay_html import write_html
 from robobt.match import Match, load_scenario
 from robobt.match.recording import Recording, load_recording
+from robobt.world.game import GameState, RefereeCommand, TeamStatus
 from robobt.worlds import sim_world
 from tests.live.chromium import Page
 
@@ -24,6 +26,16 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
         while match.tick():
             pass
     return load_recording(path)
+
+
+def test_what_a_game_controller_says_is_shown(page: Page, recording: Recording, tmp_path: Path) -> None:
+    status = TeamStatus(keeper=4, max_robots=5, yellow_cards=1)
+    game = GameState(RefereeCommand.STOP, upcoming=RefereeCommand.PREPARE_PENALTY_YELLOW, blue=status)
+    write_html(replace(recording, games=[(0, game)]), tmp_path / "m.html")
+    page.open((tmp_path / "m.html").as_uri())
+    said = page.find("#stage").text
+    assert said.startswith("Normal first half · next prepare penalty yellow · blue: goalkeeper 4")
+    assert "at most 5 robots, 1 yellow" in said
 
 
 @pytest.fixture
