@@ -10,6 +10,15 @@ from pydantic_core import ErrorDetails
 
 from robobt.config.errors import FieldError, message_of, one_line, short_repr
 
+_WORDS = {
+    "valid array": "list",
+    "valid tuple": "list",
+    "Tuple": "list",
+    " after validation": "",
+    "an object": "a mapping",
+}
+"""What pydantic says, and what people call it who write a file."""
+
 
 class Settings(BaseModel):
     """A group of settings or other data from outside: read-only, no unknown fields, finite numbers."""
@@ -26,7 +35,9 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     problem = _most_telling(problems)
     place = [str(part) for part in problem["loc"]] if data is None else _path_in(problem["loc"], data)
     cause = problem.get("ctx", {}).get("error")
-    message = problem["msg"].replace("valid array", "list").replace("an object", "a mapping")
+    message = problem["msg"]
+    for theirs, ours in _WORDS.items():
+        message = message.replace(theirs, ours)
     if isinstance(cause, Exception):
         message = message_of(cause)
         if isinstance(cause, FieldError):

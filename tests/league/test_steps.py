@@ -49,5 +49,5 @@ def test_a_step_that_the_simulator_cannot_make_is_told() -> None:
 
 
 def test_where_nobody_listens_it_is_told() -> None:
-    with pytest.raises(OSError, match=r"the simulator at 127\.0\.0\.1:\d+ cannot be reached"):
+    with pytest.raises(StreamError, match=r"the simulator at 127\.0\.0\.1:\d+ cannot be reached"):
         LeagueWorld(simulator="steps", endpoints=free_endpoints())

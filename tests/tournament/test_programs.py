@@ -193,7 +193,8 @@ def test_a_program_that_is_not_there_has_lost(tmp_path: Path) -> None:
     ("content", "problem"),
     [
         ("program: {}\n", "program.command: is missing"),
-        ("program: {command: []}\n", "program.command"),
+        ("program: {command: []}\n", "program.command: list should have at least 1 item, not 0"),
+        ("program: {command: ./start.sh}\n", "program.command: input should be a list, not './start.sh'"),
         ("program: {command: [x], ready_within: 0}\n", "program.ready_within"),
         ("program: {command: [x], lockstep: true}\n", "program.lockstep: needs {steps} in the command"),
         ("program: {command: [x]}\nplayers: [{play: stand_still}]\n", "program: plays all robots"),

@@ -37,7 +37,7 @@ class StepLink(Link):
         stepped: how far the field has come since the link was made, never beyond ``time`` [s].
 
     Raises:
-        OSError: nobody listens there.
+        StreamError: nobody listens there.
     """
 
     active = True
@@ -58,7 +58,7 @@ class StepLink(Link):
                 self._streams[team] = MessageStream(socket.create_connection((host, port), _PATIENCE), where)
             except OSError as error:
                 self.close()
-                raise OSError(f"{where} cannot be reached: {error.strerror or error}") from error
+                raise StreamError(f"{where} cannot be reached: {error.strerror or error}") from error
 
     def close(self) -> None:
         """Close the connections."""

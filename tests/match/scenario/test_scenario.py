@@ -159,7 +159,7 @@ class TestFields:
             ),
             (
                 {"robots": {"blue": [robot(i) for i in range(12)]}},
-                "robots.blue: tuple should have at most 11",
+                "robots.blue: list should have at most 11 items, not 12",
             ),
             ({"robots": {"blue": "all"}}, "robots.blue: input should be a list"),
             (
