@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin
+from math import atan2, copysign, cos, hypot, sin
 
 import numpy as np
 
@@ -22,12 +22,21 @@ SCORE_ON_GOALKEEPER = observation_spec(
     **dict.fromkeys(("upper_post_x", "upper_post_y", "lower_post_x", "lower_post_y"), "m"),
     **dict.fromkeys(("keeper_x", "keeper_y"), "m"),
     **dict.fromkeys(("keeper_vx", "keeper_vy"), "m/s"),
+    **dict.fromkeys(("aim", "keeper_aside"), "m"),
 )
 """The robot's velocity, the ball, the attacked goal and its goalkeeper, in the robot's frame.
 
 Velocities are those over the field. ``sin_goal`` and ``cos_goal`` are of the angle from the heading to the
-middle of the goal.
+middle of the goal. ``aim`` is where a kick of :data:`KICK_SPEED` would cross the goal line, measured from its
+middle, at most :data:`FAR_OFF` either way; ``keeper_aside`` how far to the left of such a shot the goalkeeper
+is, at most half as much.
 """
+
+KICK_SPEED = 6.0
+"""The kick that is thought of [m/s]."""
+
+FAR_OFF = 1.0
+"""What misses the goal by as much misses it [m]."""
 
 
 @compiled
@@ -51,29 +60,36 @@ def _observe_scoring(
     ):
         row[entry] = c * x + s * y
         row[entry + 1] = c * y - s * x
+    # A kicked ball keeps the velocity that it has across the heading.
+    vx, vy = KICK_SPEED * c - row[6] * s, KICK_SPEED * s + row[6] * c
+    fast = hypot(vx, vy)
+    crosses = ball[1] + (goal_x - ball[0]) * vy / vx if vx > 0.1 * fast else copysign(FAR_OFF, vy)
+    aside = ((keeper[1] - ball[1]) * vx - (keeper[0] - ball[0]) * vy) / fast
+    row[17] = min(max(crosses, -FAR_OFF), FAR_OFF)
+    row[18] = min(max(aside, -0.5 * FAR_OFF), 0.5 * FAR_OFF)
 
 
 @compiled
 def score_on_goalkeeper_rows(
     robots: FloatArray, balls: FloatArray, goal_x: float, post_y: float
 ) -> FloatArray:
-    """Compute the states :data:`SCORE_ON_GOALKEEPER` of many arenas, (n, 17).
+    """Compute the states :data:`SCORE_ON_GOALKEEPER` of many arenas, (n, 19).
 
     ``robots`` (n, 2, 6) are attacker and goalkeeper; the rest is as for :func:`shoot_rows`.
     """
-    rows = np.empty((len(robots), 17))
+    rows = np.empty((len(robots), 19))
     for i in range(len(robots)):
         _observe_scoring(robots[i, 0], balls[i], robots[i, 1], goal_x, post_y, rows[i])
     return rows
 
 
 def score_on_goalkeeper_of(frame: Frame, robot: RobotState) -> FloatArray:
-    """Compute the state :data:`SCORE_ON_GOALKEEPER` of one robot in a frame, (17,).
+    """Compute the state :data:`SCORE_ON_GOALKEEPER` of one robot in a frame, (19,).
 
     The goalkeeper is whom the game's state names, else the opponent nearest to the middle of its goal;
     without any it is as if one stood there.
     """
-    field, row = frame.field, np.empty(17)
+    field, row = frame.field, np.empty(19)
     goal_x, half_goal = field.half_length, field.goal_width / 2
     keeper: Row = (goal_x, 0.0, 0.0, 0.0, 0.0, 0.0)
     if frame.opponents:

@@ -64,11 +64,11 @@ class PPOSettings(Settings):
     rollout: int = Field(40, ge=1, le=10_000, description="decisions of each arena between updates")
     batch: int = Field(1280, ge=1, le=1_000_000, description="decisions of a minibatch")
     epochs: int = Field(4, ge=1, le=100, description="times that a rollout is gone through")
-    rate: float = Field(1.2e-3, gt=0, le=1, description="learning rate (Adam), falling to 0 at the last step")
-    entropy: float = Field(0.001, ge=0, le=1, description="weight of the policy's entropy")
+    rate: float = Field(1e-3, gt=0, le=1, description="learning rate (Adam), falling to 0 at the last step")
+    entropy: float = Field(0.002, ge=0, le=1, description="weight of the policy's entropy")
     longest_step: float = Field(0.5, gt=0, le=100, description="longest gradient")
     spread: float = Field(0.6, gt=0, le=3, description="standard deviation of actions at first")
-    threshold_bias: float = Field(-1.5, ge=-10, le=10, description="log-odds of kicks at first")
+    threshold_bias: float = Field(-2.5, ge=-10, le=10, description="log-odds of kicks at first")
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -89,7 +89,7 @@ def turn_and_kick(
 def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTION) -> FloatArray:
     """Get the ball, carry it towards the goal, and kick from near at the corner farther from the goalkeeper.
 
-    It takes (n, 17), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, and answers (n, 4).
+    It takes (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, and answers (n, 4).
     """
     ball, posts = observation[:, 3:5], observation[:, 9:13].reshape(-1, 2, 2)
     keeper = observation[:, 13:15]

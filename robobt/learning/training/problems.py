@@ -63,7 +63,7 @@ def problem_of(environment: TaskSettings, held_out: TaskSettings | None = None) 
         smoothed = (True, False)
     elif isinstance(environment, ScoreOnGoalkeeperSettings):
         # Beside the line of the heading, less counts than along it.
-        scale = (speed, speed, turn, 2.0, 1.5, 3.0, 3.0, 1.0, 1.0, *(4.0, 2.0) * 3, 2.0, 2.0)
+        scale = (speed, speed, turn, 2.0, 1.5, 3.0, 3.0, 1.0, 1.0, *(4.0, 2.0) * 3, 2.0, 2.0, 0.3, 0.2)
         smoothed = (True, True, True, False)
     else:
         raise TypeError(f"{type(environment).__name__} is no environment of a task")

@@ -11,9 +11,9 @@ import pytest
 import torch
 
 from robobt.learning.training import checkpoint
-from robobt.learning.training.problems import split_seed, training_seed
+from robobt.learning.training.problems import problem_of, split_seed, training_seed
 from robobt.learning.training.run_folder import CHECKPOINT, RunFolderError, load_actor, load_run
-from robobt.learning.training.settings import load_settings
+from robobt.learning.training.settings import environment_of, evaluated_on, load_settings
 from robobt.learning.training.train import TrainError, train
 from tests.learning.tiny import SLIDE, Slide, slide_settings
 
@@ -79,7 +79,7 @@ def test_the_task_is_learned(tmp_path):
 
 
 def test_the_task_is_learned_from_rollouts(tmp_path):
-    result = train(slide_settings(**PPO, steps=9600), tmp_path / "run", problem=SLIDE)
+    result = train(slide_settings(**PPO, steps=4800), tmp_path / "run", problem=SLIDE)
     assert result.figures["held_out"]["success"] >= 0.9
     assert result.settings.algorithm == "ppo"
 
@@ -322,6 +322,43 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
     assert again.settings == result.settings
 
 
+def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):
+    changes = {
+        "steps": 512,
+        "ppo.hidden": [8],
+        "ppo.rollout": 8,
+        "ppo.batch": 32,
+        "collection.environments": 8,
+        "evaluation.every": 256,
+        "evaluation.starts": 8,
+        "evaluation.held_out": 8,
+        "rebuild_every": 128,
+        "checkpoint_seconds": 0.0,
+        "tensorboard": False,
+    }
+    settings = load_settings("score_on_goalkeeper", changes=changes)
+    whole = train(settings, tmp_path / "whole")
+    problem = problem_of(environment_of(settings), evaluated_on(settings))
+
+    def dying(n):
+        task, left = problem.make(n), iter(range(45))
+        step = task.step
+
+        def until_killed(actions):
+            if next(left, None) is None:
+                raise KilledError
+            return step(actions)
+
+        task.step = until_killed
+        return task
+
+    with pytest.raises(KilledError):
+        train(settings, tmp_path / "broken", problem=replace(problem, make=dying))
+    broken = train(settings, tmp_path / "broken", resume=True)
+    assert broken.figures["weights"] == whole.figures["weights"]
+    assert broken.figures["held_out"] == whole.figures["held_out"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("task", "steps"), [("go_to_ball", 76_800), ("shoot", 345_600)])
 def test_nine_of_ten_succeed_after_a_short_training(tmp_path, task, steps):
@@ -331,7 +368,7 @@ def test_nine_of_ten_succeed_after_a_short_training(tmp_path, task, steps):
 
 REAL = """
 import sys
-from robobt.learning.training.settings import load_settings
+from robobt.learning.training.settings import environment_of, evaluated_on, load_settings
 from robobt.learning.training.train import train
 changes = {"steps": 38400, "collection.random_steps": 2560, "evaluation.every": 9600, "evaluation.starts": 20,
            "evaluation.held_out": 20, "rebuild_every": 640, "checkpoint_seconds": 0.0, "tensorboard": False}

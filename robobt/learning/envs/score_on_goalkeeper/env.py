@@ -9,6 +9,7 @@ from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, see
 from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
+from robobt.world.scoring import FAR_OFF
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -27,7 +28,24 @@ def _space(settings: ScoreOnGoalkeeperSettings) -> Box[np.float32]:
     keeper = seen_speed(settings, settings.simulator.limits.max_speed + BUMP, noise.robot_position)
     turn = seen_turn(settings, turned)
     posts = [most + settings.field.goal_width] * 4
-    high = [own, own, turn, most, most, ball, ball, 1.0, 1.0, *posts, most, most, keeper, keeper]
+    high = [
+        own,
+        own,
+        turn,
+        most,
+        most,
+        ball,
+        ball,
+        1.0,
+        1.0,
+        *posts,
+        most,
+        most,
+        keeper,
+        keeper,
+        FAR_OFF,
+        FAR_OFF / 2,
+    ]
     return bounded(high, distances=())
 
 
@@ -56,6 +74,8 @@ class ScoreOnGoalkeeperEnv(SingleEnv):
     | 11, 12 | that of the right one | m |
     | 13, 14 | position of the goalkeeper | m |
     | 15, 16 | its velocity | m/s |
+    | 17 | where a kick would cross the goal line, from its middle, at most 1 m either way | m |
+    | 18 | how far to the left of that shot the goalkeeper is, at most 0.5 m either way | m |
 
     **Action**, float32, :data:`robobt.models.actions.SCORE_ACTION`:
 
@@ -77,12 +97,12 @@ class ScoreOnGoalkeeperEnv(SingleEnv):
     | term | value |
     | --- | --- |
     | goal | 5 on a goal |
-    | lost | -0.3 where the episode ends without one |
+    | lost | -0.5 where the episode ends without one |
     | time | -0.005 |
-    | aimed | 0.5 on a kick between the posts |
-    | unreached | 1.5 on such a kick, 0.15 m or more farther beside the goalkeeper than it gets at 4 m/s^2 in the time; 0 as far inside |
-    | miss | -0.1 on a kick that will not go between the posts |
-    | approach, advance, facing | what the state is worth more than the one before, but for a shot on its way: -0.5 for each metre from robot to ball, -0.3 for each from ball to goal, 0.5 (1 + cos) of the heading to the goal with the ball in the mouth |
+    | aimed | 0.1 on a kick between the posts |
+    | unreached | up to 2 on such a kick: a quarter where it just passes out of the goalkeeper's reach, diving at 6 m/s^2, all of it 0.23 m farther off, nothing 0.08 m nearer |
+    | miss | -0.2 on a kick that will not go between the posts |
+    | approach, advance, facing | what the state is worth more than the one before, but for a shot on its way: -0.5 for each metre from robot to ball, -0.6 for each from robot to goal down to 1.5 m, 0.5 (1 + cos) of the heading to the goal with the ball in the mouth |
 
     **Start**: the attacker in the attacked half, up to 0.4 m before the defence area, more often
     near the goal and turned towards it; in six of ten episodes with the ball in its mouth, else the ball

@@ -18,6 +18,8 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 _SLOW = 1.0
 """A shot that is slower than this is over [m/s]."""
 
+_NEAR = 1.5
+"""From here on it does not pay to get nearer to the goal [m]."""
 _SURE = 0.3
 """Between a shot that is surely reached and one that surely is not [m]."""
 
@@ -26,20 +28,25 @@ class ScoreReward(Settings):
     """Weights of the reward's terms."""
 
     goal: float = Field(5.0, ge=0, le=1e3, description="on a goal")
-    lost: float = Field(0.3, ge=0, le=1e3, description="taken off where the episode ends without one")
+    lost: float = Field(0.5, ge=0, le=1e3, description="taken off where the episode ends without one")
     time: float = Field(0.005, ge=0, le=10, description="taken off every tick")
-    aimed: float = Field(0.5, ge=0, le=100, description="on a kick that will go between the posts")
+    aimed: float = Field(0.1, ge=0, le=100, description="on a kick that will go between the posts")
     unreached: float = Field(
-        1.5, ge=0, le=100, description="on such a kick, times how far it passes out of the goalkeeper's reach"
+        2.0, ge=0, le=100, description="on such a kick, times how far it passes out of the goalkeeper's reach"
     )
-    miss: float = Field(0.1, ge=0, le=100, description="taken off a kick that will not go between the posts")
+    miss: float = Field(0.2, ge=0, le=100, description="taken off a kick that will not go between the posts")
     approach: float = Field(0.5, ge=0, le=10, description="for each metre nearer to the ball")
-    advance: float = Field(0.3, ge=0, le=10, description="for each metre that the ball is nearer to the goal")
+    advance: float = Field(
+        0.6, ge=0, le=10, description="for each metre that the robot gets nearer to the goal"
+    )
     facing: float = Field(
         0.5, ge=0, le=10, description="for a ball in the mouth, times the cosine of the heading to the goal"
     )
+    doubt: float = Field(
+        0.25, ge=0, le=1, description="what a kick that is just reached, or just not, counts"
+    )
     reach: float = Field(
-        4.0, gt=0, le=50, description="acceleration with which the goalkeeper is thought to dive [m/s^2]"
+        6.0, gt=0, le=50, description="acceleration with which the goalkeeper is thought to dive [m/s^2]"
     )
 
 
@@ -81,7 +88,8 @@ def reward(
     elif held or hypot(ball[2], ball[3]) < _SLOW:
         progress.kick_rewarded = 0.0
     potential = -weights.approach * hypot(ball[0] - robot[0], ball[1] - robot[1])
-    potential -= weights.advance * hypot(goal_x - ball[0], ball[1])
+    # The robot's way, not the ball's: a ball that is kicked at nothing gets nearer to the goal too.
+    potential -= weights.advance * max(hypot(goal_x - robot[0], robot[1]), _NEAR)
     if held:
         potential += weights.facing * (1.0 + cos(atan2(-robot[1], goal_x - robot[0]) - robot[2]))
     if progress.kick_rewarded > 0.0:
@@ -111,6 +119,6 @@ def kicked(weights: ScoreReward, goal_x: float, post_y: float, keeper: FloatArra
     lacking = beside - ROBOT_RADIUS - BALL_RADIUS
     time = max(ahead, 0.1) / fast
     beyond = lacking - 0.5 * weights.reach * time * time
-    hard = min(max(0.5 + beyond / _SURE, 0.0), 1.0)
+    hard = min(max(weights.doubt + beyond / _SURE, 0.0), 1.0)
     worth: float = weights.aimed + weights.unreached * hard
     return worth
