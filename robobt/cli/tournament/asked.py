@@ -21,6 +21,9 @@ ENTRANT = "ENTRANT"
 EXITS = ("better", "not better", "undecided")
 """What a sequential test says, by the exit code."""
 
+ALPHA = BETA = 0.05
+"""How often a sequential test may err unless it is told otherwise."""
+
 Alpha = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")]
 
 Beta = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")]

@@ -29,6 +29,8 @@ from robobt.cli.common import (
 from robobt.cli.compare import Set, parse_play
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
+    ALPHA,
+    BETA,
     ENTRANT,
     EXITS,
     Alpha,
@@ -95,8 +97,8 @@ def sweep(
             metavar="ELO0 ELO1", help="What the best is tested for, on other seeds; as of robobt tournament."
         ),
     ] = (0.0, 30.0),
-    alpha: Alpha = 0.05,
-    beta: Beta = 0.05,
+    alpha: Alpha = ALPHA,
+    beta: Beta = BETA,
     confirm_rounds: Annotated[
         int,
         typer.Option(

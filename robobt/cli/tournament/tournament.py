@@ -29,6 +29,8 @@ from robobt.cli.common import (
 from robobt.cli.compare import Set
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
+    ALPHA,
+    BETA,
     ENTRANT,
     EXITS,
     Alpha,
@@ -97,8 +99,8 @@ def tournament(
             "ELO0 points or less, better by ELO1 or more.",
         ),
     ] = None,
-    alpha: Alpha = 0.05,
-    beta: Beta = 0.05,
+    alpha: Alpha = ALPHA,
+    beta: Beta = BETA,
     out: OutOption = None,
     html: Annotated[
         Path | None, typer.Option("--html", help="Write the report, one page, to this file.")
@@ -149,6 +151,8 @@ def tournament(
 
     import_files(imports)
     asked = None if sprt is None else _asked(entrants, against, sprt, alpha, beta)
+    if asked is None and (alpha, beta) != (ALPHA, BETA):
+        raise typer.BadParameter("are for --sprt", param_hint="--alpha, --beta")
     if record is not None and out is None:
         raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
     if html is not None and out is not None and html.resolve() == out.resolve():
@@ -168,6 +172,8 @@ def tournament(
         referees,
         speed=speed,
     )
+    if speed != 1.0 and not any(team.program for team in teams):
+        raise typer.BadParameter("is for matches with programs, and none takes part", param_hint="--speed")
     test = None if asked is None else RunningTest(asked, *plan.pairings[0])
     recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
     count = len(plan.fixtures())

@@ -126,6 +126,8 @@ def test_a_report_that_cannot_be_written_costs_no_figures(
         (("take_shot", "attack_nn", "--set", "ends.time=3"), "ends.time: there is no such field"),
         (("take_shot", "attack_nn", "--record", "all"), "needs --out"),
         (("take_shot", "attack_nn", "--referee", "none"), "must be own or official"),
+        (("take_shot", "attack_nn", "--alpha", "0.1"), "--alpha, --beta: are for --sprt"),
+        (("take_shot", "attack_nn", "--speed", "2"), "--speed: is for matches with programs"),
         (("take_shot", "attack_nn", "--sprt", "0", "30"), "needs one entrant, and --against"),
         (("take_shot", "--against", "attack_nn", "--sprt", "30", "0"), "elo0 must be below elo1"),
         (("take_shot", "--against", "attack_nn", "--sprt", "0", "inf"), "both within ±1000, not 0 and inf"),
