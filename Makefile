@@ -6,13 +6,14 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+PLAYING := .venv/.playing
 
 # Without bytecode, every process that a test starts compiles robobt anew.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: match test test-fast install lint clean
 
-match: $(INSTALLED)
+match: $(PLAYING)
 	@mkdir -p out
 	$(BIN)/robobt match striker_vs_goalie --trials 20 --replay out/match.html
 	@echo "Open out/match.html in a browser to watch the first trial."
@@ -37,6 +38,14 @@ $(INSTALLED): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/le
 	@echo "Setting up .venv; the first time takes a few minutes."
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch $@
+
+# What playing and watching need, and no more; an environment with everything has that too.
+$(PLAYING): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/league/wire/proto/*.proto)
+	@test -n "$(PYTHON)" || { echo "robobt needs Python 3.11, 3.12 or 3.13: install one, or name it with make PYTHON=..."; exit 1; }
+	@test -e .venv || $(PYTHON) -m venv .venv
+	@test -e $(INSTALLED) || { echo "Setting up .venv; the first time takes a minute or two."; \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[record]'; }
 	@touch $@
 
 clean:

@@ -23,6 +23,7 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from robobt.config.errors import ConfigError, RobobtError, unknown_name
+from robobt.config.extras import missing_extra
 from robobt.signals import Terminated, at_the_latest_after, ending
 
 if TYPE_CHECKING:
@@ -139,7 +140,8 @@ def one_line_errors(command: Callable[_P, None]) -> Callable[_P, None]:
         except Exception as error:
             if log.isEnabledFor(logging.DEBUG):
                 raise
-            errors.print(f"[red]robobt:[/red] {escape(_error_text(error))}", soft_wrap=True)
+            told = _error_text(missing_extra(error) or error)
+            errors.print(f"[red]robobt:[/red] {escape(told)}", soft_wrap=True)
             raise typer.Exit(1) from error
 
     return guarded

@@ -6,7 +6,11 @@ and so on, for ``gymnasium.make`` and, with
 ``vectorization_mode="vector_entry_point"``, for ``gymnasium.make_vec``.
 """
 
-import gymnasium
+from robobt.config.extras import need
+
+need("learn", "gymnasium", "scipy", "pyarrow", "matplotlib")
+
+import gymnasium  # noqa: E402
 
 _ROOMS = {
     "GoToBall": "go_to_ball",

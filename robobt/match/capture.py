@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robobt.match.ends import Outcome
 from robobt.match.players import Player
-from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
+from robobt.match.recording import RecordedRobot, RecordingHeader
 from robobt.match.recording.capture import Capture
 from robobt.match.scenario.scenario import Scenario
 from robobt.signals import uninterrupted
@@ -17,6 +18,9 @@ from robobt.world.game import Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.protocol import ReportedEvent, World
 from robobt.world.state import Frame, RobotId
+
+if TYPE_CHECKING:
+    from robobt.match.recording import Recorder
 
 _ENDING = ".robobt.arrows"
 
@@ -139,6 +143,8 @@ class MatchCapture:
             if self._parts > 1:
                 path = path.with_name(f"{path.name.removesuffix(_ENDING)}-{self._parts}{_ENDING}")
             with uninterrupted:
+                from robobt.match.recording import Recorder
+
                 self._recorder = Recorder(path, capture, layers=self._layers)
         return capture
 

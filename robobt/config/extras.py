@@ -1,0 +1,60 @@
+"""Parts of robobt that need packages which a light installation leaves out."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from robobt.config.errors import RobobtError
+
+EXTRAS = {
+    "gymnasium": "learn",
+    "tensorboard": "learn",
+    "PIL": "learn",
+    "google": "league",
+    "matplotlib": "plots",
+    "onnx": "onnx",
+    "onnxruntime": "onnx",
+    "optuna": "sweep",
+    "pyarrow": "record",
+    "ray": "ray",
+    "scipy": "shots",
+    "sklearn": "shots",
+    "websockets": "live",
+}
+"""By the name under which a package is imported, the extra that brings it."""
+
+_DISTRIBUTIONS = {"google": "protobuf", "PIL": "pillow", "sklearn": "scikit-learn"}
+
+
+class MissingExtraError(RobobtError, ImportError):
+    """Something needs an extra that is not installed; the message says how to install it."""
+
+    def __init__(self, package: str, extra: str) -> None:
+        named = _DISTRIBUTIONS.get(package.partition(".")[0], package)
+        super().__init__(f'this needs {named}, which is not installed: pip install "robobt[{extra}]"')
+
+
+def need(extra: str, *packages: str) -> None:
+    """Check that an extra's packages are there, by the names under which they are imported.
+
+    Raises:
+        MissingExtraError: one is not.
+    """
+    for package in packages:
+        if not _is_there(package):
+            raise MissingExtraError(package, extra)
+
+
+def _is_there(package: str) -> bool:
+    try:
+        return find_spec(package) is not None
+    except (ModuleNotFoundError, ValueError):
+        return False
+
+
+def missing_extra(error: BaseException) -> MissingExtraError | None:
+    """Return the readable error for a failed import of a package that an extra brings, else None."""
+    package = str(getattr(error, "name", "")).partition(".")[0]
+    if not isinstance(error, ModuleNotFoundError) or package not in EXTRAS:
+        return None
+    return MissingExtraError(package, EXTRAS[package])
