@@ -44,10 +44,14 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         raise AddressError(address, f"a world of the league is {SCHEME}SIMULATOR")
     try:
         parts = urlsplit(address)
-        given = dict(parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query)))
+        named = parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query))
     except ValueError as error:
         raise AddressError(address, message_of(error)) from error
-    for name in given:
+    given: dict[str, str] = {}
+    for name, value in named:
+        if name in given:
+            raise AddressError(address, "is given twice", name)
+        given[name] = value
         if name not in _KNOWN:
             raise AddressError(address, f"there is no option {name!r}; there are {', '.join(_KNOWN)}")
     physics = given.pop("physics", None)

@@ -29,6 +29,7 @@ def test_the_simulator_is_a_world_by_its_name() -> None:
         ("league://grsim?interface=lo", "interface: 'lo' is not an IPv4 address"),
         ("league://grsim?physics=moon", "no preset is called 'moon'"),
         ("league://grsim?speed=nan", "speed: input should be a finite number"),
+        ("league://grsim?place=false&place=true", "place: is given twice"),
         ("league://grsim?teams=red", "teams: is blue, yellow or both, not 'red'"),
     ],
 )

@@ -1,7 +1,7 @@
 import base64
 import json
 import re
-from dataclasses import replace
+from dataclasses import asdict, replace
 from html.parser import HTMLParser
 from math import inf, nan
 from pathlib import Path
@@ -14,10 +14,12 @@ from robobt.live import replay_html as module
 from robobt.live.replay_html import page_data, replay_html, write_html
 from robobt.match import Match
 from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
+from robobt.match.recording.statistics import recorded_statistics
 from robobt.match.scenario.scenario import load_scenario
 from robobt.skills import SelectShot, Store
 from robobt.tree import Selector, TreeRunner
 from robobt.world import DIVISION_A, RobotId, Team
+from robobt.world.game import OPEN_PLAY
 from robobt.worlds import sim_world
 from tests.match.recording.made_recording import BLUE_1, YELLOW_0, Wait, frame, header, record
 from tests.skills import fixed_world
@@ -314,6 +316,16 @@ def test_the_page_holds_the_passes_that_a_robot_compares(team_match: Recording) 
         scores = [score for _, _, score in passes]
         assert scores == sorted(scores, reverse=True)
         assert all(abs(x) <= 4.5 and abs(y) <= 3.0 for x, y, _ in passes)
+
+
+def test_the_page_holds_what_each_team_did_where_a_referee_watched(team_match: Recording) -> None:
+    figures: Any = page_data(team_match)["figures"]
+    assert set(figures) == {"blue", "yellow"}
+    for name, team in recorded_statistics(team_match).items():
+        assert figures[name] == asdict(team)
+    assert figures["blue"]["distance"] > 1.0
+    free = replace(team_match, games=[(0, OPEN_PLAY)])
+    assert page_data(free)["figures"] == {}
 
 
 def test_the_page_holds_whom_a_team_marks_and_fears(team_match: Recording) -> None:
