@@ -53,6 +53,7 @@ class Hands:
             said=None,
             situation=0,
             driven=None,
+            span=None,
         )
         self._driver: HandDriver | None = None
         self._driven: RobotId | None = None

@@ -53,6 +53,13 @@ class Reset(Settings):
     next: bool = True
 
 
+class Seek(Settings):
+    """Go on from a time of a recording [s]."""
+
+    do: Literal["seek"]
+    time: float = Field(ge=-1e9, le=1e9)
+
+
 class Steer(Settings):
     """Become the viewer that steers."""
 
@@ -198,6 +205,7 @@ Act = (
     | Step
     | Speed
     | Reset
+    | Seek
     | MoveBall
     | MoveRobot
     | TakeOff

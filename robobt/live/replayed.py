@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from queue import Empty
 
-from robobt.live.messages import Act, Pause, Reset, Speed, Step
+from robobt.live.messages import Act, Pause, Reset, Seek, Speed, Step
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordingHeader
@@ -42,12 +42,15 @@ class Replay:
         speed: float = 1.0,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self._server, self._path, self._start = server, Path(path), start
+        self._server, self._path = server, Path(path)
+        self._start = self._first = start
         self._speed, self._paused, self._steps = speed, False, 0
         self._clock = clock
         self._again = self._ended = False
         self._data = read_bytes(self._path)
-        open_stream(self._data, self._path)
+        _, batches = open_stream(self._data, self._path)
+        ends = [(each.column(0)[0].as_py(), each.column(0)[-1].as_py()) for each in batches if len(each)]
+        self._span = [ends[0][0], ends[-1][1]] if ends else None
 
     def end(self) -> None:
         """End it; may be called by any thread."""
@@ -66,7 +69,9 @@ class Replay:
         header, ticks = self._ticks()
         stream = Stream(header)
         self._server.show(stream)
-        self._server.tell(over=None, movable=False, orders=False, plays=[], form=None, driven=None)
+        self._server.tell(
+            over=None, movable=False, orders=False, plays=[], form=None, driven=None, span=self._span
+        )
         self._tell()
         due, before = self._clock(), self._start
         for tick in ticks:
@@ -127,7 +132,9 @@ class Replay:
             case Speed(factor=factor):
                 self._speed = factor
             case Reset():
-                self._again = True
+                self._start, self._again = self._first, True
+            case Seek(time=time):
+                self._start, self._again = time, True
         self._tell()
 
     def _tell(self) -> None:

@@ -8,7 +8,7 @@ from time import perf_counter
 import pytest
 
 from robobt.live.bench import bench_live
-from robobt.live.messages import Act, Pause, Speed
+from robobt.live.messages import Act, Pause, Seek, Speed
 from robobt.live.replayed import Replay
 from robobt.live.server import Server
 from robobt.live.session import Live
@@ -98,6 +98,32 @@ def test_viewers_leave_a_match_of_six_a_side_unharmed() -> None:
     assert figures["memory_mib"] < 300.0
     assert figures["stalled_age_ms"] is not None
     assert figures["stalled_age_ms"] < 2000.0
+
+
+def test_a_recording_is_gone_on_with_from_any_time(
+    server: Server, scenario: Scenario, tmp_path: Path
+) -> None:
+    path = tmp_path / "m.robobt.arrows"
+    with Match(scenario, 3, sim_world, path) as match:
+        while match.tick():
+            pass
+    replay = Replay(server, path, speed=20.0)
+    act(server, Pause(do="pause", on=True))
+    showing = threading.Thread(target=replay.show)
+    showing.start()
+    try:
+        with Client(server.url) as client:
+            client.read(lambda it: it.state.get("paused"))
+            assert client.state["span"] == [0.0, pytest.approx(2.0, abs=0.05)]
+            act(server, Seek(do="seek", time=1.5))
+            act(server, Pause(do="pause", on=False))
+            client.read(lambda it: it.state.get("over"))
+            assert server._stream is not None
+            saved = parse_recording(server._stream.recording(), tmp_path)
+    finally:
+        replay.end()
+        showing.join()
+    assert saved.times[0] == pytest.approx(1.5, abs=0.03)
 
 
 def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenario, tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 /* The page of a match that is being played. */
-import { $, make, put, words } from "./base.js";
+import { $, clock, make, put, words } from "./base.js";
 import { connect, on, send, VERSION } from "./link.js";
 import { showLayers, wanted } from "./layers.js";
 import { append, endTime, forget, frameOf, match, openMatch, startTime, state } from "./match.js";
@@ -17,7 +17,7 @@ let past = null, later = null;
 /* From a tick to its picture: times [ms] of the last ticks, for whoever measures. */
 const measured = { painted: [], frames: 0, matches: 0, delays };
 window.robobt = { measured, match, state };
-let unpainted = [];
+let unpainted = [], layered = 0;
 
 /* ---------------------------------------------------------------- what is said */
 const told = make("div", "told");
@@ -51,6 +51,12 @@ const againButton = control("Again", "Start the scenario anew with the same seed
 const saveButton = make("a", "toggle", "Save recording");
 saveButton.title = "Save what was seen, up to five minutes, as a recording";
 saveButton.href = "recording.robobt.arrows";
+/* Through a recording: the line of time is only of what was shown. */
+const seek = make("label", "seek", "Go to"), seekTo = make("input"), seekAt = make("span");
+seekTo.type = "range"; seekTo.step = "any";
+seekTo.addEventListener("input", () => put(seekAt, clock(Number(seekTo.value))));
+seekTo.addEventListener("change", () => act({ do: "seek", time: Number(seekTo.value) }));
+seek.append(seekTo, seekAt);
 const showHead = () => {
   const chips = [chip(link === "found" ? now.paused ? "paused" : "live" : link, undefined, link !== "found")];
   if (now.over) chips.push(chip("over", words(now.over).toLowerCase()));
@@ -65,6 +71,9 @@ const showState = () => {
   showHead(); showSteering(now); showDriving(now); showLayers(now.layers || [], look);
   nowButton.hidden = state.follow;
   steerButton.setAttribute("aria-pressed", String(now.steers));
+  seek.hidden = !now.span; nextButton.hidden = Boolean(now.span);
+  if (now.span) [seekTo.min, seekTo.max] = now.span.map(String);
+  seekTo.disabled = !now.steers;
   for (const button of [nextButton, againButton]) button.disabled = !now.steers;
   nextButton.setAttribute("aria-pressed", String(Boolean(now.over)));
   showPlaying(state.follow ? !now.paused : state.playing);
@@ -97,6 +106,12 @@ on("now", message => {
   for (const chunk of message.chunks) {
     append(chunk);
     if (later) later.push(chunk);
+  }
+  if (match.layers.size !== layered) {
+    /* What a recording holds is there to be seen. */
+    if (now.span) for (const layer of match.layers) state.layers.add(layer);
+    layered = match.layers.size;
+    showLayers([], look);
   }
   const last = message.chunks[message.chunks.length - 1];
   if (last) unpainted.push({ time: endTime(), at: last.at });
@@ -147,13 +162,13 @@ const beat = time => {
       measured.frames++;
       setTimeout(painted);
     }
-    if (time > refreshed + 250) { refreshed = time; if (listed !== match.frames) { listed = match.frames; refresh(); if (!state.follow && !state.playing) state.show(); } }
+    if (time > refreshed + 250) { refreshed = time; if (listed !== match.frames) { listed = match.frames; refresh(); if (now.span && !seekTo.matches(":active")) { seekTo.value = String(endTime()); put(seekAt, clock(endTime())); } if (!state.follow && !state.playing) state.show(); } }
   }
   requestAnimationFrame(beat);
 };
 
 const group = make("div", "group live");
-group.append(nowButton, steerButton, againButton, nextButton, saveButton);
+group.append(nowButton, steerButton, againButton, nextButton, saveButton, seek);
 document.querySelector(".keys").insertBefore(group, document.querySelector(".hint"));
 document.querySelector(".tools").append(told);
 openMatch({ scenario: "", trial: 0, seed: "", robobt: "", teams: {}, robots: [], field: { length: 9, width: 6, margin: .3, goal_line_margin: .3, goal_width: 1, goal_depth: .18, center_radius: .5, defense_depth: 1, defense_width: 2 } });

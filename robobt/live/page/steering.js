@@ -183,6 +183,7 @@ const showForm = (form, plays) => {
 let saved = 0;
 export const showSteering = now => {
   const { steers, movable, orders } = now;
+  card.hidden = Boolean(now.span);
   put(note, !steers ? "Another viewer steers this match."
     : movable ? "Drag robots and the ball; flick the ball to roll it; shift turns a robot; beyond the wall it is taken off."
       : "Nothing can be dragged here: these are no robots of our simulator.");
