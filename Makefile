@@ -11,7 +11,7 @@ PLAYING := .venv/.playing
 # Without bytecode, every process that a test starts compiles robobt anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: match test test-fast install lint clean
+.PHONY: match test test-fast install lint docs clean
 
 match: $(PLAYING)
 	@mkdir -p out
@@ -30,6 +30,11 @@ lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+
+# The site, in out/site: a broken link fails.
+docs: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	$(BIN)/python -m mkdocs build --strict
 
 install: $(INSTALLED)
 

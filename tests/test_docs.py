@@ -1,102 +1,80 @@
-"""What README and docs say to type, import and follow is there."""
+"""The site has every page of docs, its commands work, and it is built without a warning."""
 
 from __future__ import annotations
 
-import ast
 import re
 import shlex
-from importlib import import_module
+import subprocess
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
-from typer.core import TyperGroup
-from typer.exceptions import TyperException
-from typer.main import get_command
+from typer.testing import CliRunner
 
+import robobt
 from robobt.cli import app
+from robobt.config.yaml import read_yaml
+from robobt.plays import PLAYS
+from tests.registries import temporarily
 
 ROOT = Path(__file__).parent.parent
-PAGES = {
-    str(path.relative_to(ROOT)): path
-    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
-}
-FENCED = re.compile(r"^ *```(\w*)\n(.*?)^ *```", re.DOTALL | re.MULTILINE)
-ANCHOR = re.compile(r"[^\w\- ]")
-ROBOBT = get_command(app)
+INDEX = (ROOT / "docs" / "index.md").read_text()
 
 
-def blocks(page: str, kind: str) -> list[str]:
-    return [block for found, block in FENCED.findall(PAGES[page].read_text()) if found == kind]
+def pages(nav: list[Any]) -> set[str]:
+    found: set[str] = set()
+    for entry in nav:
+        for value in entry.values():
+            found |= pages(value) if isinstance(value, list) else {value}
+    return found
 
 
-def typed(page: str) -> list[str]:
-    """The lines of its shell blocks that run robobt."""
-    lines = "\n".join(blocks(page, "sh")).replace("\\\n", " ").splitlines()
-    return [line.strip() for line in lines if re.match(r" *robobt ", line)]
+def test_every_page_is_in_the_sites_contents() -> None:
+    named = pages(read_yaml(ROOT / "mkdocs.yml")["nav"])
+    written = {path.name for path in (ROOT / "docs").glob("*.md")}
+    assert {page for page in named if not page.startswith("reference/")} == written
 
 
-def named(page: str) -> list[str]:
-    """The commands that its sentences name, often without what they need."""
-    text = FENCED.sub("", PAGES[page].read_text())
-    return [" ".join(span.split()) for span in re.findall(r"`(robobt [^`]+)`", text)]
+def test_the_citation_is_of_this_version() -> None:
+    assert read_yaml(ROOT / "CITATION.cff")["version"] == robobt.__version__
 
 
-def take(words: list[str]) -> None:
-    """Read the words of a command as robobt does, and leave it at that."""
-    command, context = ROBOBT, None
-    while isinstance(command, TyperGroup):
-        context = command.make_context("robobt", words, parent=context)
-        _, found, words = command.resolve_command(context, [*context._protected_args, *context.args])
-        command = found or command
-    command.make_context("robobt", words, parent=context)
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda page: page.stem)
+def test_a_link_leads_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
+        assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
-def options_of(words: list[str]) -> set[str]:
-    """The options of the command that the first words name."""
-    command = ROBOBT
-    for word in words:
-        if isinstance(command, TyperGroup) and not word.startswith("-"):
-            assert word in command.commands, f"there is no command {word!r}"
-            command = command.commands[word]
-    found = [*command.params, *ROBOBT.params]
-    return {"--help"}.union(*[[*option.opts, *option.secondary_opts] for option in found])
+@pytest.mark.integration
+def test_ones_own_play_is_looked_at_and_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```(\w+)\n(.*?)```", INDEX, re.DOTALL)
+    (python,) = [block for kind, block in blocks if kind == "python"]
+    Path("my_play.py").write_text(python)
+    lines = [line for kind, block in blocks if kind == "sh" for line in block.splitlines()]
+    commands = [shlex.split(line)[1:] for line in lines if line.startswith("robobt ")]
+    assert len(commands) == 3
+    with temporarily(PLAYS):
+        for command in commands:
+            done = CliRunner().invoke(app, command)
+            assert done.exit_code == 0, done.output
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_a_command_to_type_is_one_that_robobt_takes(page: str) -> None:
-    for line in typed(page):
-        try:
-            take(shlex.split(line, comments=True)[1:])
-        except TyperException as error:
-            pytest.fail(f"{line}: {error}")
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_a_command_that_a_sentence_names_has_these_options(page: str) -> None:
-    for span in named(page):
-        words = shlex.split(span.removesuffix(" …"))[1:]
-        given = {word.split("=")[0] for word in words if word.startswith("--")}
-        assert given <= options_of(words), span
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_what_its_python_imports_is_there(page: str) -> None:
-    for block in blocks(page, "python"):
-        for node in ast.walk(ast.parse(block)):
-            if isinstance(node, ast.ImportFrom) and str(node.module).startswith("robobt"):
-                module = import_module(str(node.module))
-                for name in node.names:
-                    assert hasattr(module, name.name), f"{node.module} has no {name.name}"
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_its_links_lead_somewhere(page: str) -> None:
-    for target in re.findall(r"\]\(([^)\s]+)\)", FENCED.sub("", PAGES[page].read_text())):
-        if target.startswith(("https://", "http://")):
-            continue
-        name, _, anchor = target.partition("#")
-        path = (PAGES[page].parent / name).resolve() if name else PAGES[page]
-        assert path.exists(), target
-        if anchor:
-            headings = re.findall(r"^#+ (.*)$", FENCED.sub("", path.read_text()), re.MULTILINE)
-            assert anchor in [ANCHOR.sub("", text.lower()).replace(" ", "-") for text in headings], target
+@pytest.mark.slow
+def test_the_site_is_built_without_a_warning_and_asks_no_outside_address(tmp_path: Path) -> None:
+    pytest.importorskip("mkdocs", reason='the site needs pip install "robobt[docs]"')
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    for page in tmp_path.rglob("*.html"):
+        loaded = re.findall(
+            r"<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)=\"?(https?://[^\" >]+)", page.read_text()
+        )
+        assert not [address for address in loaded if "rel=canonical" not in address], page
+    assert (tmp_path / "search" / "search_index.json").stat().st_size > 100_000

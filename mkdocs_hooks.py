@@ -1,0 +1,177 @@
+"""Pages of the site that are made from the package: its commands, files, plays, skills and Python names."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages of the reference."""
+    for name, make in (
+        ("commands", commands),
+        ("files", file_formats),
+        ("plays", plays),
+        ("skills", skills),
+        ("python", python_names),
+    ):
+        files.append(File.generated(config, f"reference/{name}.md", content=make()))
+    return files
+
+
+def commands() -> str:
+    """Write what every command says of itself."""
+    import typer.main
+
+    from robobt.cli import app
+
+    root = typer.main.get_command(app)
+    return "# Commands\n\n" + "\n".join(_command(root, "robobt", 2))
+
+
+def _command(command: Any, path: str, level: int) -> Iterable[str]:
+    if path != "robobt":
+        yield f"{'#' * level} {path}\n\n{_text(inspect.cleandoc(command.help or ''))}\n"
+    options = [one for one in command.params if not getattr(one, "hidden", False) and one.name != "help"]
+    if options:
+        yield "| | |\n| --- | --- |"
+        for option in options:
+            names = ", ".join(option.opts) if option.param_type_name == "option" else option.name
+            yield f"| `{names}` | {_cell(getattr(option, 'help', '') or '')} |"
+        yield ""
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from _command(inner, f"{path} {name}", level + (path != "robobt"))
+
+
+def file_formats() -> str:
+    """Write the fields of every file that a person writes."""
+    from robobt.learning.agents.settings import AgentSettings
+    from robobt.learning.envs.go_to_ball.rewards import GoToBallReward
+    from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
+    from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward
+    from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
+    from robobt.learning.envs.shoot.rewards import ShootReward
+    from robobt.learning.envs.shoot.settings import ShootSettings
+    from robobt.learning.training.settings import TrainSettings
+    from robobt.match.scenario.scenario import Scenario
+    from robobt.models.card import ModelCard
+    from robobt.sim import SimSettings
+    from robobt.tournament.entrants import EntrantFile
+
+    roots = {
+        "Scenario files": Scenario,
+        "The simulator's settings": SimSettings,
+        "Entrants of tournaments": EntrantFile,
+        "Training": TrainSettings,
+        "Agents": AgentSettings,
+        "The environment Go-To-Ball": GoToBallSettings,
+        "Reward terms of Go-To-Ball": GoToBallReward,
+        "The environment Shoot": ShootSettings,
+        "Reward terms of Shoot": ShootReward,
+        "The environment Score on a goalkeeper": ScoreOnGoalkeeperSettings,
+        "Reward terms of Score on a goalkeeper": ScoreReward,
+        "Model cards": ModelCard,
+    }
+    told: set[str] = set()
+    parts = ["# Files\n\nThe fields of the files that one writes, with their units, as they are checked.\n"]
+    for title, model in roots.items():
+        schema = model.model_json_schema(mode="validation")
+        parts.append(f"## {title}\n\n{_text(inspect.getdoc(model) or '')}\n")
+        parts.append(_fields(schema))
+        for name, inner in schema.get("$defs", {}).items():
+            if name not in told and inner.get("properties"):
+                told.add(name)
+                parts.append(f"### {name}\n\n{_text(inner.get('description', ''))}\n\n{_fields(inner)}")
+    return "\n".join(parts)
+
+
+def _fields(schema: dict[str, Any]) -> str:
+    rows = ["| field | type | default | meaning |", "| --- | --- | --- | --- |"]
+    for name, field in schema.get("properties", {}).items():
+        default = "required" if name in schema.get("required", ()) else json.dumps(field.get("default"))
+        default = default if len(default) < 60 else "see there"
+        rows.append(
+            f"| `{name}` | {_type(field)} | `{_cell(default)}` | {_cell(field.get('description', ''))} |"
+        )
+    return "\n".join(rows) + "\n"
+
+
+def _type(field: dict[str, Any]) -> str:
+    if "$ref" in field:
+        return _cell(field["$ref"].rpartition("/")[2])
+    if "enum" in field or "const" in field:
+        return _cell(", ".join(map(str, field.get("enum", [field.get("const")]))))
+    for key in ("anyOf", "oneOf", "allOf"):
+        if key in field:
+            return " or ".join([_type(one) for one in field[key]])
+    if field.get("type") == "array" and isinstance(field.get("items"), dict):
+        return f"list of {_type(field['items'])}"
+    return _cell(str(field.get("type", "any")))
+
+
+def plays() -> str:
+    """Write every play."""
+    from robobt.plays import PLAYS
+
+    return _objects("Plays", [PLAYS[name] for name in PLAYS])
+
+
+def skills() -> str:
+    """Write every skill and condition, with its parameters and what it reads and writes."""
+    from robobt.skills import SKILLS
+    from robobt.tree.parameters import parameters_of
+    from robobt.tree.signatures import meanings_of
+
+    parts = ["# Skills and conditions\n\nWhat leaves of a tree there are: `from robobt.skills import ...`.\n"]
+    for name in SKILLS:
+        skill = SKILLS[name]
+        meanings = meanings_of(skill)
+        parts.append(f"## {name}\n\n{_text(re.split(r'(?m)^Args:', inspect.getdoc(skill) or '')[0])}")
+        own = [one for one in parameters_of(skill) if one.name != "name"]
+        if own:
+            parts.append("| parameter | type | default | meaning |\n| --- | --- | --- | --- |")
+        for one in own:
+            default = "required" if one.required else _cell(str(one.default))
+            meaning = _cell(meanings.get(one.name, ""))
+            parts.append(f"| `{one.name}` | {_cell(one.kind)} | `{default}` | {meaning} |")
+        for verb, entries in (("Reads", skill.reads), ("Writes", skill.writes)):
+            if entries:
+                parts.append(f"\n{verb} {', '.join(f'`{entry}`' for entry in entries)}.")
+        parts.append("")
+    return "\n".join(parts)
+
+
+def python_names() -> str:
+    """Write the names of a first session, and those of trees."""
+    import robobt
+    import robobt.tree
+    import robobt.tree.nodes
+
+    names = [getattr(robobt, name) for name in robobt.__all__]
+    names += [getattr(robobt.tree.nodes, name) for name in dir(robobt.tree.nodes)]
+    names += [getattr(robobt.tree, name) for name in dir(robobt.tree)]
+    own = {id(one): one for one in names if getattr(one, "__module__", "").startswith("robobt.")}
+    return _objects(
+        "Python", [one for one in own.values() if inspect.isclass(one) or inspect.isfunction(one)]
+    )
+
+
+def _objects(title: str, objects: Iterable[Any]) -> str:
+    entries = [f"::: {one.__module__}.{one.__qualname__}\n" for one in objects]
+    return f"# {title}\n\n" + "\n".join(entries)
+
+
+def _text(text: str) -> str:
+    """Return a docstring as Markdown: roles and double backticks become code."""
+    text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text).replace("``", "`")
+    return text.replace("\n    ", "\n")
+
+
+def _cell(text: str) -> str:
+    return " ".join(_text(str(text)).split()).replace("|", "\\|")
