@@ -22,7 +22,8 @@ _CLIENT = """
 import json, sys, time
 from websockets.sync.client import connect
 url, host, rate, rest = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
-with connect(url, origin=f"http://{host}", max_size=None, max_queue=4, compression=None) as socket:
+with connect(url, origin=f"http://{host}", max_size=None, max_queue=4, compression=None,
+             ping_interval=None) as socket:
     socket.recv()
     print("ready", flush=True)
     time.sleep(rest)

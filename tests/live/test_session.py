@@ -98,6 +98,7 @@ def test_viewers_leave_a_match_of_six_a_side_unharmed() -> None:
     assert figures["memory_mib"] < 300.0
     assert figures["stalled_age_ms"] is not None
     assert figures["stalled_age_ms"] < 2000.0
+    assert figures["stalled_skipped"] > 0
 
 
 def test_a_recording_is_gone_on_with_from_any_time(

@@ -34,7 +34,7 @@ class WatchedField:
         self._robots: frozenset[RobotId] = frozenset()
         self._held: dict[str, tuple[MoveBall | MoveRobot, float]] = {}
         self._said = 0
-        server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None)
+        server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None, span=None)
 
     def __call__(self, field: ServedField) -> None:
         """Do what viewers ask for, and show what there is now."""

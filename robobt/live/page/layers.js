@@ -14,8 +14,7 @@ let shown = "";
 /* The layers that skills are to draw. */
 export const wanted = () => [...state.layers].filter(name => match.layers.has(name));
 /* Offer the layers that there are; chosen is called with those of skills whenever one is switched. */
-export const showLayers = (drawn, chosen = () => {}) => {
-  for (const layer of drawn) match.layers.add(layer);
+export const showLayers = (chosen = () => {}) => {
   const names = [...KNOWN, ...[...match.layers].filter(name => !KNOWN.includes(name)).sort()];
   if (shown === names.join("\n")) return;
   shown = names.join("\n");

@@ -17,7 +17,7 @@ let past = null, later = null;
 /* From a tick to its picture: times [ms] of the last ticks, for whoever measures. */
 const measured = { painted: [], frames: 0, matches: 0, delays };
 window.robobt = { measured, match, state };
-let unpainted = [], layered = 0;
+let unpainted = [];
 
 /* ---------------------------------------------------------------- what is said */
 const told = make("div", "told");
@@ -38,6 +38,15 @@ addEventListener("picked", event => choose(event.detail));
 
 /* ---------------------------------------------------------------- controls */
 const look = layers => send({ do: "layers", shown: layers });
+/* What a recording holds is there to be seen, until it is switched off. */
+let layered = 0;
+const offerLayers = () => {
+  if (!("span" in now)) return;
+  for (const layer of now.layers || []) match.layers.add(layer);
+  if (now.span && match.layers.size !== layered) for (const layer of match.layers) state.layers.add(layer);
+  layered = match.layers.size;
+  showLayers(look);
+};
 const control = (name, title, action) => {
   const button = make("button", "toggle", name);
   button.title = title;
@@ -68,7 +77,7 @@ count.setAttribute("role", "status");
 document.querySelector(".stage").append(count);
 const showState = () => {
   put(count, now.countdown || ""); count.classList.toggle("words", (now.countdown || "").length > 2);
-  showHead(); showSteering(now); showDriving(now); showLayers(now.layers || [], look);
+  showHead(); showSteering(now); showDriving(now); offerLayers();
   nowButton.hidden = state.follow;
   steerButton.setAttribute("aria-pressed", String(now.steers));
   seek.hidden = !now.span; nextButton.hidden = Boolean(now.span);
@@ -107,12 +116,7 @@ on("now", message => {
     append(chunk);
     if (later) later.push(chunk);
   }
-  if (match.layers.size !== layered) {
-    /* What a recording holds is there to be seen. */
-    if (now.span) for (const layer of match.layers) state.layers.add(layer);
-    layered = match.layers.size;
-    showLayers([], look);
-  }
+  if (match.layers.size !== layered) offerLayers();
   const last = message.chunks[message.chunks.length - 1];
   if (last) unpainted.push({ time: endTime(), at: last.at });
 });

@@ -10,6 +10,6 @@ openMatch(recording); append(recording);
 buildHead(match.outcome === null ? [chip("cut off before its end", undefined, true)] : outcomeChips(match.outcome));
 buildFigures(recording.figures);
 for (const layer of match.layers) state.layers.add(layer);
-showLayers([]);
+showLayers();
 start();
 window.robobt = { match, state };
