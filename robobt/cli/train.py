@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +23,7 @@ from robobt.cli.common import (
     say,
     table,
 )
+from robobt.cli.live import Host, Open, Port, page_server
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -53,6 +56,15 @@ def train(
     ] = None,
     workers: Workers = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with a run that was cut off.")] = False,
+    live: Annotated[
+        bool,
+        typer.Option(
+            "--live", help="Show each evaluation's policy in the browser; training waits meanwhile."
+        ),
+    ] = False,
+    host: Host = "127.0.0.1",
+    port: Port = 0,
+    open_page: Open = None,
     as_json: Json = False,
 ) -> None:
     """Train a skill, and judge it on starts that training and choosing never saw.
@@ -73,7 +85,15 @@ def train(
     settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
     first = settings.seed if seed is None else seed
-    with _LiveTable(settings.task) as live:
+    if live and (seeds > 1 or workers not in (None, 1)):
+        raise typer.BadParameter("takes one seed and one worker", param_hint="--live")
+    with ExitStack() as stack:
+        problem = None
+        if live:
+            from robobt.learning.training.watched import watched_problem
+
+            problem = partial(watched_problem, stack.enter_context(page_server(host, port, open_page)))
+        standings = stack.enter_context(_LiveTable(settings.task))
         try:
             results = train_seeds(
                 settings,
@@ -81,7 +101,8 @@ def train(
                 folder,
                 workers or min(cores(), seeds),
                 resume,
-                live.show,
+                standings.show,
+                problem,
             )
         except KeyboardInterrupt:
             kept = any(folder.rglob("checkpoint*")) or any(folder.rglob("result.json"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import Work
 from robobt.learning.training.curves import draw_curves
+from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import TrainResult, summary_of, title_of
 from robobt.learning.training.run_folder import CURVES, RESULT, load_run
@@ -26,6 +27,7 @@ def train_seeds(
     workers: int = 1,
     resume: bool = False,
     on_progress: OnProgress | None = None,
+    problem: Callable[[TrainSettings], Problem] | None = None,
 ) -> list[TrainResult]:
     """Train with every seed, each in a folder ``seed_N`` of its own.
 
@@ -39,6 +41,7 @@ def train_seeds(
         workers: processes, of one thread each; 1 is this process itself.
         resume: go on with runs that were interrupted, and keep those that have ended.
         on_progress: called now and then, in this process.
+        problem: makes a run's problem of its settings in place of the usual one; with one worker.
 
     Raises:
         TrainError: a run failed; the message is its own.
@@ -48,7 +51,7 @@ def train_seeds(
     if not seeds or workers < 1:
         raise ValueError(f"needs seeds and workers, not {len(seeds)} and {workers}")
     out = Path(out)
-    training = _Training(settings, out, resume)
+    training = _Training(settings, out, resume, problem)
     work = Work(training, "seed", TrainError, passed=(RobobtError, OSError))
     for _ in run_tasks(work, seeds, min(workers, len(seeds)), on_report=on_progress):
         pass
@@ -65,10 +68,17 @@ class _Training:
     settings: TrainSettings
     out: Path
     resume: bool
+    problem: Callable[[TrainSettings], Problem] | None
 
     def folder(self, seed: int) -> Path:
         return self.out / f"seed_{seed}"
 
     def __call__(self, seed: int, on_progress: OnProgress) -> None:
         settings = self.settings.model_copy(update={"seed": seed})
-        train(settings, self.folder(seed), resume=self.resume, on_progress=on_progress)
+        train(
+            settings,
+            self.folder(seed),
+            resume=self.resume,
+            on_progress=on_progress,
+            problem=None if self.problem is None else self.problem(settings),
+        )

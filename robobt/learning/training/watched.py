@@ -1,0 +1,118 @@
+"""A policy in the live page, whenever training evaluates it."""
+
+from __future__ import annotations
+
+import time
+from contextlib import suppress
+from dataclasses import replace
+from queue import Empty
+
+import numpy as np
+
+from robobt.learning.envs import ArenaTask, make_task
+from robobt.learning.training.evaluation import Evaluation, Policy
+from robobt.learning.training.problems import Problem, Split, problem_of, split_seed
+from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on
+from robobt.live.messages import Act, Pause, Speed
+from robobt.live.server import Server
+from robobt.live.stream import Stream
+from robobt.match.recording import RecordedRobot, RecordingHeader
+from robobt.match.recording.capture import Capture
+from robobt.signals import check
+from robobt.world.game import Team
+from robobt.world.state import BallState, Frame, RobotState
+
+SHOWN = 5
+"""Starts that are shown of each evaluation."""
+
+_LOOK = 0.05
+"""How often somebody who has paused is looked for [s]."""
+
+
+def watched_problem(server: Server, settings: TrainSettings) -> Problem:
+    """Return the problem of a run, whose evaluations a server's viewers are shown in real time.
+
+    Training waits meanwhile, as long as somebody watches; what it learns is the same.
+    """
+    problem = problem_of(environment_of(settings), evaluated_on(settings))
+    shows = _Shows(server, settings)
+
+    def evaluate(policy: Policy, split: Split, starts: int) -> Evaluation:
+        found = problem.evaluate(policy, split, starts)
+        if server.viewers:
+            shows.play(policy, split, f"{found.success.mean():.0%} of {starts} {split} starts")
+        return found
+
+    return replace(problem, evaluate=evaluate)
+
+
+class _Shows:
+    def __init__(self, server: Server, settings: TrainSettings) -> None:
+        self._server, self._settings = server, settings
+        self._paused, self._speed = False, 1.0
+        server.tell(movable=False, orders=False, plays=[], over=None, span=None)
+        self._tell()
+
+    def play(self, policy: Policy, split: Split, figures: str) -> None:
+        """Play a policy from some starts, at the speed that viewers ask for."""
+        task = make_task(environment_of(self._settings), 1)
+        capture = Capture(_header_of(task, f"{self._settings.task}: {figures}"))
+        self._server.show(Stream(capture))
+        period = task.settings.period * task.settings.decide_every
+        seed, left, ticks, due = split_seed(split), SHOWN, 0, time.perf_counter()
+        observation = task.reset_to(task.sample_starts(seed, SHOWN), seed)
+        while left > 0 and self._server.viewers:
+            check()
+            capture.tick(_frame_of(task, ticks * period, period))
+            observation = task.step(policy(observation)).observation
+            ticks += 1
+            if task.ended is not None and (task.ended.start >= 0).any():
+                left -= 1
+                kind = "success" if bool(task.ended.success[0]) else "failure"
+                capture.event(kind, ticks * period, text=f"after {float(task.ended.time[0]):.2f} s")
+            due = max(due + period / self._speed, time.perf_counter() - period)
+            self._obey()
+            time.sleep(max(0.0, due - time.perf_counter()))
+
+    def _obey(self) -> None:
+        with suppress(Empty):
+            while True:
+                self._do(self._server.inbox.get_nowait()[0])
+        while self._paused and self._server.viewers:
+            check()
+            with suppress(Empty):
+                self._do(self._server.inbox.get(timeout=_LOOK)[0])
+
+    def _do(self, act: Act) -> None:
+        match act:
+            case Pause(on=on):
+                self._paused = on
+            case Speed(factor=factor):
+                self._speed = factor
+        self._tell()
+
+    def _tell(self) -> None:
+        self._server.tell(paused=self._paused, speed=self._speed)
+
+
+_TEAMS = (Team.BLUE, Team.YELLOW)
+"""Of the robots of an arena: the learner's first, then its opponent's."""
+
+
+def _header_of(task: ArenaTask, name: str) -> RecordingHeader:
+    robots = tuple([RecordedRobot(team=team, number=0) for team in _TEAMS[: task.robots]])
+    period = task.settings.period * task.settings.decide_every
+    return RecordingHeader(scenario=name, period=period, field=task.settings.field, robots=robots)
+
+
+def _frame_of(task: ArenaTask, time: float, period: float) -> Frame:
+    arenas = task.arenas
+    robots = [
+        (RobotState(0, x, y, heading, vx, vy, omega, held),)
+        for (x, y, heading, vx, vy, omega), held in zip(
+            arenas.robots[0].tolist(), arenas.contact[0].tolist(), strict=True
+        )
+    ]
+    ball = BallState(*np.asarray(arenas.balls[0]).tolist())
+    opponents = robots[1] if len(robots) > 1 else ()
+    return Frame(time, task.settings.field, ball, robots[0], opponents, period=period)
