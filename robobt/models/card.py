@@ -105,7 +105,7 @@ class ModelCard(Settings):
     observation: ObservationCard
     outputs: tuple[OutputEntry, ...] = Field(min_length=1, max_length=64)
     action: ActionScaling | None = Field(None, description="how a policy's output becomes a command")
-    period: float | None = Field(None, gt=0, le=1, description="control period in training [s]")
+    period: float | None = Field(None, gt=0, le=1, description="time between decisions in training [s]")
     limits: RobotLimits | None = Field(None, description="limits of the robot it was trained on")
     algorithm: str = Field("", max_length=64, description='what it was trained with ("ddpg", "d4pg+td3")')
     environment: dict[str, object] = Field({}, description="settings of the environment, or of the data")

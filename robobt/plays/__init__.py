@@ -4,6 +4,7 @@ Importing this package enters every one of them in :data:`PLAYS`.
 """
 
 from robobt.plays.attack_expected import attack_expected as attack_expected
+from robobt.plays.attack_learned import attack_learned as attack_learned
 from robobt.plays.attack_main import attack_main as attack_main
 from robobt.plays.attack_nn import attack_nn as attack_nn
 from robobt.plays.attack_support import attack_support as attack_support

@@ -14,12 +14,13 @@ from onnx import TensorProto, helper
 from torch import Tensor, nn
 
 from robobt.models import export, policy
-from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION
+from robobt.models.actions import GO_TO_BALL_ACTION, SCORE_ACTION, SHOOT_ACTION
 from robobt.models.card import ModelCard, ObservationCard, OutputEntry, action_outputs
 from robobt.models.export import export_model
 from robobt.models.file import Format, pack_archive, pack_onnx, payload_of, unpack_archive
 from robobt.models.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
+from robobt.world.scoring import SCORE_ON_GOALKEEPER
 
 
 def go_to_ball_card(name: str = "small", **changes: Any) -> ModelCard:
@@ -41,6 +42,16 @@ def shoot_card(name: str = "small_shot", **changes: Any) -> ModelCard:
         "observation": ObservationCard.of(SHOOT),
         "outputs": action_outputs(SHOOT_ACTION),
         "action": SHOOT_ACTION,
+    }
+    return go_to_ball_card(name, **(fields | changes))
+
+
+def score_card(name: str = "small_score", **changes: Any) -> ModelCard:
+    fields: dict[str, Any] = {
+        "skill": "Score",
+        "observation": ObservationCard.of(SCORE_ON_GOALKEEPER),
+        "outputs": action_outputs(SCORE_ACTION),
+        "action": SCORE_ACTION,
     }
     return go_to_ball_card(name, **(fields | changes))
 
@@ -82,6 +93,14 @@ class Aimed(nn.Module):
         turn = torch.clamp(0.3 * torch.atan2(aside, ahead), -0.25, 0.25)
         between = torch.minimum(observation[:, 6:7], -observation[:, 8:9])
         return torch.cat([turn, torch.clamp(20.0 * torch.minimum(between, ahead) - 0.2, -1.0, 1.0)], 1)
+
+
+class Passing(nn.Module):
+    """Drives at the ball, and kicks where the goalkeeper stands to the left of the heading."""
+
+    def forward(self, observation: Tensor) -> Tensor:
+        drive = torch.clamp(observation[:, 3:5], -1.0, 1.0)
+        return torch.cat([drive, 0.0 * drive[:, :1], torch.tanh(5.0 * observation[:, 14:15])], 1)
 
 
 class Faulty(nn.Module):

@@ -81,7 +81,7 @@ def export_run(
         observation=ObservationCard.of(observation),
         outputs=action_outputs(environment.action),
         action=environment.action,
-        period=environment.period,
+        period=environment.period * environment.decide_every,
         limits=environment.robot_limits,
         environment=settings.environment,
         training=_training(result),

@@ -1,0 +1,105 @@
+"""Score attacks as its policy says, with the goalkeeper that there is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robobt.models.file import ModelError
+from robobt.skills import Score
+from robobt.tree import Status
+from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotState
+from robobt.world.game import Team, TeamStatus
+from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
+from tests.models.made_models import Faulty, Passing, go_to_ball_card, score_card, write_model
+from tests.skills.fixed_world import Alone, frame, robot
+
+
+def score(folder: Path) -> Alone:
+    return Alone(Score(policy=str(write_model(folder, Passing(), score_card()))))
+
+
+def test_it_drives_and_kicks_with_the_dribbler_on(tmp_path: Path) -> None:
+    alone, me = score(tmp_path), robot(2.0, 0.0)
+    left, right = robot(4.3, 0.4, number=3), robot(4.3, -0.4, number=3)
+    assert alone.tick(frame(me, ball=(2.1, 0.0), opponents=(left,))) is Status.RUNNING
+    assert alone.command.vx == pytest.approx(0.1 * 3.0, abs=1e-4)
+    assert alone.command.kick_speed == 6.0
+    assert alone.command.dribbler
+    alone.tick(frame(me, ball=(2.1, 0.0), opponents=(right,), time=0.1))
+    assert alone.command.kick_speed == 0.0
+
+
+def test_a_wrong_answer_fails_it_and_stops_the_robot(tmp_path: Path) -> None:
+    model = write_model(tmp_path, Faulty("nan", far=1.0, entry=3, outputs=4), score_card(), probed=False)
+    alone = Alone(Score(policy=str(model)))
+    assert alone.tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
+    assert alone.command == RobotCommand()
+
+
+def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
+    model = write_model(tmp_path, Passing(), score_card(period=0.06))
+    alone, left = Alone(Score(policy=str(model))), robot(4.3, 0.4, number=3)
+    driven = []
+    for tick in range(6):
+        now = frame(robot(), (0.1 + 0.01 * tick, 0.0), opponents=(left,), time=0.03 * tick, period=0.03)
+        alone.tick(now)
+        driven.append(alone.command.vx / 3.0)
+    assert driven == pytest.approx([0.1, 0.1, 0.12, 0.12, 0.14, 0.14], abs=1e-4)
+
+
+def test_without_a_policy_it_fails() -> None:
+    assert Alone(Score()).tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
+
+
+def test_only_a_policy_for_it_will_do(tmp_path: Path) -> None:
+    other = write_model(tmp_path, Faulty("far"), go_to_ball_card())
+    with pytest.raises(ModelError, match="is a model for GoToBall, not for Score"):
+        Score(policy=str(other))
+
+
+def seen(*opponents: RobotState, keeper: int | None = None) -> dict[str, float]:
+    me = RobotState(0, 1.0, 1.0, np.pi / 2, 0.5, 0.0, 1.0)
+    game = GameState(yellow=TeamStatus(keeper=keeper))
+    now = Frame(0.0, DIVISION_B, BallState(2.0, 1.0, 0.0, 3.0), (me,), opponents, Team.BLUE, game=game)
+    names = [name for name, _ in SCORE_ON_GOALKEEPER.entries]
+    return dict(zip(names, score_on_goalkeeper_of(now, me).tolist(), strict=True))
+
+
+def test_it_sees_everything_in_the_robots_frame() -> None:
+    # It looks along y: what is at +x lies to its right.
+    row = seen(RobotState(1, 4.0, 0.0, 0.0, 0.0, 2.0))
+    assert (row["vx"], row["vy"], row["omega"]) == pytest.approx((0.0, -0.5, 1.0))
+    assert (row["ball_x"], row["ball_y"]) == pytest.approx((0.0, -1.0))
+    assert (row["ball_vx"], row["ball_vy"]) == pytest.approx((3.0, 0.0))
+    assert (row["upper_post_x"], row["upper_post_y"]) == pytest.approx((-0.5, -3.5))
+    assert (row["lower_post_x"], row["lower_post_y"]) == pytest.approx((-1.5, -3.5))
+    assert (row["keeper_x"], row["keeper_y"]) == pytest.approx((-1.0, -3.0))
+    assert (row["keeper_vx"], row["keeper_vy"]) == pytest.approx((2.0, 0.0))
+    angle = np.arctan2(-1.0, 3.5) - np.pi / 2
+    assert (row["sin_goal"], row["cos_goal"]) == pytest.approx((np.sin(angle), np.cos(angle)))
+    # It points along the goal line, and the ball moves on across it.
+    assert row["aim"] == 1.0
+    assert row["keeper_aside"] == -0.5
+
+
+def test_it_sees_where_a_kick_would_go_and_by_how_much_it_would_pass_the_goalkeeper() -> None:
+    me, keeper = RobotState(0, 2.5, 0.0, 0.0), RobotState(1, 4.3, 0.3)
+    straight, carried = BallState(2.6, 0.0), BallState(2.6, 0.0, 0.0, 0.6)
+    rows = [
+        score_on_goalkeeper_of(Frame(0.0, DIVISION_B, ball, (me,), (keeper,)), me)
+        for ball in (straight, carried)
+    ]
+    assert rows[0][17:] == pytest.approx((0.0, 0.3))
+    # A tenth of the kick's speed across: a tenth of the way.
+    assert rows[1][17] == pytest.approx(0.19)
+    assert rows[1][18] == pytest.approx((0.3 - 0.17) / np.hypot(1.0, 0.1))
+
+
+def test_the_goalkeeper_is_who_the_game_names_else_who_is_nearest_to_the_goal() -> None:
+    near, far = RobotState(1, 4.0, 0.0), RobotState(2, 1.0, 0.0)
+    assert seen(near, far)["keeper_y"] == seen(far, near)["keeper_y"] == pytest.approx(-3.0)
+    assert seen(near, far, keeper=2)["keeper_y"] == pytest.approx(0.0)
+    assert seen()["keeper_y"] == pytest.approx(-3.5)
