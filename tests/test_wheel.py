@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -27,6 +29,43 @@ def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(target)
     return target
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13"])
+def test_it_plays_where_nothing_else_is_installed(version: str, tmp_path: Path) -> None:
+    """Without PyTorch, which a match of hand-written skills does not import."""
+    python = shutil.which(f"python{version}")
+    if python is None or subprocess.run([python, "-c", ""], check=False, capture_output=True).returncode:
+        pytest.skip(f"there is no Python {version} here")
+    build = [sys.executable, "-m", "hatchling", "build", "-d", str(tmp_path)]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
+    (wheel,), (_sdist,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    light = [one for one in needed if not one.startswith("torch")]
+    subprocess.run([python, "-m", "venv", str(tmp_path / "clean")], check=True)
+    clean = tmp_path / "clean" / "bin"
+    pip = [str(clean / "python"), "-m", "pip", "install", "--quiet"]
+    subprocess.run([*pip, "-c", str(ROOT / "constraints.txt"), *light], check=True)
+    subprocess.run([*pip, "--no-deps", str(wheel)], check=True)
+    outside = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+    def robobt(*command: str) -> subprocess.CompletedProcess[str]:
+        called = [str(clean / "robobt"), *command]
+        return subprocess.run(called, cwd=tmp_path, env=outside, capture_output=True, text=True, check=False)
+
+    played = robobt("match", "striker_vs_goalie", "--trials", "1", "--json")
+    assert played.returncode == 0, played.stderr
+    refused = robobt("match", "striker_vs_goalie", "--trials", "1", "--replay", "x.html")
+    assert 'pip install "robobt[record]"' in refused.stderr
+    site = next((tmp_path / "clean" / "lib").glob("python*")) / "site-packages"
+    own = ("pip", "setuptools")
+    size = sum(
+        file.stat().st_size
+        for file in site.rglob("*")
+        if file.is_file() and file.relative_to(site).parts[0] not in own
+    )
+    assert size < 350e6
 
 
 def run(unpacked: Path, where: Path, code: str) -> str:
