@@ -8,7 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from queue import Empty
 
-from robobt.live.messages import Act, Pause, Reset, Seek, Speed, Step
+from robobt.live.controls import Controls
+from robobt.live.messages import Act, Reset, Seek
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordingHeader
@@ -44,7 +45,7 @@ class Replay:
     ) -> None:
         self._server, self._path = server, Path(path)
         self._start = self._first = start
-        self._speed, self._paused, self._steps = speed, False, 0
+        self._controls = Controls(server, speed)
         self._clock = clock
         self._again = self._ended = False
         self._data = read_bytes(self._path)
@@ -72,16 +73,16 @@ class Replay:
         self._server.tell(
             over=None, movable=False, orders=False, plays=[], form=None, driven=None, span=self._span
         )
-        self._tell()
+        self._controls.tell()
         due, before = self._clock(), self._start
         for tick in ticks:
             if tick.times[0] < self._start:
                 # As a tick before all: what holds from then on.
                 stream.remember(tick)
                 continue
-            due += max(0.0, tick.times[0] - before) / self._speed
+            due += max(0.0, tick.times[0] - before) / self._controls.speed
             before = tick.times[0]
-            while self._paused and not self._steps and not (self._again or self._ended):
+            while self._controls.wait and not (self._again or self._ended):
                 self._idle()
                 due = self._clock()
             with suppress(Empty):
@@ -94,7 +95,7 @@ class Replay:
                 time.sleep(ahead)
             elif ahead < -1.0:
                 due = self._clock()
-            self._steps = max(0, self._steps - 1)
+            self._controls.ticked()
             stream.add(tick)
 
     def _ticks(self) -> tuple[RecordingHeader, Iterator[EncodedTicks]]:
@@ -125,20 +126,12 @@ class Replay:
 
     def _do(self, act: Act) -> None:
         match act:
-            case Pause(on=on):
-                self._paused, self._steps = on, 0
-            case Step(ticks=ticks):
-                self._paused, self._steps = True, self._steps + ticks
-            case Speed(factor=factor):
-                self._speed = factor
             case Reset():
                 self._start, self._again = self._first, True
             case Seek(time=time):
                 self._start, self._again = time, True
-        self._tell()
-
-    def _tell(self) -> None:
-        self._server.tell(paused=self._paused, speed=self._speed)
+            case _:
+                self._controls.take(act)
 
 
 def _changes(text: str | None) -> dict[str, object]:

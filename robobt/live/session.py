@@ -8,6 +8,7 @@ from contextlib import suppress
 from math import ceil
 from queue import Empty
 
+from robobt.live.controls import Controls
 from robobt.live.hands import Hands
 from robobt.live.messages import Act, Pause, Reset, Speed, Step
 from robobt.live.server import Server
@@ -54,9 +55,8 @@ class Live:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._server = server
-        self._speed, self._paused = speed, paused
+        self._controls = Controls(server, speed, paused)
         self._clock, self._sleep = clock, sleep
-        self._steps = 0
         self._due = 0.0
         self._reset: Reset | None = None
         self._ended = self._paced = False
@@ -120,7 +120,7 @@ class Live:
         self._hands = hands = Hands(match, self._server, self._clock)
         self._show(match)
         self._reset = None
-        self._tell(over=None, countdown=None)
+        self._controls.tell(over=None, countdown=None)
         self._due = self._clock()
         return hands
 
@@ -129,19 +129,16 @@ class Live:
         assert self._hands is not None
         self._obey(match)
         self._paced = match.world.paced
-        while (
-            self._paused and not self._steps and not self._paced and self._reset is None and not self._ended
-        ):
+        while self._controls.wait and not self._paced and self._reset is None and not self._ended:
             self._idle(match)
         if self._reset is not None or self._ended:
             return False
         self._hands.hold(self._clock())
         self._draw()
         if not match.tick():
-            self._tell(over=match.outcome and match.outcome.value)
+            self._controls.tell(over=match.outcome and match.outcome.value)
             return False
-        if self._steps:
-            self._steps -= 1
+        self._controls.ticked()
         self._pace(match.scenario.period)
         return True
 
@@ -157,13 +154,13 @@ class Live:
             now = self._clock()
             if not self._hands.driving:
                 end = None
-                self._tell(countdown="Open this page and click into it to drive")
+                self._controls.tell(countdown="Open this page and click into it to drive")
                 continue
             end = now + seconds if end is None else end
             if now >= end:
                 break
-            self._tell(countdown=str(ceil(end - now)))
-        self._tell(countdown=None)
+            self._controls.tell(countdown=str(ceil(end - now)))
+        self._controls.tell(countdown=None)
         self._due = self._clock()
 
     def forget_reset(self) -> None:
@@ -185,11 +182,6 @@ class Live:
         """Show a match that is over until a viewer asks for another."""
         while self._reset is None and not self._ended:
             self._idle(match)
-
-    @property
-    def _waits(self) -> bool:
-        """Whether the next tick waits for a viewer."""
-        return self._paused and not self._steps and not self._paced
 
     def _idle(self, match: Match) -> None:
         """Wait a moment for what viewers ask for."""
@@ -229,31 +221,21 @@ class Live:
             )
             return
         match act:
-            case Pause(on=on):
-                self._paused, self._steps = on, 0
-            case Step(ticks=ticks):
-                self._paused, self._steps = True, self._steps + ticks
-            case Speed(factor=factor):
-                self._speed = factor
+            case Pause() | Step() | Speed():
+                self._controls.take(act)
             case Reset():
                 self._reset = act
             case _ if self._hands is not None:
                 self._hands.do(act, self._clock(), arrived)
                 # Another tree may have begun another capture.
                 self._show(match)
-                return
-        self._tell()
-
-    def _tell(self, **more: object) -> None:
-        """Tell the viewers how it goes."""
-        self._server.tell(paused=self._paused, speed=self._speed, **more)
 
     def _pace(self, period: float) -> None:
         """Wait for the time of the next tick."""
         if self._paced:
             # The world waits by itself.
             return
-        self._due += period / self._speed
+        self._due += period / self._controls.speed
         now = self._clock()
         if now < self._due:
             self._sleep(self._due - now)

@@ -13,7 +13,7 @@ from robobt.learning.envs import ArenaTask, make_task
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.problems import Problem, Split, problem_of, split_seed
 from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on
-from robobt.live.messages import Act, Pause, Speed
+from robobt.live.controls import Controls
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordedRobot, RecordingHeader
@@ -49,9 +49,9 @@ def watched_problem(server: Server, settings: TrainSettings) -> Problem:
 class _Shows:
     def __init__(self, server: Server, settings: TrainSettings) -> None:
         self._server, self._settings = server, settings
-        self._paused, self._speed = False, 1.0
+        self._controls = Controls(server)
         server.tell(movable=False, orders=False, plays=[], over=None, span=None)
-        self._tell()
+        self._controls.tell()
 
     def play(self, policy: Policy, split: Split, figures: str) -> None:
         """Play a policy from some starts, at the speed that viewers ask for."""
@@ -70,29 +70,19 @@ class _Shows:
                 left -= 1
                 kind = "success" if bool(task.ended.success[0]) else "failure"
                 capture.event(kind, ticks * period, text=f"after {float(task.ended.time[0]):.2f} s")
-            due = max(due + period / self._speed, time.perf_counter() - period)
+            due = max(due + period / self._controls.speed, time.perf_counter() - period)
             self._obey()
             time.sleep(max(0.0, due - time.perf_counter()))
 
     def _obey(self) -> None:
         with suppress(Empty):
             while True:
-                self._do(self._server.inbox.get_nowait()[0])
-        while self._paused and self._server.viewers:
+                self._controls.take(self._server.inbox.get_nowait()[0])
+        while self._controls.wait and self._server.viewers:
             check()
             with suppress(Empty):
-                self._do(self._server.inbox.get(timeout=_LOOK)[0])
-
-    def _do(self, act: Act) -> None:
-        match act:
-            case Pause(on=on):
-                self._paused = on
-            case Speed(factor=factor):
-                self._speed = factor
-        self._tell()
-
-    def _tell(self) -> None:
-        self._server.tell(paused=self._paused, speed=self._speed)
+                self._controls.take(self._server.inbox.get(timeout=_LOOK)[0])
+        self._controls.ticked()
 
 
 _TEAMS = (Team.BLUE, Team.YELLOW)

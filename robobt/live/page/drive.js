@@ -131,7 +131,7 @@ card.append(keys, help, pads);
 /* What the server says of who is driven; to somebody else's robot this page does nothing. */
 export const showDriving = now => {
   const driven = now.steers ? now.driven || null : null;
-  drive.disabled = !now.steers;
+  drive.disabled = !now.steers; drive.hidden = !(now.plays || []).length;
   drive.setAttribute("aria-pressed", String(Boolean(driven)));
   put(drive, driven ? "Let go" : "Drive");
   for (const each of [frame, kick, most, roll, assist, pads, help]) each.hidden = !driven;

@@ -80,7 +80,7 @@ const showState = () => {
   showHead(); showSteering(now); showDriving(now); offerLayers();
   nowButton.hidden = state.follow;
   steerButton.setAttribute("aria-pressed", String(now.steers));
-  seek.hidden = !now.span; nextButton.hidden = Boolean(now.span);
+  seek.hidden = !now.span; nextButton.hidden = !(now.plays || []).length; againButton.hidden = nextButton.hidden && !now.span;
   if (now.span) [seekTo.min, seekTo.max] = now.span.map(String);
   seekTo.disabled = !now.steers;
   for (const button of [nextButton, againButton]) button.disabled = !now.steers;

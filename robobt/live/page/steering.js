@@ -183,11 +183,12 @@ const showForm = (form, plays) => {
 let saved = 0;
 export const showSteering = now => {
   const { steers, movable, orders } = now;
-  card.hidden = Boolean(now.span);
+  const plays = (now.plays || []).length > 0;
+  card.hidden = !(movable || orders || plays);
   put(note, !steers ? "Another viewer steers this match."
     : movable ? "Drag robots and the ball; flick the ball to roll it; shift turns a robot; beyond the wall it is taken off."
       : "Nothing can be dragged here: these are no robots of our simulator.");
-  for (const each of moving.children) each.disabled = !steers || !movable && /Turn|Take/.test(each.textContent);
+  for (const each of moving.children) each.disabled = !steers || !(/Turn|Take/.test(each.textContent) ? movable : plays);
   referee.hidden = Boolean(now.game_controller);
   for (const each of referee.children) each.disabled = !steers || !orders;
   referee.title = orders ? "" : "Nobody referees this match: it is played freely.";

@@ -1,0 +1,42 @@
+"""What viewers decide about time: pause, single ticks, speed."""
+
+from __future__ import annotations
+
+from robobt.live.messages import Act, Pause, Speed, Step
+from robobt.live.server import Server
+
+
+class Controls:
+    """Keeps what the viewers of a server want, and tells it to them.
+
+    Attributes:
+        speed: times real time.
+    """
+
+    def __init__(self, server: Server, speed: float = 1.0, paused: bool = False) -> None:
+        self._server = server
+        self.speed, self._paused, self._steps = speed, paused, 0
+
+    @property
+    def wait(self) -> bool:
+        """Whether the next tick waits for a viewer."""
+        return self._paused and not self._steps
+
+    def ticked(self) -> None:
+        """Count a tick that was played."""
+        self._steps = max(0, self._steps - 1)
+
+    def take(self, act: Act) -> None:
+        """Do what is asked for, as far as it is about time."""
+        match act:
+            case Pause(on=on):
+                self._paused, self._steps = on, 0
+            case Step(ticks=ticks):
+                self._paused, self._steps = True, self._steps + ticks
+            case Speed(factor=factor):
+                self.speed = factor
+        self.tell()
+
+    def tell(self, **more: object) -> None:
+        """Tell the viewers how it goes."""
+        self._server.tell(paused=self._paused, speed=self.speed, **more)
