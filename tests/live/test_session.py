@@ -120,6 +120,10 @@ def test_a_recording_is_gone_on_with_from_any_time(
             act(server, Pause(do="pause", on=False))
             client.read(lambda it: it.state.get("over"))
             assert server._stream is not None
+            # The end is told at once, and what is on its way is encoded by another thread.
+            wait_for(
+                lambda: server._stream is not None and server._stream.end and not server._stream._encoded
+            )
             saved = parse_recording(server._stream.recording(), tmp_path)
     finally:
         replay.end()
