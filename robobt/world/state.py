@@ -162,6 +162,21 @@ class Frame(Derived):
         own = {RobotId(self.team, robot.id): robot for robot in self.own}
         return own | {RobotId(self.team.other, robot.id): robot for robot in self.opponents}
 
+    def _repr_svg_(self) -> str:
+        """Show itself in a notebook."""
+        from robobt.world.picture import field_svg
+
+        colour = {Team.BLUE: "#2f62d9", Team.YELLOW: "#f2b705"}
+        robots = [
+            (colour[team], robot.id, robot.x, robot.y, robot.heading)
+            for team, robots in ((self.team, self.own), (self.team.other, self.opponents))
+            for robot in robots
+        ]
+        title = f"{self.time:.2f} s, as {self.team.value} sees it"
+        goals = colour[self.team], colour[self.team.other]
+        at = self.ball.x, self.ball.y
+        return field_svg(title, self.field, goals, robots, at, (ROBOT_RADIUS, BALL_RADIUS))
+
     def packed(self) -> bytes:
         """Return all of its numbers but the game's, as little-endian float64.
 

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cache
+from html import escape
 from statistics import fmean, variance
 from typing import TypeVar
 
@@ -81,6 +82,17 @@ class MatchResult:
     trace: str
     wall_time: float = 0.0
     teams: Mapping[str, TeamResult] = field(default_factory=dict)
+
+    def _repr_html_(self) -> str:
+        """Show itself in a notebook."""
+        rows = [
+            ("outcome", self.outcome),
+            ("goals", f"blue {self.blue_score}, yellow {self.yellow_score}"),
+            ("time", f"{self.time:.2f} s, ball in play {self.in_play:.0%} of it"),
+            ("seed, trace", f"{self.seed}, {self.trace}"),
+        ]
+        body = "".join([f"<tr><th>{name}</th><td>{escape(value)}</td></tr>" for name, value in rows])
+        return f"<table><caption>{escape(self.scenario)}, trial {self.trial}</caption>{body}</table>"
 
     def to_json(self) -> dict[str, object]:
         """Return plain data; the keys are the attributes' names."""
