@@ -10,9 +10,7 @@ import robobt
 
 def test_a_frame_is_a_picture_with_every_robot_and_the_ball() -> None:
     match = robobt.Match(robobt.load_scenario("three_v_three"))
-    frame = (
-        match.world.observe()[0] if isinstance(match.world.observe(), tuple) else match.players[0].store.frame
-    )
+    frame = match.players[0].store.frame
     root = ElementTree.fromstring(frame._repr_svg_())
     texts = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
     assert sorted(texts) == sorted(str(robot.id) for robot in (*frame.own, *frame.opponents))
