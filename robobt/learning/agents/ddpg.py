@@ -14,22 +14,22 @@ number, ``discount``, so that n-step returns need no other equation.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from copy import deepcopy
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from robobt.learning.agents.distributional import Atoms
+from robobt.learning.agents.learner import Learner
 from robobt.learning.agents.networks import Actor, Critic
-from robobt.learning.agents.optimiser import Adam, restore_state, state_of
+from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.agents.settings import AgentSettings
 
 
-class DDPG:
+class DDPG(Learner):
     """Actor, critic, their targets and their optimisers.
 
     Args:
@@ -39,13 +39,13 @@ class DDPG:
             threshold, as that of a kick, it may not.
         seed: of the initial weights.
 
-    The targets are the slow networks, of which the target y is made; ``critic_loss`` and ``value`` are sums
-    over the ``updates`` since :meth:`reset_sums`.
+    The targets are the slow networks, of which the target y is made.
     """
 
     def __init__(
         self, settings: AgentSettings, scale: Sequence[float], smoothed: Sequence[bool], seed: int
     ) -> None:
+        super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
         actions, norm = len(smoothed), settings.layer_norm
@@ -64,8 +64,6 @@ class DDPG:
         self._atoms = Atoms(*settings.returns, settings.atoms) if settings.atoms else None
         self._smoothed = torch.tensor(list(smoothed), dtype=torch.float32)
         self._loss_weights = (1.0, settings.one_step_weight)
-        self.updates = 0
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
 
     def update(self, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
         """Learn from a batch.
@@ -157,36 +155,6 @@ class DDPG:
         self.value += value.detach().mean() * self.settings.actor_every
         return squared
 
-    def set_rates(self, share: float) -> None:
-        """Scale both learning rates to ``share`` of those in the settings."""
-        for optimiser in (self._actor_adam, self._critic_adam):
-            optimiser.set_rate(share)
-
-    def reset_sums(self) -> None:
-        """Set :attr:`critic_loss` and :attr:`value` to zero."""
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
-
-    def state(self) -> dict[str, NDArray[np.generic]]:
-        """Return weights, optimisers and counters as arrays by name."""
-        sums = np.array([float(self.critic_loss), float(self.value)])
-        return {
-            "updates": np.array([self.updates]),
-            "sums": sums,
-            **state_of(self._modules(), self._optimisers()),
-        }
-
-    def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Take over another agent's :meth:`state`.
-
-        Raises:
-            KeyError: it is that of an agent with other settings.
-            RuntimeError: the same.
-        """
-        self.updates = int(state["updates"].tolist()[0])
-        loss, value = state["sums"].tolist()
-        self.critic_loss, self.value = torch.tensor(loss), torch.tensor(value)
-        restore_state(state, self._modules(), self._optimisers())
-
     def _modules(self) -> tuple[tuple[str, torch.nn.Module], ...]:
         return (
             ("actor", self.actor),
@@ -194,6 +162,3 @@ class DDPG:
             ("target_actor", self.target_actor),
             ("target_critic", self.target_critic),
         )
-
-    def _optimisers(self) -> tuple[tuple[str, Adam], ...]:
-        return (("actor_adam", self._actor_adam), ("critic_adam", self._critic_adam))

@@ -18,7 +18,7 @@ the actor alone is the network that is evaluated and exported, like DDPG's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.functional import softplus
 
+from robobt.learning.agents.learner import Learner
 from robobt.learning.agents.networks import Actor, mlp
-from robobt.learning.agents.optimiser import Adam, restore_state, state_of
+from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.settings import PPOSettings
 
 Floats = NDArray[np.float64]
@@ -91,7 +92,7 @@ class Value(nn.Module):
         return value.squeeze(-1)
 
 
-class PPO:
+class PPO(Learner):
     """Policy, value and their optimisers.
 
     Args:
@@ -99,13 +100,12 @@ class PPO:
         scale: (observation,) typical size of each entry of the observation.
         smooth: (action,) which entries are normal; the others are thresholds at 0.
         seed: of the initial weights.
-
-    ``critic_loss`` and ``value`` are sums over the ``updates`` since :meth:`reset_sums`.
     """
 
     def __init__(
         self, settings: PPOSettings, scale: Sequence[float], smooth: Sequence[bool], seed: int
     ) -> None:
+        super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
         self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh")
@@ -121,8 +121,6 @@ class PPO:
         weights = [*self.actor.parameters(), *self._spread.parameters()]
         self._actor_adam = Adam(weights, settings.rate, eps=1e-5)
         self._critic_adam = Adam(list(self.critic.parameters()), settings.rate, eps=1e-5)
-        self.updates = 0
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
 
     @torch.no_grad()
     def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
@@ -193,41 +191,8 @@ class PPO:
         entropy = (log_spread + 0.5 + _LOG_ROOT).sum() + tossed.sum(-1)
         return normal.sum(-1) + coins.sum(-1), entropy
 
-    def set_rates(self, share: float) -> None:
-        """Scale both learning rates to ``share`` of those in the settings."""
-        for optimiser in (self._actor_adam, self._critic_adam):
-            optimiser.set_rate(share)
-
-    def reset_sums(self) -> None:
-        """Set :attr:`critic_loss` and :attr:`value` to zero."""
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
-
-    def state(self) -> dict[str, NDArray[np.generic]]:
-        """Return weights, optimisers and counters as arrays by name."""
-        sums = np.array([float(self.critic_loss), float(self.value)])
-        return {
-            "updates": np.array([self.updates]),
-            "sums": sums,
-            **state_of(self._modules(), self._optimisers()),
-        }
-
-    def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Take over another agent's :meth:`state`.
-
-        Raises:
-            KeyError: it is that of an agent with other settings.
-            RuntimeError: the same.
-        """
-        self.updates = int(state["updates"].tolist()[0])
-        loss, value = state["sums"].tolist()
-        self.critic_loss, self.value = torch.tensor(loss), torch.tensor(value)
-        restore_state(state, self._modules(), self._optimisers())
-
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
         return (("actor", self.actor), ("critic", self.critic), ("spread", self._spread))
-
-    def _optimisers(self) -> tuple[tuple[str, Adam], ...]:
-        return (("actor_adam", self._actor_adam), ("critic_adam", self._critic_adam))
 
 
 def orthogonal(body: nn.Sequential, last_gain: float, generator: torch.Generator) -> nn.Linear:
