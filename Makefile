@@ -25,11 +25,13 @@ test: $(INSTALLED)
 test-fast: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not integration"
 
+# Style, types, the order of the rooms, and that each public name says what it takes and returns.
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+	$(BIN)/python -m pytest tests/test_docstrings.py
 
 # The site, in out/site: a broken link fails.
 docs: $(INSTALLED)

@@ -35,7 +35,7 @@ TERMINATE: tuple[int, ...] = tuple(
 
 
 class Terminated(SystemExit):
-    """The process was told to end; uncaught, it gives the exit status that the signal itself would."""
+    """The process was told to end by the signal ``number``; uncaught, it gives that signal's exit status."""
 
     def __init__(self, number: int) -> None:
         super().__init__(_BASE + number)
@@ -99,7 +99,9 @@ def check() -> None:
 
 @contextmanager
 def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[None]:
-    """Let signals end the block, then install the previous handlers again; in other threads do nothing.
+    """Return a context that the signals ``numbers`` end; in other threads than the main one it does nothing.
+
+    The previous handlers are installed again after it.
 
     SIGINT works even where the shell had it ignored, as for a command in the background of a
     script. SIGHUP stays ignored where it is, as ``nohup`` wants it; otherwise what is printed
@@ -146,7 +148,7 @@ def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[N
 
 @contextmanager
 def at_the_latest_after(seconds: float) -> Iterator[None]:
-    """Force the end of the process where a signal has not ended the block within ``seconds`` of it [s].
+    """Return a context that ends the process by force where it still goes on ``seconds`` after a signal [s].
 
     That takes what runs on and on whatever is raised in it, such as a skill with a bare
     ``except`` in an endless loop. What is registered with ``atexit`` is still done.

@@ -26,7 +26,7 @@ class Interval(NamedTuple):
 
 
 def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> Interval:
-    """Compute Wilson's score interval for a proportion.
+    """Compute Wilson's score interval for a proportion of ``successes`` in ``trials``.
 
     Unlike the textbook normal interval it stays inside [0, 1] and keeps its
     coverage when every trial succeeds or none does. No trials at all give (0, 1): nothing is known.
@@ -53,7 +53,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> In
 def clopper_pearson_interval(successes: int, trials: int, confidence: float = 0.95) -> Interval:
     """Compute Clopper and Pearson's interval for a proportion, whose coverage is never below its level.
 
-    Args and errors as for :func:`wilson_interval`.
+    Arguments and errors as for :func:`wilson_interval`.
 
     Source: Clopper and Pearson, "The use of confidence or fiducial limits
     illustrated in the case of the binomial", 1934.
@@ -177,7 +177,7 @@ class McNemar(NamedTuple):
 def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
     """Test whether two classifiers that judged the same trials are right equally often.
 
-    The test is exact: the binomial test on the trials in which they differ.
+    The test is exact: the binomial test on the trials in which they differ, whose counts are returned too.
 
     ``first`` and ``second`` (n,) tell whether each was right on each trial.
 
@@ -251,7 +251,7 @@ def surely_negative(values: ArrayLike, error: float = 0.05) -> int | None:
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """Return p-values corrected for their number, in their order.
+    """Return ``p_values`` corrected for their number, in their order.
 
     Source: Holm, "A simple sequentially rejective multiple test procedure", 1979.
     """
@@ -264,7 +264,14 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
 @dataclass(frozen=True)
 class ReliabilityBin:
-    """Trials with predictions in ``low`` to ``high``: how many, mean prediction, share of successes."""
+    """Trials with predictions in ``low`` to ``high``.
+
+    Attributes:
+        low, high: the bin.
+        trials: how many there are.
+        predicted: their mean prediction.
+        observed: the share of successes.
+    """
 
     low: float
     high: float
@@ -274,7 +281,7 @@ class ReliabilityBin:
 
 
 def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
-    """Compare what was predicted with what came true, in bins of equal width; empty bins are left out.
+    """Compare what was predicted with what came true; return bins of equal width without the empty ones.
 
     ``probabilities`` (n,) were predicted; ``outcomes`` (n,) are 0 or 1.
 

@@ -130,6 +130,9 @@ def play_match(
         record: file to record the match to.
         referee: makes the referee; by default the scenario's own.
 
+    Returns:
+        How it ended, the goals and what was counted.
+
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         OSError: the recording cannot be written.
@@ -152,7 +155,7 @@ def run_trials(
 ) -> Run:
     """Play a scenario many times.
 
-    Arguments and errors are those of :func:`robobt.match.runner.run_trials`, but for the world.
+    Errors are those of :func:`robobt.match.runner.run_trials`.
 
     Args:
         scenario: what is played.
@@ -164,6 +167,9 @@ def run_trials(
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes.
         referee: makes the referee of each trial; by default the scenario's own.
+
+    Returns:
+        The results, and their summary.
     """
     factory = _factory(world)
     return runner.run_trials(scenario, factory, trials, workers, seed, out, record, on_result, referee)

@@ -47,7 +47,7 @@ class FieldError(RobobtError, ValueError):
 
 
 def message_of(error: Exception) -> str:
-    """Return the message of an exception; a KeyError's comes without quotes around it."""
+    """Return the message of the exception ``error``; a KeyError's comes without quotes around it."""
     return str(error.args[0]) if error.args else type(error).__name__
 
 

@@ -27,9 +27,10 @@ class Settings(BaseModel):
 
 
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
-    """Return the field and the message of the first problem, with the number of further ones.
+    """Return the field and the message of the first problem in ``error``, with the number of further ones.
 
-    ``data``, the plain data, is needed to name fields inside unions.
+    ``model`` is what was to be made of the data. ``data``, the plain data, is needed to name fields
+    inside unions.
     """
     problems = error.errors(include_url=False)
     problem = _most_telling(problems)

@@ -115,7 +115,7 @@ class Match:
         )
 
     def play(self) -> MatchResult:
-        """Play to the end."""
+        """Play to the end and return the result."""
         started = perf_counter()
         with self, timing_compilation() as compiling:
             while self.tick():
@@ -127,7 +127,7 @@ class Match:
         return self._captured.get()
 
     def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
-        """Let a robot play another tree from now on; ``play`` is what that is called."""
+        """Let the robot of ``player`` play another tree from now on; ``play`` is what that is called."""
         before = player.runner
         before.stop()
         player.runner = TreeRunner(tree, player.store, before.on_error)
@@ -149,7 +149,7 @@ class Match:
         self._captured.close(None if self.outcome is None else {"outcome": self.outcome.value, **told})
 
     def tick(self) -> bool:
-        """Play one control period; False when the match is over, in which case nobody has acted.
+        """Play one control period; return False when the match is over, in which case nobody has acted.
 
         Raises:
             TreeError: a tree raised, and the scenario's ``on_error`` is "raise"; robot and node are named.
@@ -279,5 +279,5 @@ def play_match(
     trial: int = 0,
     referee: RefereeFactory = own_referee,
 ) -> MatchResult:
-    """Play one match to its end; the arguments are those of :class:`Match`."""
+    """Play one match to its end and return the result; the arguments are as for :class:`Match`."""
     return Match(scenario, seed, world_factory, record, trial, referee).play()

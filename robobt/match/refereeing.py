@@ -32,7 +32,7 @@ For workers it is a function of a module or another object that can be pickled. 
 
 
 def own_referee(scenario: Scenario, field: FieldGeometry) -> Referee | None:
-    """Return the referee that the scenario asks for: robobt's own, or none."""
+    """Return the referee that the scenario asks for on a field: robobt's own, or none."""
     return None if scenario.referee is None else Referee(field, referee_settings(scenario))
 
 

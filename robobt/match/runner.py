@@ -82,6 +82,9 @@ def run_trials(
         layers: what skills draw in these is recorded as well.
         play: plays a match to its end; another than the usual one needs this process, and so one worker.
 
+    Returns:
+        The results, in the order of the trials.
+
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         RunError: a trial raised or its worker died.

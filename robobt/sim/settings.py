@@ -248,7 +248,7 @@ contacts they push the ball away more often than there."""
 
 
 def preset(name: str, **changes: object) -> SimSettings:
-    """Return the preset with top-level settings replaced.
+    """Return the preset ``name`` with top-level settings replaced by ``changes``.
 
     Raises:
         KeyError: no such preset; the message lists those there are.
@@ -270,7 +270,7 @@ def realism_level(name: str) -> RealismSettings:
 
 
 def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:
-    """Build settings from what a scenario file holds.
+    """Build settings from what a scenario file holds under ``simulator``.
 
     A name is a preset. A mapping may name a ``preset`` to start from
     ("default" without one), a ``realism`` level by name, and any setting to

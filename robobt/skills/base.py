@@ -81,6 +81,9 @@ class Skill(Leaf[Store]):
     ) -> None:
         """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.
 
+        The way leads round robots (``avoid_robots``) and the ball (``avoid_ball``), with more room round
+        team-mates (``spare_mates``), and through the own defence area for a ``goalkeeper`` only.
+
         With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball:
         ``slack`` off it at most, and more where the robot itself covers more of the view [rad].
         """
@@ -124,7 +127,7 @@ SkillT = TypeVar("SkillT", bound=Skill)
 
 @dataclass_transform(kw_only_default=True, eq_default=False, field_specifiers=(field,))
 def skill(cls: type[SkillT]) -> type[SkillT]:
-    """Class decorator: enter a skill under its class name.
+    """Class decorator: enter a skill under its class name, and return it.
 
     The fields of the class become parameters of its constructor, by keyword,
     unless it writes a constructor of its own.

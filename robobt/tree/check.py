@@ -32,7 +32,7 @@ class WiringError(RobobtError, ValueError):
 
 
 def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> None:
-    """Check what the nodes say they read from and write to the store.
+    """Check what the nodes below ``root`` say they read from and write to the store.
 
     * What is read or written is an entry of the store, an attribute that its class
       annotates or defines.

@@ -10,7 +10,7 @@ from pkgutil import walk_packages
 def import_all(package: str, path: Iterable[str]) -> None:
     """Import every module below a package in order of their names, so that each registers what it holds.
 
-    A package's own ``__init__`` calls it with its ``__name__`` and ``__path__``.
+    A package's own ``__init__`` calls it with its ``__name__`` and, as ``path``, its ``__path__``.
     """
     for module in sorted(found.name for found in walk_packages(path, f"{package}.")):
         import_module(module)

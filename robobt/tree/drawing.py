@@ -148,7 +148,7 @@ def _text_lines(node: Behaviour, lead: str, below: str, statuses: bool) -> Itera
 
 
 def tree_dot(root: Behaviour, statuses: bool = False) -> str:
-    """Return the tree in the language of Graphviz; ``statuses`` colours the nodes by their last tick."""
+    """Return the tree of ``root`` for Graphviz; ``statuses`` colours the nodes by their last tick."""
     lines = [
         f"digraph {_dot_text(root.name)} {{",
         '  node [fontname="Helvetica", fontsize=11, style="rounded,filled", fillcolor="#ffffff"];',

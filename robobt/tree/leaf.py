@@ -96,11 +96,11 @@ class Leaf(Behaviour, Bound[StoreT]):
         """Begin a run; called before its first tick."""
 
     def on_running(self) -> Status:
-        """Do one tick's work; SUCCESS or FAILURE ends the run."""
+        """Do one tick's work and return the status; SUCCESS or FAILURE ends the run."""
         raise NotImplementedError(f"{type(self).__name__} does not define on_running")
 
     def on_done(self, status: Status) -> None:
-        """End a run that has succeeded or failed."""
+        """End a run that has succeeded or failed, which ``status`` says."""
 
     def on_interrupt(self) -> None:
         """End a run that is stopped from outside."""

@@ -95,7 +95,7 @@ class Registry(Generic[T]):
         return self._problems.get(name)
 
     def source(self, name: str) -> str | None:
-        """Return the distribution whose entry point brought an entry, None for the package's own."""
+        """Return the distribution whose entry point brought ``name``, None for the package's own entries."""
         return self._sources.get(name)
 
     def __getitem__(self, name: str) -> T:

@@ -72,7 +72,7 @@ class TreeRunner:
         self._tick = compile_tree(root)
 
     def tick(self) -> Status:
-        """Tick the tree once; its root's status, INVALID when a node raised.
+        """Tick the tree once and return its root's status, INVALID when a node raised.
 
         Raises:
             TreeError: a node raised, and ``on_error`` is "raise".
@@ -115,7 +115,7 @@ class TreeRunner:
         self._renew()
 
     def mark(self, nodes: Iterable[Behaviour]) -> Marks:
-        """Note what changes in the tree from now on.
+        """Note what changes in the tree from now on, in what is returned.
 
         Of all nodes at least ``nodes`` are noted when they are ticked; the notes are those of the last tick.
         """

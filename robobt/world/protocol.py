@@ -76,18 +76,20 @@ class World(Protocol):
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send one command a robot and let one control period pass.
 
-        A robot without a command stands still.
+        ``commands`` are in each robot's own frame; a robot without one stands still.
         """
 
     def place_ball(self, x: float, y: float) -> None:
-        """Put the ball down at rest (the referee's hand), in world coordinates [m]."""
+        """Put the ball down at rest (the referee's hand) at ``x``, ``y`` in world coordinates [m]."""
 
     def carry_robot(self, robot: RobotId, x: float, y: float) -> None:  # noqa: ARG002
-        """Put a robot down at rest, as its handler does, in world coordinates [m]; else people do it."""
+        """Put a robot down at rest, as its handler does, at ``x``, ``y`` [m, world]; else people do it."""
         return
 
     def put_ball(self, x: float, y: float, vx: float, vy: float) -> None:  # noqa: ARG002
-        """Put the ball somewhere with a velocity, where :attr:`movable`; world coordinates [m, m/s].
+        """Put the ball somewhere with a velocity, where :attr:`movable`.
+
+        It is put at ``x``, ``y`` in world coordinates [m] and rolls with ``vx``, ``vy`` [m/s].
 
         Raises:
             ValueError: it cannot be put there.
@@ -96,6 +98,8 @@ class World(Protocol):
 
     def put_robot(self, robot: RobotId, x: float, y: float, heading: float) -> None:  # noqa: ARG002
         """Put a robot somewhere at rest, where :attr:`movable`; one that was taken is there again.
+
+        It is put at ``x``, ``y`` in world coordinates [m] and looks along ``heading`` [rad].
 
         Raises:
             ValueError: it cannot be put there.
@@ -128,7 +132,7 @@ class World(Protocol):
         return ()
 
     def draw(self, sketch: Sketch) -> None:  # noqa: ARG002
-        """Draw what this world knows besides frames, in world coordinates, where somebody looks at it."""
+        """Draw what this world knows besides frames on ``sketch``, in world coordinates, for viewers."""
         return
 
     @property

@@ -27,9 +27,9 @@ class ArenaTask(ABC):
 
     The learner's robot is the first; the others, if a task has any, do what :meth:`_oppose` decides.
 
-    ``seed`` is that of everything drawn from the first ``reset`` on; None for another each time. Each
-    arena draws with generators of its own: what happens in it follows from the seed and its index, bit
-    for bit, however many arenas there are beside it.
+    ``settings`` are the task's. ``seed`` is that of everything drawn from the first ``reset`` on; None
+    for another each time. Each arena draws with generators of its own: what happens in it follows from
+    the seed and its index, bit for bit, however many arenas there are beside it.
 
     Attributes:
         arenas: the simulator, from the first ``reset`` on.
@@ -62,7 +62,7 @@ class ArenaTask(ABC):
 
     @abstractmethod
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Draw ``count`` starts (count, S), columns :attr:`start_columns`."""
+        """Sample ``count`` starts (count, S), columns :attr:`start_columns`; ``rng`` decides."""
 
     @abstractmethod
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
@@ -91,7 +91,7 @@ class ArenaTask(ABC):
         return [self.settings.robot_limits]
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
-        """Draw ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
+        """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
         return self.sample(np.random.default_rng(seed), count)
 
     def reset(self, seed: int | None = None) -> FloatArray:
@@ -102,7 +102,9 @@ class ArenaTask(ABC):
         return self._begin(self._all)
 
     def reset_to(self, starts: ArrayLike, seed: int | None = None) -> FloatArray:
-        """Start from given starts in a new simulator; arenas that get none, or end later, go on as ever.
+        """Start from given starts in a new simulator and return the (n, O) observations.
+
+        Arenas that get none, or end later, go on as ever.
 
         Args:
             starts: (m, S), columns :attr:`start_columns`, handed out in order, first
@@ -121,7 +123,7 @@ class ArenaTask(ABC):
         return self._begin(self._all)
 
     def restart(self) -> FloatArray:
-        """Start all arenas anew in the simulator there is, faster than :meth:`reset`; (n, O)."""
+        """Start all arenas anew in the simulator there is, faster than :meth:`reset`; return (n, O)."""
         self.ended = None
         return self._begin(self._all)
 
@@ -138,7 +140,10 @@ class ArenaTask(ABC):
         return result
 
     def advance(self, actions: FloatArray) -> StepResult:
-        """Do as :meth:`step`, but leave an episode that has ended as it is, to be started anew by a reset."""
+        """Do and return as :meth:`step`, but leave an episode that has ended: a reset starts it anew.
+
+        ``actions`` (n, A) are in [-1, 1].
+        """
         given = np.ascontiguousarray(actions, dtype=np.float64)
         if given.shape != (self.n, self.action_size):
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")

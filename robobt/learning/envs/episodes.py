@@ -11,7 +11,13 @@ from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 
 
 def straight_line_time(distance: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> FloatArray:
-    """Compute the shortest times from rest over distances [s]: speed up, drive on, do not brake."""
+    """Compute the shortest times from rest [s]: speed up, drive on, do not brake.
+
+    Args:
+        distance: how far [m].
+        speed: top speed [m/s].
+        acceleration: how it speeds up [m/s^2].
+    """
     d = np.maximum(np.asarray(distance, dtype=np.float64), 0.0)
     v, a = np.asarray(speed, dtype=np.float64), np.asarray(acceleration, dtype=np.float64)
     return np.where(d * a * 2.0 <= v * v, np.sqrt(2.0 * d / a), d / v + v / (2.0 * a))

@@ -21,7 +21,8 @@ def run_starts(task: ArenaTask, decide: Decide, starts: ArrayLike, seed: int = 0
     Every start is played to its end, so that short episodes are not counted more
     often than long ones.
 
-    ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's own run is lost.
+    ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's own run is lost. ``decide`` maps
+    observations (n, O) to actions (n, A); ``seed`` is that of noise and randomisation.
     """
     rows = np.atleast_2d(np.array(starts, dtype=np.float64))
     observation = task.reset_to(rows, seed)

@@ -49,9 +49,9 @@ class VectorTask(Protocol):
     def reset(self, seed: int | None = None) -> FloatArray:
         """Start all arenas anew, in a new simulator, and return (n, O) observations.
 
-        A task that is reset with a seed goes on as a new one with that seed
+        A task that is reset with a ``seed`` goes on as a new one with that seed
         would, bit for bit. Without one, its random numbers go on.
         """
 
     def step(self, actions: FloatArray) -> StepResult:
-        """Let one control period pass under (n, A) actions in [-1, 1]."""
+        """Let one control period pass under (n, A) ``actions`` in [-1, 1]; return what came of it."""

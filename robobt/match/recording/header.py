@@ -28,6 +28,7 @@ class RecordingError(RobobtError, ValueError):
 
     Attributes:
         path: the file.
+        problem: what is wrong, in words.
         tick: where in it, from 0; None when the file as a whole is meant.
         field: what is wrong there.
     """
@@ -120,7 +121,7 @@ class Event:
     """Something worth a mark on the timeline.
 
     ``kind`` is "goal", "kick", "save", "out", "error" or any other word; ``text`` says what happened, for
-    people; ``time`` is in seconds.
+    people; ``time`` is in seconds; ``team`` and ``robot`` are whose it is, as far as known.
     """
 
     time: FiniteFloat

@@ -29,7 +29,7 @@ _LONGEST = 1e9
 
 
 def load_recording(path: str | Path) -> Recording:
-    """Read a recording; one that was cut off, up to its last whole batch.
+    """Read the recording in the file ``path``; one that was cut off, up to its last whole batch.
 
     Raises:
         RecordingError: the file cannot be read, is no recording, or a part of it is not what

@@ -118,25 +118,25 @@ class Recording:
         return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags, angle)
 
     def letters_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree, as in :attr:`letters`."""
+        """Return one letter a node of the robot's tree at a tick, as in :attr:`letters`."""
         return _latest(self.letters[self.slot(robot)], tick, "-" * len(self.nodes(robot)))
 
     def statuses_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree (S, F, R, - without), in the order of its header."""
+        """Return one letter a node of the robot's tree at a tick (S, F, R, -), in the order of its header."""
         return self.letters_at(robot, tick).upper()
 
     def ticked_path(self, robot: RobotId, tick: int) -> list[str]:
-        """Return the ids of the nodes that were ticked at this tick and had a status then, parents first."""
+        """Return the ids of a robot's nodes that ran at a tick and had a status then, parents first."""
         letters = self.letters_at(robot, tick)
         return [node.path for node, it in zip(self.nodes(robot), letters, strict=True) if it in "SFR"]
 
     def feedback_at(self, robot: RobotId, tick: int) -> dict[int, str]:
-        """Return the last feedback of nodes of the robot's tree while they had a status, by their place."""
+        """Return the last feedback up to a tick of a robot's nodes that have a status, by their place."""
         feedback = _gathered(self.feedback[self.slot(robot)], tick)
         return {place: text for place, text in feedback.items() if text}
 
     def failures_at(self, robot: RobotId, tick: int) -> dict[str, str]:
-        """Return the nodes that failed at this tick by their ids, each with the reason that it gave."""
+        """Return the robot's nodes that failed at a tick by their ids, each with the reason that it gave."""
         letters, feedback = self.letters_at(robot, tick), self.feedback_at(robot, tick)
         return {
             node.path: feedback.get(place, "")
@@ -145,9 +145,10 @@ class Recording:
         }
 
     def written_at(self, owner: RobotId | Team, tick: int) -> dict[str, JsonValue]:
-        """Return what skills have written into a robot's store, or into what a team shares, by entry.
+        """Return what skills have written until a tick, by entry.
 
-        Places and directions are in the view of that team, its own goal at -x.
+        ``owner`` is a robot, for its store, or a team, for what its robots share. Places and directions
+        are in the view of that team, its own goal at -x.
         """
         if not isinstance(owner, Team):
             self.slot(owner)

@@ -238,6 +238,10 @@ class GoalCount:
 def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
     """Summarise trials of one scenario, in the order of their numbers.
 
+    Args:
+        results: one a trial.
+        seed: the run's, which is told with the figures.
+
     Raises:
         ValueError: there is no trial.
     """

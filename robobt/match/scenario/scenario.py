@@ -165,7 +165,7 @@ class Scenario(Part):
         return self._source or self.name or "scenario"
 
     def error(self, problem: str, field: str = "") -> ScenarioError:
-        """Make an error about this scenario."""
+        """Return an error about this scenario: the ``problem``, and the ``field`` it is in, if any."""
         return ScenarioError(self.source, problem, field)
 
     def with_robot(self, robot: str | RobotId, /, **changes: object) -> Scenario:
@@ -206,7 +206,7 @@ class Scenario(Part):
         return changed
 
     def lasting(self, time_limit: float) -> Scenario:
-        """Return the scenario with another time limit [s]."""
+        """Return the scenario with another ``time_limit`` [s]."""
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
     def without_referee(self) -> Scenario:
@@ -218,7 +218,7 @@ class Scenario(Part):
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}
 
     def place(self, rng: np.random.Generator) -> Placement:
-        """Sample where everything stands in one trial, in world coordinates.
+        """Sample where everything stands in one trial, in world coordinates; ``rng`` decides.
 
         Raises:
             ScenarioError: an object found no free place in a bounded number of tries.
@@ -231,6 +231,9 @@ class Scenario(Part):
 
 def load_scenario(source: str | Path) -> Scenario:
     """Load a scenario from a YAML file or, where there is no such file, a bundled one by its name.
+
+    Args:
+        source: the file, or the name; ``robobt scenarios`` lists those.
 
     Raises:
         ScenarioError: the file cannot be read or is no scenario; it names the field or line.

@@ -79,6 +79,9 @@ def collect_shots(
         workers: number of processes; 1 is this process itself.
         on_shot: called for each shot that is there, those of earlier runs first.
 
+    Returns:
+        How many there are, how many are goals, and whether it was interrupted.
+
     Raises:
         ShotDataError: ``out`` holds something else.
         CollectionError: a trial raised or its worker died.

@@ -23,7 +23,7 @@ _SEPARATOR = ";"
 
 
 def read_shots(path: str | Path) -> pa.Table:
-    """Read the shots of a file into the package's table (:data:`SCHEMA`, SI units).
+    """Read the shots of the file ``path`` into the package's table (:data:`SCHEMA`, SI units).
 
     A ``.parquet`` file and a CSV file with a column ``schema_version`` hold that
     table. Any other CSV file is read as the author's (:mod:`.author_data`):
@@ -50,7 +50,7 @@ def read_shots(path: str | Path) -> pa.Table:
 
 
 def write_shots(table: pa.Table, path: str | Path) -> None:
-    """Write shots to a ``.parquet`` or ``.csv`` file, whole or not at all.
+    """Write shots to ``path``, a ``.parquet`` or ``.csv`` file, whole or not at all.
 
     Raises:
         ValueError: another ending, or a table with other columns than :data:`SCHEMA`.

@@ -16,7 +16,7 @@ _OPPONENT = ("x", "y", "heading", "vx", "vy", "omega")
 
 
 def shot_inputs(table: pa.Table) -> FloatArray:
-    """Return what every predictor takes: the scene of each shot (n, 34), see :data:`SHOT_SCENE`.
+    """Return what every predictor takes: the scene of each shot of ``table`` (n, 34), see :data:`SHOT_SCENE`.
 
     Shots whose field coordinates were not recorded give the entries that the shot
     frame's columns hold, with their one opponent; the others are not-a-number, so
@@ -57,7 +57,7 @@ def asked_inputs(table: pa.Table) -> FloatArray:
 
 
 def goals(table: pa.Table) -> NDArray[np.int64]:
-    """Return which shots scored: (n,) of 1 and 0."""
+    """Return which shots of ``table`` scored: (n,) of 1 and 0."""
     return np.asarray(table.column("success").to_numpy(), dtype=np.int64)
 
 

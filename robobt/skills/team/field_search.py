@@ -41,7 +41,7 @@ class FieldSearch(Skill):
 
     @abstractmethod
     def value(self, grid: PositionGrid) -> GridArray:
-        """Rate each grid point, (X, Y); -inf where nobody may go."""
+        """Return how good each point of ``grid`` is, (X, Y); -inf where nobody may go."""
 
     def on_running(self) -> Status:
         """Look again when it is time to."""

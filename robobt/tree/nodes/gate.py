@@ -59,7 +59,7 @@ class Gate(Decorator):
         self.status = new_status
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
+        """See :meth:`robobt.tree.engine.BringsClosures.closures`."""
         running, invalid = Status.RUNNING, Status.INVALID
         initialise, terminate = own_method(self, "initialise"), own_method(self, "terminate")
         answer, update, child = self.answer, self.update, self.decorated

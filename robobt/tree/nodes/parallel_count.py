@@ -75,7 +75,7 @@ class ParallelCount(Parallel):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
+        """See :meth:`robobt.tree.engine.BringsClosures.closures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []

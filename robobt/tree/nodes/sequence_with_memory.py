@@ -56,7 +56,7 @@ class SequenceWithMemory(StockSequence):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
+        """See :meth:`robobt.tree.engine.BringsClosures.closures`."""
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
         plan: Plan = []

@@ -95,7 +95,7 @@ class Switch(Composite):
         yield self
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """Return closures, see :class:`~robobt.tree.engine.BringsClosures`."""
+        """See :meth:`robobt.tree.engine.BringsClosures.closures`."""
         marks, show = marks_of(visit), shown(self, visit)
         initialise = own_method(self, "initialise")
         children: list[Behaviour] = []
