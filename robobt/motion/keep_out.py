@@ -30,6 +30,9 @@ _WAY_OUT, _FASTEST_OUT = 8.0, 2.0
 _INSIDE = 0.02 - ROBOT_RADIUS
 """A robot whose centre is so far from the area is about wholly inside [m]."""
 
+_LAG = 0.2
+"""A robot that is so much too fast for braking in time leaves its speed along the area as it is [m/s]."""
+
 _CLEAR = ROBOT_RADIUS + BALL_RADIUS + 0.03
 """Wholly inside, a robot gets away from a ball that is nearer to its centre [m]."""
 
@@ -65,6 +68,11 @@ def keep_out(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
     vx, vy = c * order.vx - s * order.vy, s * order.vx + c * order.vy
     lacking = outwards - (nx * vx + ny * vy)
     if lacking > 0.0:
+        lag = outwards - (nx * me.vx + ny * me.vy)
+        if lag > 0.0:
+            # What it takes to speed up along the area lacks for braking before it.
+            along = (nx * (vy - me.vy) - ny * (vx - me.vx)) * min(1.0, lag / _LAG)
+            vx, vy = vx + along * ny, vy - along * nx
         vx, vy = vx + lacking * nx, vy + lacking * ny
         order.vx, order.vy = c * vx + s * vy, c * vy - s * vx
     return order

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from robobt.motion.keep_out import keep_out
@@ -74,6 +74,7 @@ def test_in_a_stop_nothing_is_changed() -> None:
 @given(
     st.floats(-4.4, 4.4), st.floats(-2.9, 2.9), st.floats(0.0, 0.15), st.floats(-3.0, 3.0), st.floats(-3, 3)
 )
+@example(x=-3.0, y=1.0, aside=0.0, vx=-1.0, vy=-3.0)  # braking lacked what speeding up along the area took
 def test_it_never_drives_in_whatever_it_is_told(
     x: float, y: float, aside: float, vx: float, vy: float
 ) -> None:
