@@ -20,6 +20,7 @@ from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
 from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.defence.stay_out import StayOut
+from robobt.skills.plan import Omitted
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance
@@ -42,7 +43,12 @@ SURE = 0.5
 
 @PLAYS.register("team_player")
 def team_player(
-    *, shoot_at: float = 0.55, pass_at: float = 0.35, patience: float = 1.5, chips: bool = True
+    *,
+    shoot_at: float = 0.55,
+    pass_at: float = 0.35,
+    patience: float = 1.5,
+    chips: bool = True,
+    without: Omitted = "nothing",
 ) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
 
@@ -55,6 +61,8 @@ def team_player(
         pass_at: worth for which a pass is played at once, 0 to 1.
         patience: time in which what is demanded of both falls to its floor [s].
         chips: whether passes may fly over opponents.
+        without: a part of the game to do without, the same for every robot of the team, so that a tournament
+            shows what it is worth.
     """
 
     def choose() -> ChooseKick:
@@ -78,28 +86,31 @@ def team_player(
                 when("ours", MayTouchBall(), TakePlace()),
                 when("keep away", KeepDistance(), TakePlace()),
             ),
-            "attack": attack(choose),
+            "attack": attack(choose, without),
         },
         otherwise=TakePlace(),
+        without=without,
     )
-    return StayOut("team player", AvoidCrash("no crash", player))
+    return StayOut("team player", player if without == "avoid_crash" else AvoidCrash("no crash", player))
 
 
-def attack(choose: Callable[[], ChooseKick]) -> Behaviour:
+def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing") -> Behaviour:
     """Get the ball, and shoot, pass or carry it."""
-    return first_of(
-        "attack",
-        when("let go", CarriedFar(limit=0.9), Stop()),
-        KickLoose(),
-        ReceivePass(),
-        SettleBall(),
-        when("kick", choose(), kick()),
-        when(
+    options = {
+        "let_go": when("let go", CarriedFar(limit=0.9), Stop()),
+        "kick_loose": KickLoose(),
+        "receive": ReceivePass(),
+        "settle": SettleBall(),
+        "kick": when("kick", choose(), kick()),
+        "draw": when(
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),
-        when("carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6, keep=0.25)),
-        when("get the ball", GoToBall(), PickUpBall()),
-    )
+        "carry": when(
+            "carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6, keep=0.25)
+        ),
+        "get": when("get the ball", GoToBall(), PickUpBall()),
+    }
+    return first_of("attack", *(option for name, option in options.items() if name != without))
 
 
 def kick() -> KickToTarget:

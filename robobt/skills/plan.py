@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -28,6 +29,16 @@ class Task(StrEnum):
     """Waits where a pass can reach it and is worth something."""
 
 
+Omitted: TypeAlias = Literal[
+    "nothing", "wall", "marks", "short_place", "one_touch", "kick_loose", "draw", "avoid_crash"
+]
+"""What a team can do without, to see what it is worth.
+
+In this order: robots before the own area, marking, the mate beside the ball of a free kick, shots with one
+touch, kicking a held ball loose, drawing the goalkeeper, braking before opponents.
+"""
+
+
 @dataclass(slots=True)
 class Plan:
     """The agreement of one team; made anew every frame out of the last one.
@@ -35,6 +46,7 @@ class Plan:
     Attributes:
         frame: the frame it was made for.
         players: numbers of the field players that take part.
+        without: what the team does without.
         tasks: of every player.
         places: where each of them is to stand that has no other aim [m].
         marks: which opponent each marker marks.
@@ -59,6 +71,7 @@ class Plan:
 
     frame: Frame | None = None
     players: set[int] = field(default_factory=set)
+    without: Omitted = "nothing"
     tasks: dict[int, Task] = field(default_factory=dict)
     places: dict[int, Point] = field(default_factory=dict)
     marks: dict[int, int] = field(default_factory=dict)

@@ -207,13 +207,13 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     free = [robot for robot in players if robot.id not in tasks]
     jobs: list[tuple[Task, Point, int | None]] = []
     if free:
-        walls = wall_size(plan, len(players), len(free))
+        walls = 0 if plan.without == "wall" else wall_size(plan, len(players), len(free))
         jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls))]
-        plan.short = short_place(frame, plan.short)
+        plan.short = None if plan.without == "short_place" else short_place(frame, plan.short)
         if plan.short is not None and len(free) > len(jobs) and not _near(intended, plan.short):
             jobs.append((Task.SUPPORT, plan.short, None))
         left = len(free) - len(jobs)
-        if left and not plan.ours:
+        if left and not plan.ours and plan.without != "marks":
             dangerous = threats(frame, set(plan.marks.values()))
             team.threats = [robot.id for robot in dangerous]
             marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left])

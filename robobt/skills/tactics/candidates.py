@@ -114,6 +114,7 @@ def passes(
                 1.0 if chips else 0.0,
                 SHORTEST if plan.short is None else SHORTEST_RESTART,
                 AREA_GAP if frame.game.in_play else AREA_GAP_RESTART,
+                0.0 if plan.without == "one_touch" else WIDEST,
             )
         ),
         ball_row(frame.ball_model),
@@ -158,7 +159,7 @@ def _rate(
     """
     out = np.zeros((len(points), 4))
     half_length, half_width, half_goal, depth, half_area = size[0], size[1], size[2], size[3], size[4]
-    least, chips, shortest, area_gap = size[5], size[6] > 0.0, size[7], size[8]
+    least, chips, shortest, area_gap, widest = size[5], size[6] > 0.0, size[7], size[8], size[9]
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
@@ -177,7 +178,7 @@ def _rate(
             redirect, chip = kind == 1, kind == 2
             ready = there
             if redirect:
-                if length < SHORTEST_REDIRECT or redirect_angle(ox, oy, x, y, half_length) > WIDEST:
+                if length < SHORTEST_REDIRECT or redirect_angle(ox, oy, x, y, half_length) > widest:
                     continue
                 ready += TURNS
             if chip:

@@ -176,7 +176,7 @@ class ReceivePass(Skill):
         angle = redirect_angle(x - ux, y - uy, x, y, field.half_length)
         first = min(plan.their_times.values(), default=10.0)
         flies = frame.ball.z > _FLIES or abs(frame.ball.vz) > _HOPS
-        if flies or speed < _FAST or time > _SOON or first < time:
+        if plan.without == "one_touch" or flies or speed < _FAST or time > _SOON or first < time:
             self._redirecting = False
             return None
         if angle > self.widest + (0.1 if self._redirecting else 0.0):

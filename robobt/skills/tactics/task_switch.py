@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from math import inf
 
-from robobt.skills.plan import Task
+from py_trees.behaviour import Behaviour
+
+from robobt.skills.plan import Omitted, Task
 from robobt.skills.store import Store
 from robobt.skills.tactics.agree import agree
 from robobt.tree.leaf import Bound
@@ -46,6 +49,7 @@ class TaskSwitch(Switch, Bound[Store]):
     Args:
         cases: a child for each part by its name; one child may serve several parts.
         otherwise: the child for every other part.
+        without: what the team does without, for comparisons.
 
     Raises:
         ValueError: a case does not name a part; the message lists those there are.
@@ -53,12 +57,24 @@ class TaskSwitch(Switch, Bound[Store]):
 
     kind = Part
 
+    def __init__(
+        self,
+        name: str,
+        cases: Mapping[str, Behaviour],
+        *,
+        otherwise: Behaviour | None = None,
+        without: Omitted = "nothing",
+    ) -> None:
+        super().__init__(name, cases, otherwise=otherwise)
+        self.without: Omitted = without
+
     def case(self) -> str:
         """Return the robot's present part."""
         store = self.store
         frame, team, number = store.frame, store.team, store.me.id
         if number not in team.plan.players:
             team.plan.players.add(number)
+            team.plan.without = self.without
             team.attackers[number] = inf
             team.plan.frame = None
         task = agree(frame, team).tasks.get(number, Task.SUPPORT)
