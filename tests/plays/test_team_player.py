@@ -8,11 +8,14 @@ import pytest
 
 from robobt.match import load_scenario
 from robobt.match.loop import Match
-from robobt.skills.plan import Task
+from robobt.plays import team_player
+from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
+from robobt.skills.ball.kick_loose import KickLoose
+from robobt.skills.defence.avoid_crash import AvoidCrash
+from robobt.skills.plan import Omitted, Task
+from robobt.tree import Behaviour
 from robobt.world import Team
 from robobt.worlds import sim_world
-
-pytestmark = pytest.mark.integration
 
 SECONDS = 40.0
 
@@ -37,23 +40,37 @@ class Watched:
                     self.attackers.append(list(team.plan.tasks.values()).count(Task.ATTACK))
 
 
+@pytest.mark.parametrize(
+    ("without", "node"), [("kick_loose", KickLoose), ("draw", DrawGoalkeeper), ("avoid_crash", AvoidCrash)]
+)
+def test_it_can_do_without_a_part(without: Omitted, node: type[Behaviour]) -> None:
+    def count(tree: Behaviour) -> int:
+        return sum(isinstance(each, node) for each in tree.iterate())
+
+    assert count(team_player(without=without)) == count(team_player()) - 1
+
+
 @pytest.fixture(scope="module")
 def watched() -> Watched:
     return Watched()
 
 
+@pytest.mark.integration
 def test_no_tree_fails(watched: Watched) -> None:
     assert not watched.failures
 
 
+@pytest.mark.integration
 def test_never_do_two_go_for_the_ball(watched: Watched) -> None:
     assert max(watched.attackers) == 1
 
 
+@pytest.mark.integration
 def test_there_is_always_somebody_back_and_somebody_to_pass_to(watched: Watched) -> None:
     assert watched.tasks[Task.WALL] > 0
     assert watched.tasks[Task.SUPPORT] > 0
 
 
+@pytest.mark.integration
 def test_it_plays_the_ball(watched: Watched) -> None:
     assert watched.kicks >= 3

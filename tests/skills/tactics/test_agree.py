@@ -7,7 +7,7 @@ import pytest
 
 from robobt.motion.arrival import ACCELERATION, TOP
 from robobt.skills.aims import Pass
-from robobt.skills.plan import Task
+from robobt.skills.plan import Omitted, Task
 from robobt.skills.tactics.agree import QUICKEST
 from robobt.skills.tactics.chances import rate_points
 from robobt.skills.tactics.lanes import ball_row
@@ -110,6 +110,20 @@ def test_without_the_ball_it_defends_and_with_it_it_supports() -> None:
     assert Task.MARK not in tasks
 
 
+@pytest.mark.parametrize(("part", "task"), [("wall", Task.WALL), ("marks", Task.MARK)])
+def test_a_team_that_does_without_a_task_gives_it_to_nobody(part: Omitted, task: Task) -> None:
+    given = []
+    for without in ("nothing", part):
+        agreement = Agreement()
+        agreement.team.plan.without = without
+        holder = robot(-1.0, 1.0, number=3, contact=True)
+        for step in range(60):
+            plan = agreement.at(step / 60, held(holder), theirs=(*THEIRS[:3], holder, THEIRS[4]))
+        assert set(plan.tasks) == {1, 2, 3, 4, 5}
+        given.append(task in plan.tasks.values())
+    assert given == [True, False]
+
+
 def test_supporters_stand_apart() -> None:
     own = tuple(replace(it, ball_contact=it.id == 5) for it in SIX)
     agreement = Agreement()
@@ -196,6 +210,9 @@ def test_at_an_own_free_kick_a_mate_stands_so_near_that_nobody_can_come_between(
         place for number, place in plan.places.items() if number != attacker and distance(place, spot) < 0.5
     ]
     assert near == [plan.short]
+    without = Agreement()
+    without.team.plan.without = "short_place"
+    assert without.at(0.0, spot, game=free_kick(Team.BLUE, spot)).short is None
     assert DIVISION_B.contains(*near[0])
     assert not in_own_defense_area(DIVISION_B, *near[0])
     assert not in_their_defense_area(DIVISION_B, *near[0])

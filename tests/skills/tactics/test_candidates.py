@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.aims import Pass
+from robobt.skills.plan import Omitted
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import SHORTEST, passes
@@ -24,13 +25,16 @@ def found(
     least: float = 0.15,
     chips: bool = True,
     game: GameState = OPEN,
+    without: Omitted = "nothing",
+    me: RobotState = ME,
 ) -> list[Pass]:
     team = TeamStore()
-    team.plan.players.update((1, *(mate.id for mate in mates)))
-    view = frame(ME, held(ME), mates, theirs, game=game)
+    team.plan.without = without
+    team.plan.players.update((me.id, *(mate.id for mate in mates)))
+    view = frame(me, held(me), mates, theirs, game=game)
     agree(view, team)
     team.plan.places.update(places or {})
-    return passes(view, team, ME, last, 1.5, least=least, most=100, chips=chips)
+    return passes(view, team, me, last, 1.5, least=least, most=100, chips=chips)
 
 
 def test_there_are_passes_to_points_about_every_mate_the_best_first() -> None:
@@ -85,3 +89,14 @@ def test_a_pass_flies_over_opponents_where_there_is_no_other_way_and_it_may() ->
     assert any(one.chip and one.target == MATE.position for one in over)
     assert not any(one.chip for one in found(theirs=wall, chips=False))
     assert not any(one.chip for one in found())
+
+
+def test_a_pass_that_is_to_go_on_with_one_touch_is_faster_and_can_be_done_without() -> None:
+    me, mate = robot(3.2, -2.0, heading=1.5, number=1, contact=True), robot(2.0, 1.4, number=4)
+    keeper = robot(4.3, -0.4, number=0)
+    whole, without = (
+        next(one for one in found((mate,), (keeper,), without=part, me=me) if one.target == mate.position)
+        for part in ("nothing", "one_touch")
+    )
+    assert whole.score > without.score
+    assert whole.speed > without.speed + 0.5

@@ -71,6 +71,12 @@ def test_a_robot_takes_part_from_its_first_tick() -> None:
     assert alone.store.team.plan.players == {4}
 
 
+def test_what_the_team_does_without_is_told_to_its_plan() -> None:
+    alone = Alone(TaskSwitch("player", {"attack": Stop()}, without="wall"))
+    alone.tick(frame(robot(number=4), (0.3, 0.0), game=OPEN), 4)
+    assert alone.store.team.plan.without == "wall"
+
+
 def test_a_misspelt_part_is_an_error_that_lists_the_parts() -> None:
     with pytest.raises(ValueError, match="'atack' is no part; there are halt, take_penalty"):
         TaskSwitch("player", {"atack": Stop()})
