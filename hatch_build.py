@@ -1,15 +1,20 @@
-"""Build hook: compiles the league's messages (``robobt/league/wire/proto/*.proto``).
+"""Build hook: compiles the league's messages (``robobt/league/wire/proto/*.proto``), notes the commit.
 
 What is made is a set of descriptors, which the package loads into a pool of its
 own (``robobt/league/wire/messages.py``): it fits any version of the protobuf runtime,
 and other packages that define messages of the same names do not get in its way.
 Beside it lie type stubs for editors and type checkers. Run as a script it does
 the same in place.
+
+A wheel and an sdist say from which commit they were made (``robobt/commit.txt``), for the cards of
+models that are trained with them.
 """
 
 from __future__ import annotations
 
+import runpy
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
@@ -46,11 +51,26 @@ def compile_messages(root: Path) -> list[str]:
 
 
 class MessagesHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Compiles the messages before a wheel, an editable installation or an sdist is built."""
+    """Compiles the messages and notes the commit before anything is built."""
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
+    _written: TemporaryDirectory[str] | None = None
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """See hatchling."""
         build_data["artifacts"] += [f"/{path}" for path in compile_messages(Path(self.root))]
+        package = Path(self.root) / "robobt"
+        commit = runpy.run_path(str(package / "config" / "commit.py"))["commit_of"](package)
+        # An editable installation asks git itself, an sdist has the file already.
+        if commit and version != "editable":
+            self._written = TemporaryDirectory()
+            file = Path(self._written.name) / "commit.txt"
+            file.write_text(f"{commit}\n", "ascii")
+            build_data["force_include"][str(file)] = "robobt/commit.txt"
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:  # noqa: ARG002
+        """See hatchling."""
+        if self._written is not None:
+            self._written.cleanup()
 
 
 if __name__ == "__main__":

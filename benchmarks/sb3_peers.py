@@ -28,6 +28,7 @@ from torch import nn
 
 import robobt
 from robobt.config.atomic import write_atomically
+from robobt.config.commit import source_commit
 from robobt.learning.training.evaluation import Policy
 from robobt.learning.training.export_run import held_out
 from robobt.learning.training.problems import Problem, problem_of
@@ -108,6 +109,7 @@ def train_peer(
         seed=seed,
         held_out=figures,
         code_version=robobt.__version__,
+        code_commit=source_commit(),
         created_by="benchmarks/sb3_peers.py",
     )
     (file,) = export_model(evaluator.best, card, out)

@@ -1,7 +1,8 @@
-"""The wheel is complete: unpacked outside the checkout it plays the bundled scenarios."""
+"""Wheel and sdist are complete: outside the checkout they play the bundled scenarios and load the models."""
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -12,60 +13,93 @@ from pathlib import Path
 
 import pytest
 
+from robobt.config.commit import commit_of
+
 ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
-def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    built = tmp_path_factory.mktemp("dist")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(built)],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-    )
-    (wheel,) = built.glob("robobt-*.whl")
+def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("dist")
+    build = [sys.executable, "-m", "hatchling", "build", "-d", str(folder)]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
+    (wheel,), (sdist,) = folder.glob("robobt-*.whl"), folder.glob("robobt-*.tar.gz")
+    return {"wheel": wheel, "sdist": sdist}
+
+
+@pytest.fixture(scope="module")
+def unpacked(built: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("site")
-    with zipfile.ZipFile(wheel) as archive:
+    with zipfile.ZipFile(built["wheel"]) as archive:
         archive.extractall(target)
     return target
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13"])
-def test_it_plays_where_nothing_else_is_installed(version: str, tmp_path: Path) -> None:
-    """Without PyTorch, which a match of hand-written skills does not import."""
+def interpreter(version: str) -> str:
     python = shutil.which(f"python{version}")
     if python is None or subprocess.run([python, "-c", ""], check=False, capture_output=True).returncode:
         pytest.skip(f"there is no Python {version} here")
-    build = [sys.executable, "-m", "hatchling", "build", "-d", str(tmp_path)]
-    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
-    (wheel,), (_sdist,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
+    return python
+
+
+class Clean:
+    """An environment with the package, in the versions of constraints.txt, and nothing of the checkout."""
+
+    def __init__(self, python: str, folder: Path) -> None:
+        self.folder = folder
+        subprocess.run([python, "-m", "venv", str(folder / "clean")], check=True)
+        self.programs = folder / "clean" / "bin"
+
+    def install(self, *packages: str) -> None:
+        pip = [str(self.programs / "python"), "-m", "pip", "install", "--quiet"]
+        subprocess.run([*pip, "-c", str(ROOT / "constraints.txt"), *packages], check=True)
+
+    def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        outside = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        called = [str(self.programs / program), *arguments]
+        return subprocess.run(
+            called, cwd=self.folder, env=outside, capture_output=True, text=True, check=False
+        )
+
+    def size(self) -> int:
+        """Return the size of what was installed [bytes]."""
+        (site,) = (self.folder / "clean" / "lib").glob("python*/site-packages")
+        files = [file for file in site.rglob("*") if file.is_file()]
+        tools = ("pip", "setuptools")
+        return sum(file.stat().st_size for file in files if file.relative_to(site).parts[0] not in tools)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("version", "kind"), [("3.11", "wheel"), ("3.12", "wheel"), ("3.13", "wheel"), ("3.11", "sdist")]
+)
+def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
+    version: str, kind: str, built: dict[str, Path], tmp_path: Path
+) -> None:
+    clean = Clean(interpreter(version), tmp_path)
     needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    light = [one for one in needed if not one.startswith("torch")]
-    subprocess.run([python, "-m", "venv", str(tmp_path / "clean")], check=True)
-    clean = tmp_path / "clean" / "bin"
-    pip = [str(clean / "python"), "-m", "pip", "install", "--quiet"]
-    subprocess.run([*pip, "-c", str(ROOT / "constraints.txt"), *light], check=True)
-    subprocess.run([*pip, "--no-deps", str(wheel)], check=True)
-    outside = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    clean.install(*[one for one in needed if not one.startswith("torch")])
+    clean.install("--no-deps", str(built[kind]))
 
-    def robobt(*command: str) -> subprocess.CompletedProcess[str]:
-        called = [str(clean / "robobt"), *command]
-        return subprocess.run(called, cwd=tmp_path, env=outside, capture_output=True, text=True, check=False)
-
-    played = robobt("match", "striker_vs_goalie", "--trials", "1", "--json")
+    # Without PyTorch, which a match of hand-written skills does not import.
+    played = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "2", "--json")
     assert played.returncode == 0, played.stderr
-    refused = robobt("match", "striker_vs_goalie", "--trials", "1", "--replay", "x.html")
+    assert json.loads(played.stdout)["trials"] == 2
+    for name in json.loads(clean.run("robobt", "scenarios", "--json").stdout):
+        assert clean.run("python", "-c", f"import robobt; robobt.load_scenario({name!r})").returncode == 0
+    refused = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "1", "--replay", "x.html")
     assert 'pip install "robobt[record]"' in refused.stderr
-    site = next((tmp_path / "clean" / "lib").glob("python*")) / "site-packages"
-    own = ("pip", "setuptools")
-    size = sum(
-        file.stat().st_size
-        for file in site.rglob("*")
-        if file.is_file() and file.relative_to(site).parts[0] not in own
-    )
-    assert size < 350e6
+    assert clean.size() < 350e6
+
+    clean.install("torch")
+    listed = json.loads(clean.run("robobt", "models", "--json").stdout)["models"]
+    assert {model["card"]["name"] for model in listed} == {path.stem for path in ROOT.glob("models/*.pt")}
+    for model in listed:
+        code = f"import robobt; print(robobt.load_policy({model['card']['name']!r}))"
+        loaded = clean.run("python", "-c", code)
+        assert loaded.returncode == 0, loaded.stderr
+    played = clean.run("robobt", "match", "table4_trial1_ddpg", "--trials", "1", "--json")
+    assert played.returncode == 0, played.stderr
 
 
 def run(unpacked: Path, where: Path, code: str) -> str:
@@ -83,6 +117,12 @@ def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert list((unpacked / "robobt" / "_data" / "scenarios").glob("*.yaml"))
     assert (unpacked / "robobt" / "_data" / "models" / "README.md").exists()
     assert not (unpacked / "tests").exists()
+
+
+@pytest.mark.integration
+def test_it_knows_its_commit(unpacked: Path, tmp_path: Path) -> None:
+    found = run(unpacked, tmp_path, "from robobt.config.commit import source_commit; print(source_commit())")
+    assert found.strip() == commit_of(ROOT / "robobt")
 
 
 @pytest.mark.integration

@@ -152,7 +152,7 @@ def _print_whole(file: ModelFile) -> None:
         "period": "" if card.period is None else f"{card.period:g} s",
         "limits": _assignments({} if card.limits is None else card.limits.model_dump(exclude_none=True)),
         "seed": "" if card.seed is None else str(card.seed),
-        "code": card.code_version,
+        "code": f"robobt {card.code_version or 'unknown'}, commit {card.code_commit or 'unknown'}",
         "written by": card.created_by,
         "settings": "--json has those of its environment and training",
     }

@@ -113,6 +113,11 @@ class ModelCard(Settings):
     seed: int | None = Field(None, description="what training's randomness followed from")
     held_out: dict[str, Measured] = Field({}, description="results that training never saw, by name")
     code_version: str = Field("", max_length=128, description="version of the code that trained it")
+    code_commit: str = Field(
+        "",
+        pattern=r"^([0-9a-f]{40,64}\+?)?$",
+        description='commit of that code, with "+" where it was changed since; empty: unknown',
+    )
     created_by: str = Field("", max_length=256, description="what wrote it")
     payload: str = Field(
         "",

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt import __version__
+from robobt.config.commit import source_commit
 from robobt.learning.agents.networks import one_thread, policy_of
 from robobt.learning.envs import make_task
 from robobt.learning.training.evaluation import Evaluation
@@ -88,7 +90,8 @@ def export_run(
         seed=settings.seed,
         held_out=held_out(figures),
         code_version=str(result.figures.get("robobt", "")),
-        created_by="robobt export",
+        code_commit=str(result.figures.get("commit", "")),
+        created_by=f"robobt export {__version__} {source_commit()}".rstrip(),
     )
     return export_model(result.actor, card, Path(folder), formats, force)
 

@@ -79,6 +79,7 @@ class Figures(TypedDict):
     preset: str
     seed: int
     robobt: str
+    commit: str
     stopped_early: bool
     steps: int
     updates: int

@@ -10,6 +10,7 @@ import numpy as np
 from torch import Tensor
 
 from robobt import __version__
+from robobt.config.commit import source_commit
 from robobt.config.errors import RobobtError
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.training.checkpoint import Arrays, RunState, digest_of
@@ -67,6 +68,7 @@ class Run(ABC):
         self._agent_seed = int(seeds[1].generate_state(1)[0])
         self._observation = np.zeros((self._task.n, len(problem.scale)))
         self._steps = 0
+        self._commit = source_commit()
         self._selection = Selection(settings.evaluation)
         self._reporter = Reporter(settings, on_progress, clock, self._selection)
         self._saved_at = time.monotonic()
@@ -159,6 +161,7 @@ class Run(ABC):
             "preset": settings.preset,
             "seed": settings.seed,
             "robobt": __version__,
+            "commit": self._commit,
             "stopped_early": self._steps < settings.steps,
             "steps": self._steps,
             "updates": self._agent.updates,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from torch import nn
 
 from robobt import __version__
+from robobt.config.commit import source_commit
 from robobt.models.card import Measured, ModelCard, ObservationCard, OutputEntry
 from robobt.models.export import export_model
 from robobt.shots.data.inputs import asked_inputs, goals
@@ -113,6 +114,7 @@ def train_shipped(
         seed=seed,
         held_out=figures,
         code_version=__version__,
+        code_commit=source_commit(),
         created_by=f"robobt shots train --model {name}",
     )
     return export_model(module, card, folder, force=force)[0], figures

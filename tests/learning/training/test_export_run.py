@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from robobt import __version__
 from robobt.cli import app
+from robobt.config.commit import source_commit
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.export_run import export_run, held_out
 from robobt.learning.training.run_folder import RunFolderError, load_run
@@ -58,6 +59,8 @@ def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     assert card.limits.max_speed == 5.0
     assert card.seed == 3
     assert card.code_version == __version__
+    assert card.code_commit == source_commit()
+    assert card.created_by.startswith(f"robobt export {__version__}")
     assert card.training["settings"]["agent"]["hidden"] == [8]
     assert card.training["figures"]["steps"] == result.figures["steps"]
     success, figures = card.held_out["success"], result.figures["held_out"]
@@ -143,7 +146,10 @@ def test_the_commands_write_list_and_show_models(run: Path, tmp_path: Path) -> N
     assert own == [written["files"][1], written["files"][0]]
     assert listed["problems"] == []
     assert "mine" in robobt("models", "--path", out)
-    assert "sin_" in robobt("models", str(tmp_path / "models" / "mine.pt"))
+    shown = robobt("models", str(tmp_path / "models" / "mine.pt"))
+    assert "sin_" in shown
+    assert f"robobt {__version__}, commit {source_commit() or 'unknown'}" in shown
+    assert f"robobt {__version__}, commit unknown" in robobt("models", "go_to_ball_ddpg")
     (tmp_path / "models" / "mine.pt").write_bytes(b"broken")
     assert "manifest" in robobt("models", "--path", out, code=1)
     assert (
