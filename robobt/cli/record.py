@@ -40,7 +40,7 @@ def export(
     if not btlog:
         raise typer.BadParameter("name the format to write: --btlog")
     loaded = load_recording(recording)
-    who = _robot(loaded, robot)
+    who = recorded_robot(loaded, robot)
     stem = recording.name.removesuffix(RECORDING)
     target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out
     _spare(recording, target)
@@ -60,7 +60,7 @@ def case(
 
     import_files(imports)
     loaded = load_recording(recording)
-    who = _robot(loaded, robot)
+    who = recorded_robot(loaded, robot)
     _spare(recording, out)
     say(f"Regression case: {save_regression_case(loaded, who, tick, out)}")
 
@@ -98,7 +98,7 @@ def statistics(
         console.print(team_figures(teams))
 
 
-def _robot(recording: Recording, text: str | None) -> RobotId:
+def recorded_robot(recording: Recording, text: str | None) -> RobotId:
     """Return the robot of that name, or the only one."""
     recorded = {str(robot.id): robot.id for robot in recording.header.robots if robot.tree}
     if text is None and len(recorded) == 1:

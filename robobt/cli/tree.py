@@ -125,7 +125,8 @@ def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool)
     """Write the tree to those of the four files that are named; whether there was one."""
     from robobt.config.errors import naming
     from robobt.plays.files import tree_xml, tree_yaml
-    from robobt.tree.drawing import tree_dot, tree_svg
+    from robobt.tree.drawing import tree_dot
+    from robobt.tree.svg import tree_svg
 
     writers: list[Callable[[], str]] = [
         partial(tree_svg, root),

@@ -9,7 +9,7 @@ from robobt.config.errors import RobobtError
 EXTRAS = {
     "gymnasium": "learn",
     "tensorboard": "learn",
-    "PIL": "learn",
+    "PIL": "plots",
     "google": "league",
     "matplotlib": "plots",
     "onnx": "onnx",

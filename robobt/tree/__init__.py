@@ -18,7 +18,6 @@ from py_trees.decorators import SuccessIsFailure as SuccessIsFailure
 from robobt.tree.check import WiringError as WiringError
 from robobt.tree.check import check_tree as check_tree
 from robobt.tree.drawing import tree_dot as tree_dot
-from robobt.tree.drawing import tree_svg as tree_svg
 from robobt.tree.drawing import tree_text as tree_text
 from robobt.tree.engine import FastTree as FastTree
 from robobt.tree.engine import compile_tree as compile_tree
@@ -29,3 +28,4 @@ from robobt.tree.runner import TreeError as TreeError
 from robobt.tree.runner import TreeRunner as TreeRunner
 from robobt.tree.runner import node_path as node_path
 from robobt.tree.runner import preorder as preorder
+from robobt.tree.svg import tree_svg as tree_svg

@@ -19,7 +19,8 @@ from robobt.tree import (
     TreeRunner,
     preorder,
 )
-from robobt.tree.drawing import describe, tree_dot, tree_svg, tree_text
+from robobt.tree.drawing import describe, tree_dot, tree_text
+from robobt.tree.svg import tree_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -183,3 +184,20 @@ def test_graphviz_gets_every_node_and_edge_in_order() -> None:
 def test_graphviz_colours_follow_the_statuses() -> None:
     assert "color=" not in tree_dot(striker()).split("n0", 1)[1].split("}")[0]
     assert tree_dot(ticked(striker()), statuses=True).count('"#dd4b41"') == 2
+
+
+def test_a_tree_shows_itself_in_a_notebook_with_its_statuses_once_it_was_ticked() -> None:
+    tree = Sequence("go", memory=False, children=[Drive(), HasBall()])
+    show = tree._repr_svg_  # type: ignore[attr-defined]
+    assert show() == tree_svg(tree)
+    TreeRunner(tree, None).tick()
+    assert show() == tree_svg(tree, statuses=True) != tree_svg(tree)
+
+
+def test_its_style_sheet_leaves_the_rest_of_a_page_alone() -> None:
+    root = ElementTree.fromstring(tree_svg(Drive()))
+    sheet = root.find(f"{SVG}style").text
+    rules = re.findall(r"([^{}]+)\{[^{}]*\}", re.sub(r"@media[^{]*\{", "", sheet))
+    assert len(rules) > 10
+    assert all(rule.startswith(".bt ") for rule in rules)
+    assert root.get("class") == "bt"

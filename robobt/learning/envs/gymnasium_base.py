@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -16,12 +16,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.render import Picture, Renderer
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.world.game import Team
 from robobt.world.geometry import Point
+from robobt.world.painting import Painter
 
 Observation = NDArray[np.float32]
+Picture = NDArray[np.uint8]
 Action = NDArray[np.float32]
 Info = dict[str, Any]
 
@@ -64,19 +66,23 @@ class _OverArenas:
         self.task = self.kind.task(given, n)
         self._reach = self.kind.reach(self.task.settings)
         self._begun = False
-        self._renderer: Renderer | None = None
+        self._painter: Painter | None = None
         return self.kind.space(self.task.settings)
 
     def _need_reset(self, what: str) -> None:
         if not self._begun:
             raise gymnasium.error.ResetNeeded(f"call reset before {what}")
 
-    def _pen(self) -> Renderer:
+    def _picture(self, arena: int, *trails: Sequence[Point]) -> Picture:
         self._need_reset("render")
-        if self._renderer is None:
+        if self._painter is None:
             settings = self.task.settings
-            self._renderer = Renderer(settings.field, settings.simulator.body.face)
-        return self._renderer
+            self._painter = Painter(settings.field, settings.simulator.body.face)
+        x, y = self.task.arenas.balls[arena, :2].tolist()
+        teams = (Team.BLUE, Team.YELLOW)  # what is trained, and who opposes it
+        poses = self.task.arenas.robots[arena, :, :3].tolist()
+        robots = [(team, "", *pose) for team, pose in zip(teams, poses, strict=False)]
+        return np.asarray(self._painter.paint(robots, (x, y), self._reach, *trails))
 
 
 class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
@@ -142,10 +148,7 @@ class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         """Draw the field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
-        pen, arenas = self._pen(), self.task.arenas
-        return pen.draw(
-            arenas.robots[0, 0], arenas.balls[0], self._reach, self._robot_trail, self._ball_trail
-        )
+        return self._picture(0, self._robot_trail, self._ball_trail)
 
     def _leave_trail(self) -> None:
         arenas = self.task.arenas
@@ -222,11 +225,7 @@ class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         """Draw one picture an arena in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
-        pen, arenas = self._pen(), self.task.arenas
-        return tuple(
-            pen.draw(robots[0], ball, self._reach)
-            for robots, ball in zip(arenas.robots, arenas.balls, strict=True)
-        )
+        return tuple(self._picture(arena) for arena in range(self.num_envs))
 
 
 def _action_space(task: ArenaTask) -> Box[np.float32]:

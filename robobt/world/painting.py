@@ -1,57 +1,62 @@
-"""One arena as a picture of pixels."""
+"""A field, robots and ball as a picture of pixels."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import acos, cos, degrees, sin
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from math import acos, cos, degrees, isfinite, sin
+from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
-from robobt.learning.envs.task import FloatArray
 from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
 from robobt.world.geometry import Point
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-Picture = NDArray[np.uint8]
-"""(height, width, 3) red, green, blue."""
+Painted: TypeAlias = tuple[Team, str, float, float, float]
+"""A robot: its team, what is written on it, x, y [m] and heading [rad]."""
 
 _FINER = 2
 """Drawn this much larger and averaged down, for smooth edges."""
 
 _GRASS, _STRIPES, _PAINT = (63, 131, 90), ((74, 149, 102), (79, 156, 108)), (240, 246, 242)
 _BLUE, _YELLOW, _BALL, _DARK = (47, 111, 237), (242, 194, 27), (255, 122, 26), (20, 32, 43)
+_COLOURS = {Team.BLUE: _BLUE, Team.YELLOW: _YELLOW}
 _ROBOT_TRAIL, _BALL_TRAIL = (142, 190, 255), (255, 178, 120)
 
 
-class Renderer:
-    """Draws robots and ball of one field; +x is to the right.
+class Painter:
+    """Paints robots and ball of one field; +x is to the right, blue's goal to the left.
 
     ``face`` is the distance from a robot's centre to its flat front [m], ``width`` that of the picture [px].
     """
 
-    def __init__(self, field: FieldGeometry, face: float, width: int = 800) -> None:
+    def __init__(self, field: FieldGeometry, face: float = 0.075, width: int = 800) -> None:
         self.field = field
         self._face = face
         outer = field.length + 2 * field.goal_line_margin, field.width + 2 * field.margin
         self._scale = width * _FINER / outer[0]
         self._centre = outer[0] / 2, outer[1] / 2
         self._size = width * _FINER, round(width * outer[1] / outer[0]) * _FINER
-        self._ground = self._draw_ground()
+        self._ground = self._paint_ground()
 
-    def draw(
+    def paint(
         self,
-        robot: FloatArray,
-        ball: FloatArray,
+        robots: Iterable[Painted],
+        ball: Point,
         reach: float | None = None,
         robot_trail: Sequence[Point] = (),
         ball_trail: Sequence[Point] = (),
-    ) -> Picture:
-        """Draw the picture of one moment.
+    ) -> Image.Image:
+        """Paint the picture of one moment.
 
-        ``robot`` (6,) and ``ball`` (4,) begin with x, y; the ball counts as reached in a ring of radius
-        ``reach``; trails show where they have been, oldest first [m].
+        Args:
+            robots: those on the field.
+            ball: x, y [m]; NaN where it is not known, and it is left out.
+            reach: radius of a ring around the ball, in which it counts as reached [m].
+            robot_trail: where a robot has been, oldest first [m].
+            ball_trail: where the ball has been, oldest first [m].
         """
         image = self._ground.copy()
         pen = ImageDraw.Draw(image)
@@ -60,19 +65,19 @@ class Renderer:
                 pen.line(
                     [self._at(x, y) for x, y in trail], fill=colour, width=self._wide(0.025), joint="curve"
                 )
-        if reach is not None:
-            pen.ellipse(self._round(ball[0], ball[1], reach), outline=_BALL, width=self._wide(0.012))
-        self._draw_robot(pen, robot)
-        pen.ellipse(
-            self._round(ball[0], ball[1], 1.4 * BALL_RADIUS),
-            fill=_BALL,
-            outline=_DARK,
-            width=self._wide(0.006),
-        )
-        return np.asarray(image.reduce(_FINER))
+        known = isfinite(ball[0])
+        if reach is not None and known:
+            pen.ellipse(self._round(*ball, reach), outline=_BALL, width=self._wide(0.012))
+        for robot in robots:
+            self._paint_robot(pen, *robot)
+        if known:
+            spot = self._round(*ball, 1.4 * BALL_RADIUS)
+            pen.ellipse(spot, fill=_BALL, outline=_DARK, width=self._wide(0.006))
+        return image.reduce(_FINER)
 
-    def _draw_robot(self, pen: ImageDraw.ImageDraw, robot: FloatArray) -> None:
-        x, y, heading = float(robot[0]), float(robot[1]), float(robot[2])
+    def _paint_robot(
+        self, pen: ImageDraw.ImageDraw, team: Team, label: str, x: float, y: float, heading: float
+    ) -> None:
         opening = acos(self._face / ROBOT_RADIUS)
         # Pillow's angles run clockwise.
         start = degrees(opening - heading)
@@ -81,7 +86,7 @@ class Renderer:
             box,
             start,
             start + 360.0 - 2.0 * degrees(opening),
-            fill=_BLUE,
+            fill=_COLOURS[team],
             outline=_DARK,
             width=self._wide(0.01),
         )
@@ -90,10 +95,14 @@ class Renderer:
             for turn in (opening, -opening)
         ]
         pen.line(corners, fill=_DARK, width=self._wide(0.024))
-        nose = x + 0.6 * self._face * cos(heading), y + 0.6 * self._face * sin(heading)
-        pen.line([self._at(x, y), self._at(*nose)], fill=_PAINT, width=self._wide(0.018))
+        if label:
+            colour = _DARK if team is Team.YELLOW else _PAINT
+            pen.text(self._at(x, y), label, fill=colour, font=font(self._wide(0.12)), anchor="mm")
+        else:
+            nose = x + 0.6 * self._face * cos(heading), y + 0.6 * self._face * sin(heading)
+            pen.line([self._at(x, y), self._at(*nose)], fill=_PAINT, width=self._wide(0.018))
 
-    def _draw_ground(self) -> Image.Image:
+    def _paint_ground(self) -> Image.Image:
         field = self.field
         half, side, goal = field.half_length, field.half_width, field.goal_width / 2
         image = Image.new("RGB", self._size, _GRASS)
@@ -128,3 +137,9 @@ class Renderer:
 
     def _wide(self, metres: float) -> int:
         return max(1, round(metres * self._scale))
+
+
+@lru_cache
+def font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Return Pillow's own font, which is there whatever the machine has, in a size [px]."""
+    return ImageFont.load_default(size)
