@@ -141,7 +141,7 @@ def bench_live(
         took = perf_counter() - begun
         grown = _memory() - before
         sleep(0.5)
-        skipped = sum(viewer.skipped for viewer in list(server._viewers.values()))
+        skipped = sum(viewer.skipped for viewer in list(server.audience.viewers.values()))
         if alone.result().trace != shown.result().trace:
             raise RuntimeError("the two matches differ: viewers changed what was played")
     warm = begun + 2.0

@@ -11,38 +11,30 @@ import asyncio
 import socket
 import sys
 import threading
-from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 from http import HTTPStatus
-from queue import SimpleQueue
-from time import monotonic, perf_counter
 from typing import Any
 
 from websockets.asyncio.server import Server as SocketServer
 from websockets.asyncio.server import ServerConnection, serve
-from websockets.exceptions import ConnectionClosed
-from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from robobt.config.errors import RobobtError
 from robobt.live.access import LOOPBACK, Access
+from robobt.live.audience import MOST_VIEWERS, Audience
 from robobt.live.http import RECORDING_TYPE, file_response, response
-from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Act, Layers, Past, Rest, Steer, read
+from robobt.live.messages import MOST_BYTES
 from robobt.live.stream import Stream
-from robobt.live.viewer import Viewer
-
-MOST_VIEWERS = 50
 
 _BEAT = 1.0 / 60.0
-"""How often new ticks are looked for while somebody watches [s]."""
+"""How often new ticks are looked for at least while somebody watches [s]."""
 
 _IDLE_BEAT = 0.5
 """The same while nobody does [s]."""
 
-_MOST_WAITING = 1000
-"""Messages that wait for the match; more are refused."""
-
+_AFTER = 0.002
+"""How long after a tick is likely to come it is looked for: by then the match sleeps [s]."""
 
 _KEPT_BY_SYSTEM = 2**17
 """What the system keeps for a viewer at most [bytes]."""
@@ -65,9 +57,9 @@ class Server:
 
     Attributes:
         url: where the page is, once it is served.
+        audience: who watches.
         inbox: what the viewer that steers asks for, for the match, and when that came (perf_counter) [s].
         refused: how many requests and messages were refused, by reason.
-        layers: what viewers want skills to draw.
         situation: the scenario that was last made of the present situation, as YAML.
 
     Raises:
@@ -77,15 +69,9 @@ class Server:
     def __init__(self, host: str = "127.0.0.1", port: int = 0, names: Iterable[str] = ()) -> None:
         self._host, self._port, self._names = host, port, (*LOOPBACK, *names)
         self.url = ""
-        self.inbox: SimpleQueue[tuple[Act, float]] = SimpleQueue()
-        self.refused: Counter[str] = Counter()
-        self.layers: frozenset[str] = frozenset()
         self.situation = ""
-        self._viewers: dict[int, Viewer] = {}
-        self._count = 0
-        self._steerer: Viewer | None = None
-        self._stream: Stream | None = None
-        self._state: dict[str, Any] = {}
+        self.audience = Audience(self._look_now)
+        self.inbox, self.refused = self.audience.inbox, self.audience.refused
         self._thread = threading.Thread(target=self._run, name="robobt live", daemon=True)
         self._ready = threading.Event()
         self._problem: OSError | None = None
@@ -113,17 +99,23 @@ class Server:
 
     def show(self, stream: Stream) -> None:
         """Serve another match from now on."""
-        self._stream = stream
+        self.audience.stream = stream
 
     def tell(self, **state: Any) -> None:
         """Tell the viewers how the match goes: what changes of its state, as JSON can hold it."""
-        if any(self._state.get(name, self) != value for name, value in state.items()):
-            self._state = {**self._state, **state}
+        known = self.audience.state
+        if any(known.get(name, self) != value for name, value in state.items()):
+            self.audience.state = {**known, **state}
+
+    @property
+    def layers(self) -> frozenset[str]:
+        """What viewers want skills to draw."""
+        return self.audience.layers
 
     @property
     def viewers(self) -> int:
         """How many watch."""
-        return len(self._viewers)
+        return len(self.audience.viewers)
 
     def _run(self) -> None:
         try:
@@ -136,7 +128,7 @@ class Server:
         self._loop, self._end, self._wake = asyncio.get_running_loop(), asyncio.Event(), asyncio.Event()
         self._saving = asyncio.Lock()
         serving = serve(
-            self._meet,
+            self.audience.meet,
             self._host,
             self._port,
             process_request=self._answer,
@@ -161,7 +153,7 @@ class Server:
                 beat = asyncio.create_task(self._beat())
                 await self._end.wait()
                 beat.cancel()
-                for viewer in self._viewers.values():
+                for viewer in self.audience.viewers.values():
                     viewer.socket.transport.abort()
         except OSError as error:
             if self._ready.is_set():
@@ -175,23 +167,37 @@ class Server:
         shown = self._names[len(LOOPBACK)] if len(self._names) > len(LOOPBACK) else "127.0.0.1"
         self.url = f"http://{shown}:{port}/{self._access.token}/"
 
+    def _look_now(self) -> None:
+        assert self._wake is not None
+        self._wake.set()
+
     async def _beat(self) -> None:
         """Encode what is new and wake the viewers."""
+        assert self._loop is not None
         assert self._wake is not None
+        audience = self.audience
         before: tuple[object, ...] = ()
         while True:
-            stream, fresh = self._stream, False
+            stream, fresh = audience.stream, False
             while stream is not None and stream.advance():
                 fresh = True
                 await asyncio.sleep(0)
-            now = (stream, self._state, self._steerer, len(self._viewers))
+            now = (stream, audience.state, audience.steerer, len(audience.viewers))
             if fresh or now != before:
                 before = now
-                for viewer in self._viewers.values():
-                    viewer.news.set()
-            with suppress(TimeoutError):
-                await asyncio.wait_for(self._wake.wait(), _BEAT if self._viewers else _IDLE_BEAT)
+                audience.wake()
+            waking = self._loop.call_later(self._pause(stream), self._wake.set)
+            await self._wake.wait()
+            waking.cancel()
             self._wake.clear()
+
+    def _pause(self, stream: Stream | None) -> float:
+        """Return in how long to look for new ticks again [s]."""
+        if not self.audience.viewers:
+            return _IDLE_BEAT
+        due = -1.0 if stream is None else stream.until_next + _AFTER
+        # Where none has come for long, the match is paused or over.
+        return _BEAT if due < -_BEAT else min(_BEAT, max(_AFTER, due))
 
     async def _answer(self, _: ServerConnection, request: Request) -> Response | None:
         """Answer a plain request, or return None for a WebSocket."""
@@ -205,7 +211,7 @@ class Server:
             return response(HTTPStatus.FORBIDDEN, b"This address is not served.\n", "127.0.0.1")
         host = headers["Host"].lower()
         if wants_socket:
-            if len(self._viewers) < MOST_VIEWERS:
+            if len(self.audience.viewers) < MOST_VIEWERS:
                 return None
             self.refused["viewers"] += 1
             return response(HTTPStatus.SERVICE_UNAVAILABLE, b"Too many watch.\n", host)
@@ -218,87 +224,8 @@ class Server:
 
     async def _recording(self, host: str) -> Response:
         assert self._saving is not None
-        if self._stream is None or self._saving.locked():
+        if self.audience.stream is None or self._saving.locked():
             return response(HTTPStatus.SERVICE_UNAVAILABLE, b"Nothing to save now; try again.\n", host)
         async with self._saving:
-            body = self._stream.recording()
+            body = self.audience.stream.recording()
             return response(HTTPStatus.OK, body, host, RECORDING_TYPE, "live.robobt.arrows")
-
-    async def _meet(self, connection: ServerConnection) -> None:
-        """Serve one viewer until it leaves."""
-        assert self._wake is not None
-        self._count += 1
-        viewer = Viewer(self._count, connection, monotonic())
-        self._viewers[viewer.number] = viewer
-        if self._steerer is None:
-            self._steerer = viewer
-        viewer.news.set()
-        self._wake.set()
-        reading = asyncio.create_task(self._read(viewer))
-        try:
-            while not reading.done():
-                await viewer.news.wait()
-                viewer.news.clear()
-                if self._stream is not None:
-                    await viewer.send(self._stream, self._state_for(viewer))
-        except ConnectionClosed:
-            pass
-        finally:
-            reading.cancel()
-            said = connection.protocol.close_sent
-            self.refused["too long"] += said is not None and said.code == CloseCode.MESSAGE_TOO_BIG
-            del self._viewers[viewer.number]
-            self._look()
-            if self._steerer is viewer:
-                self.inbox.put((Rest(do="rest"), perf_counter()))
-                self._steerer = next(iter(self._viewers.values()), None)
-            self._wake.set()
-
-    def _look(self) -> None:
-        """Tell the match what is looked at."""
-        self.layers = frozenset[str]().union(*[viewer.layers for viewer in self._viewers.values()])
-
-    def _state_for(self, viewer: Viewer) -> dict[str, Any]:
-        return {**self._state, "steers": viewer is self._steerer, "viewers": len(self._viewers)}
-
-    async def _read(self, viewer: Viewer) -> None:
-        try:
-            async for data in viewer.socket:
-                reason = self._obey(viewer, data)
-                if reason is None:
-                    continue
-                self.refused[reason] += 1
-                viewer.refused += reason != "not steering"
-                if viewer.refused >= MOST_REFUSED:
-                    await viewer.socket.close(CloseCode.POLICY_VIOLATION, "too many messages that are none")
-                    return
-        except ConnectionClosed:
-            pass
-        finally:
-            viewer.news.set()
-
-    def _obey(self, viewer: Viewer, data: str | bytes) -> str | None:
-        """Do what a message asks for; return why not, None where it was done."""
-        if not viewer.allowance.take(monotonic()):
-            return "too many"
-        message = read(data)
-        if message is None:
-            return "no message"
-        if isinstance(message, Steer):
-            if self._steerer is not viewer:
-                self.inbox.put((Rest(do="rest"), perf_counter()))
-            self._steerer = viewer
-            assert self._wake is not None
-            self._wake.set()
-        elif isinstance(message, Past):
-            viewer.ask_past()
-        elif isinstance(message, Layers):
-            viewer.layers = frozenset(message.shown)
-            self._look()
-        elif viewer is not self._steerer:
-            return "not steering"
-        elif self.inbox.qsize() >= _MOST_WAITING:
-            return "too many"
-        else:
-            self.inbox.put((message, perf_counter()))
-        return None

@@ -100,6 +100,13 @@ class Stream:
         self._last: EncodedTicks | None = None
         self.header: dict[str, Any] = {"version": VERSION, **header_data(self._header, paths=True)}
         self.first = self.end = 0
+        # When the newest tick came, and how long after the one before [s].
+        self._came = self._gap = 0.0
+
+    @property
+    def until_next(self) -> float:
+        """In how long the next tick is likely to come [s]."""
+        return self._came + self._gap - time.time()
 
     def take(self, tick: CapturedTick) -> None:
         """Take the next tick; called by the match."""
@@ -120,6 +127,7 @@ class Stream:
         if found is None:
             return False
         at, ticks = found
+        self._gap, self._came = (at - self._came) / len(ticks.times), at
         self._present.follow(ticks.changes[0])
         whole = not self._segments or ticks.times[0] >= self._segments[-1].start + _SEGMENT
         if whole:

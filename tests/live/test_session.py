@@ -87,7 +87,7 @@ def test_a_field_waits_for_nobody(server: Server, scenario: Scenario) -> None:
     with Match(scenario, 3, lambda scenario: Field(sim_world(scenario))) as match:
         assert live.play(match)
     assert clock.slept == 0.0
-    assert "waits for nobody" in server._state["said"][1]
+    assert "waits for nobody" in server.audience.state["said"][1]
     assert match.result().trace == play_match(scenario, 3, sim_world).trace
 
 
@@ -119,12 +119,11 @@ def test_a_recording_is_gone_on_with_from_any_time(
             act(server, Seek(do="seek", time=1.5))
             act(server, Pause(do="pause", on=False))
             client.read(lambda it: it.state.get("over"))
-            assert server._stream is not None
+            stream = server.audience.stream
+            assert stream is not None
             # The end is told at once, and what is on its way is encoded by another thread.
-            wait_for(
-                lambda: server._stream is not None and server._stream.end and not server._stream._encoded
-            )
-            saved = parse_recording(server._stream.recording(), tmp_path)
+            wait_for(lambda: stream.end and not stream._encoded)
+            saved = parse_recording(stream.recording(), tmp_path)
     finally:
         replay.end()
         showing.join()
@@ -143,8 +142,8 @@ def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenari
         with Client(server.url) as client:
             client.read(lambda it: it.state.get("over"))
             assert client.hello["scenario"] == "striker_vs_goalie"
-            wait_for(lambda: server._stream is not None and not server._stream._encoded)
-            saved = parse_recording(server._stream.recording(), tmp_path)  # type: ignore[union-attr]
+            wait_for(lambda: server.audience.stream is not None and not server.audience.stream._encoded)
+            saved = parse_recording(server.audience.stream.recording(), tmp_path)  # type: ignore[union-attr]
     finally:
         replay.end()
         showing.join()

@@ -85,7 +85,7 @@ def test_a_robot_is_dragged_and_taken_off_and_put_back(live: Page, session: Sess
 
 
 def recorded(session: Session) -> list[Event]:
-    stream = session.server._stream
+    stream = session.server.audience.stream
     assert isinstance(stream, Stream)
     return [*parse_recording(stream.recording(), Path("live")).events]
 

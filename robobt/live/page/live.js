@@ -8,7 +8,8 @@ import { delays, showDriving } from "./drive.js";
 import { bridge, showSteering } from "./steering.js";
 import { go, refresh, remote, showPlaying, showSpeed, start, toNow } from "./player.js";
 
-const KEPT = 300, LAG = .04;
+/* Ticks that come slower than one in so many seconds are gone through evenly. */
+const KEPT = 300, SLOW = .02;
 /* How the match goes, as the server tells it. */
 let now = { paused: false, speed: 1, steers: false, viewers: 1, over: null };
 let header = null, link = "connecting";
@@ -117,6 +118,7 @@ on("now", message => {
     if (later) later.push(chunk);
   }
   if (match.layers.size !== layered) offerLayers();
+  came = performance.now();
   const last = message.chunks[message.chunks.length - 1];
   if (last) unpainted.push({ time: endTime(), at: last.at });
 });
@@ -137,12 +139,12 @@ on("found", () => { link = "found"; });
 on("lost", () => { link = "connection lost"; if (header) showHead(); else say("The match is not there."); });
 
 /* ---------------------------------------------------------------- time */
-let before = 0, shownFrames = -1, refreshed = 0, listed = -1;
-/* Time goes on evenly and a little behind the newest tick, for ticks come in no even beat. */
-const follow = passed => {
-  const end = endTime(), behind = end - state.time;
-  if (behind <= 0 || behind > .25 * Math.max(1, now.speed)) state.time = end;
-  else state.time = Math.min(end, state.time + passed * now.speed * (behind > LAG * now.speed ? 1.25 : 1));
+let came = 0, shownFrames = -1, refreshed = 0, listed = -1;
+/* The newest tick at once; where there are more pictures than ticks, as in slow motion, all the way to it. */
+const follow = time => {
+  const end = endTime(), gap = match.frames > 1 ? end - match.times[match.frames - 2] : 0, lasts = gap / now.speed;
+  const reached = lasts < SLOW || lasts > 1 || now.paused ? end : end - gap + Math.max(0, time - came) / 1000 * now.speed;
+  state.time = Math.min(end, Math.max(state.time, reached));
 };
 const painted = () => {
   const time = performance.timeOrigin + performance.now();
@@ -154,12 +156,10 @@ const painted = () => {
   measured.painted.splice(0, measured.painted.length - 2000);
 };
 const beat = time => {
-  const passed = Math.min(.25, Math.max(0, (time - before) / 1000));
-  before = time;
   if (header && match.frames) {
     if (endTime() - startTime() > KEPT + 10) { forget(frameOf(endTime() - KEPT)); state.time = Math.max(state.time, startTime()); }
     const earlier = state.time;
-    if (state.follow) follow(passed);
+    if (state.follow) follow(time);
     if (state.time !== earlier || shownFrames !== match.frames && state.follow) {
       shownFrames = match.frames;
       state.show();

@@ -27,7 +27,7 @@ def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
         watched(field)
 
     step()
-    stream = server._stream
+    stream = server.audience.stream
     assert stream is not None
     assert stream.header["scenario"] == "served"
     step(
@@ -38,9 +38,9 @@ def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
     truth = field.truth()
     assert (truth.ball.x, truth.ball.vy) == pytest.approx((1.0, 2.0))
     assert truth.robots()[BLUE_3].position == pytest.approx((2.0, -1.0))
-    assert "only robots and ball" in server._state["said"][1]
+    assert "only robots and ball" in server.audience.state["said"][1]
     step(MoveBall(do="ball", x=15.0, y=0.5))
-    assert "outside the walls" in server._state["said"][1]
+    assert "outside the walls" in server.audience.state["said"][1]
     step(TakeOff(do="off", robot="blue 3"))
     step()
     assert stream.advance()
@@ -49,6 +49,6 @@ def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
     # A robot that comes later begins another stream, in which it is told of.
     field.teleport(Teleport(YELLOW_5, 1.0, 1.0, 0.0, present=True))
     step()
-    assert server._stream is not stream
-    assert server._stream is not None
-    assert [robot["number"] for robot in server._stream.header["robots"]] == [3, 5]
+    assert server.audience.stream is not stream
+    assert server.audience.stream is not None
+    assert [robot["number"] for robot in server.audience.stream.header["robots"]] == [3, 5]

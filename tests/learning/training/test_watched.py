@@ -28,16 +28,16 @@ def test_an_evaluation_is_shown_to_who_watches_and_is_the_same(monkeypatch: pyte
     problem = watched.watched_problem(server, settings)
     alone = problem_of(environment_of(settings)).evaluate(ahead, "validation", 4)
     assert problem.evaluate(ahead, "validation", 4).times.tolist() == alone.times.tolist()
-    assert server._stream is None
+    assert server.audience.stream is None
     watching: Any = {1: object()}
-    server._viewers = watching
+    server.audience.viewers = watching
     server.inbox.put((Speed(do="speed", factor=20.0), perf_counter()))
     shown = problem.evaluate(ahead, "validation", 4)
     assert shown.success.tolist() == alone.success.tolist()
-    stream: Stream | None = server._stream
+    stream: Stream | None = server.audience.stream
     assert stream is not None
     assert stream.header["scenario"] == f"go_to_ball: {alone.success.mean():.0%} of 4 validation starts"
     assert stream.advance()
     chunk = decoded(stream.messages(0, 2**20)[0][0])
     assert chunk["frames"] > 10
-    assert server._state["speed"] == 20.0
+    assert server.audience.state["speed"] == 20.0
