@@ -7,17 +7,18 @@ from math import hypot, isnan, nan
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, reward
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
-from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.keepers import TRAITS, Keepers
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
-from robobt.world.rules import goal_side, in_area, is_out
+from robobt.world.rules import in_area, is_out
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
 from robobt.world.state import ROBOT_RADIUS
 
@@ -109,19 +110,14 @@ def _judge(
     depth, width = field.defense_depth, field.defense_width
     any_ended = False
     for i in range(len(balls)):
-        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+        if is_over(ends, i):
             any_ended = True
             continue
-        robot, ball = robots[i, 0], balls[i]
+        robot, ball, held, fired = robots[i, 0], balls[i], contact[i, 0], kicked[i, 0]
         episode: Progress = episodes[i, 0]
-        episode.ticks += 1
-        held, fired = contact[i, 0], kicked[i, 0]
-        if fired and episode.kick_tick < 0:
-            episode.kick_tick = episode.ticks
+        begin_tick(episode, fired)
         episode.ticks_held = episode.ticks_held + 1 if contact[i, 1] else 0.0
-        goal = goal_side(episode.ball_x, episode.ball_y, ball[0], ball[1], half_length, half_width, post) > 0
-        episode.ball_x = ball[0]
-        episode.ball_y = ball[1]
+        goal = goal_of(episode, ball, half_length, half_width, post) > 0
         lost = is_out(ball[0], ball[1], half_length, half_width) or kept[i]
         lost = lost or episode.ticks_held >= settings.held_by_keeper
         # The rules: no touching the ball in their defence area, not even partly inside.
@@ -138,11 +134,6 @@ def _judge(
         earned = reward(
             weights, half_length, post, robot, robots[i, 1], ball, held, fired, goal, lost, episode
         )
-        rewards[i] += earned
-        episode.total_reward += earned
-        ended = goal or lost
-        ends[TERMINATED, i] = ended
-        ends[SUCCESS, i] = goal
-        ends[TRUNCATED, i] = not ended and episode.ticks >= settings.time_limit
-        any_ended = any_ended or ended or ends[TRUNCATED, i]
+        if end_tick(episode, earned, goal, lost, settings.time_limit, i, rewards, ends):
+            any_ended = True
     return any_ended

@@ -7,15 +7,16 @@ from math import hypot
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.shoot.rewards import ShootReward, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
-from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
-from robobt.world.rules import goal_side, in_area, is_out
+from robobt.world.rules import in_area, is_out
 
 _SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
 _WEIGHTS = numbers_dtype(ShootReward)
@@ -88,19 +89,13 @@ def _judge(
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     any_ended = False
     for i in range(len(balls)):
-        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+        if is_over(ends, i):
             any_ended = True
             continue
-        robot, ball = robots[i, 0], balls[i]
+        robot, ball, fired = robots[i, 0], balls[i], kicked[i, 0]
         episode: Progress = episodes[i, 0]
-        episode.ticks += 1
-        fired = kicked[i, 0]
-        if fired and episode.kick_tick < 0:
-            episode.kick_tick = episode.ticks
-        before_x, before_y = episode.ball_x, episode.ball_y
-        episode.ball_x = ball[0]
-        episode.ball_y = ball[1]
-        goal = goal_side(before_x, before_y, ball[0], ball[1], half_length, half_width, post) > 0
+        begin_tick(episode, fired)
+        goal = goal_of(episode, ball, half_length, half_width, post) > 0
         out = is_out(ball[0], ball[1], half_length, half_width) or ball[0] < 0.0
         out = out or robot[0] < _ROBOT_BACK_LIMIT or abs(robot[1]) > half_width
         out = out or in_area(robot[0], robot[1], half_length, field.defense_depth, field.defense_width)
@@ -109,11 +104,6 @@ def _judge(
         earned = reward(
             weights, firing_counts, half_length, post, robot, ball, actions[i], fired, goal, out, episode
         )
-        rewards[i] += earned
-        episode.total_reward += earned
-        ended = goal or out
-        ends[TERMINATED, i] = ended
-        ends[SUCCESS, i] = goal
-        ends[TRUNCATED, i] = not ended and episode.ticks >= settings.time_limit
-        any_ended = any_ended or ended or ends[TRUNCATED, i]
+        if end_tick(episode, earned, goal, out, settings.time_limit, i, rewards, ends):
+            any_ended = True
     return any_ended
