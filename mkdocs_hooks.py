@@ -53,7 +53,7 @@ def file_formats() -> str:
     """Write the fields of every file that a person writes."""
     from robobt.learning.agents.settings import AgentSettings
     from robobt.learning.envs.go_to_ball.rewards import GoToBallReward
-    from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
+    from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings, GoToBallSettings
     from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward
     from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
     from robobt.learning.envs.shoot.rewards import ShootReward
@@ -71,6 +71,7 @@ def file_formats() -> str:
         "Training": TrainSettings,
         "Agents": AgentSettings,
         "The environment Go-To-Ball": GoToBallSettings,
+        "The environment Go-To-Ball among robots": GoToBallAmongRobotsSettings,
         "Reward terms of Go-To-Ball": GoToBallReward,
         "The environment Shoot": ShootSettings,
         "Reward terms of Shoot": ShootReward,

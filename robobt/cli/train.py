@@ -32,7 +32,10 @@ if TYPE_CHECKING:
     from robobt.learning.training.progress import Progress as Standing
     from robobt.learning.training.results import TrainResult
 
-Task = Annotated[str, typer.Argument(help="What to learn: go_to_ball, shoot or score_on_goalkeeper.")]
+Task = Annotated[
+    str,
+    typer.Argument(help="What to learn: go_to_ball, go_to_ball_among_robots, shoot or score_on_goalkeeper."),
+]
 Changes = Annotated[
     list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")
 ]

@@ -1,8 +1,8 @@
 """Learning: environments, learners, shot data, predictors, export. Torch lives here.
 
 Importing it makes the environments known to Gymnasium: ``GoToBall-v0``,
-``ShootTowardsGoal-v0`` and ``ScoreOnGoalkeeper-v0``, also as ``robobt/GoToBall-v0``
-and so on, for ``gymnasium.make`` and, with
+``GoToBallAmongRobots-v0``, ``ShootTowardsGoal-v0`` and ``ScoreOnGoalkeeper-v0``, also as
+``robobt/GoToBall-v0`` and so on, for ``gymnasium.make`` and, with
 ``vectorization_mode="vector_entry_point"``, for ``gymnasium.make_vec``.
 """
 
@@ -13,12 +13,13 @@ need("learn", "gymnasium", "scipy", "pyarrow", "matplotlib")
 import gymnasium  # noqa: E402
 
 _ROOMS = {
-    "GoToBall": "go_to_ball",
-    "ShootTowardsGoal": "shoot",
-    "ScoreOnGoalkeeper": "score_on_goalkeeper",
+    "GoToBall": "go_to_ball.env",
+    "GoToBallAmongRobots": "go_to_ball.among_robots",
+    "ShootTowardsGoal": "shoot.env",
+    "ScoreOnGoalkeeper": "score_on_goalkeeper.env",
 }
 for _name, _room in _ROOMS.items():
-    _class = f"robobt.learning.envs.{_room}.env:{_name}"
+    _class = f"robobt.learning.envs.{_room}:{_name}"
     for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
         # The environments end their episodes themselves, and a second import must not warn.
         if _id not in gymnasium.registry:

@@ -16,6 +16,7 @@ from math import atan2, cos, hypot, sin
 
 import numpy as np
 
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.observation import ObservationSpec as ObservationSpec
@@ -83,7 +84,10 @@ _ABSENT = np.array(ABSENT)
 
 OBSERVATIONS = {
     spec.name: spec
-    for spec in (SHOT, SHOT_SCENE, GO_TO_BALL, GO_TO_BALL_TO_SHOOT, SHOOT, SCORE_ON_GOALKEEPER)
+    for spec in (
+        *(SHOT, SHOT_SCENE, GO_TO_BALL, GO_TO_BALL_TO_SHOOT, GO_TO_BALL_AMONG_ROBOTS),
+        *(SHOOT, SCORE_ON_GOALKEEPER),
+    )
 }
 
 

@@ -7,7 +7,11 @@ Gymnasium's interface is over the same.
 from robobt.learning.envs.arena_task import ArenaTask as ArenaTask
 from robobt.learning.envs.episodes import straight_line_time as straight_line_time
 from robobt.learning.envs.evaluation import run_starts as run_starts
+from robobt.learning.envs.go_to_ball.among_robots import GoToBallAmongRobotsEnv as GoToBallAmongRobotsEnv
 from robobt.learning.envs.go_to_ball.env import GoToBallEnv as GoToBallEnv
+from robobt.learning.envs.go_to_ball.settings import (
+    GoToBallAmongRobotsSettings as GoToBallAmongRobotsSettings,
+)
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings as GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask as GoToBallTask
 from robobt.learning.envs.make import make_task as make_task

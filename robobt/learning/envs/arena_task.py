@@ -90,6 +90,12 @@ class ArenaTask(ABC):
         """What each robot can do; None for the simulator's own."""
         return [self.settings.robot_limits]
 
+    @property
+    def ticks(self) -> FloatArray:
+        """How long each arena's episode has gone on, (n,)."""
+        ticks: FloatArray = self._progress["ticks"]
+        return ticks
+
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
         return self.sample(np.random.default_rng(seed), count)

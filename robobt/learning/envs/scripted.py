@@ -47,6 +47,11 @@ def straight_drive(observation: FloatArray) -> FloatArray:
     return actions
 
 
+def straight_drive_among(observation: FloatArray) -> FloatArray:
+    """Do the same among others, looking at none of them, (n, 42) -> (n, 3)."""
+    return np.column_stack((observation[:, :2], np.zeros(len(observation))))
+
+
 def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
     """Drive at full speed to where the ball is in the mouth, facing the goal; round the ball from before it.
 

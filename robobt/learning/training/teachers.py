@@ -13,13 +13,20 @@ import numpy as np
 
 from robobt.config.errors import RobobtError
 from robobt.learning.envs import ArenaTask, GoToBallSettings, GoToBallTask, ShootTask
-from robobt.learning.envs.scripted import AIM_GAIN, drive_to_shoot, straight_drive, turn_and_kick
+from robobt.learning.envs.scripted import (
+    AIM_GAIN,
+    drive_to_shoot,
+    straight_drive,
+    straight_drive_among,
+    turn_and_kick,
+)
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.models.actions import ActionScaling
 from robobt.skills import GoToBall, KickToTarget
 from robobt.skills.base import Skill
 from robobt.skills.store import Store
 from robobt.tree.runner import TreeRunner
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, Frame, RobotState
@@ -79,7 +86,7 @@ class SkillTeacher:
             store.command = RobotCommand()
             runner.tick()
             actions[arena] = action_of(store.command, self._task.action)
-        self._ticks += 1
+        self._ticks += self._task.settings.decide_every
         return actions
 
     def _frame(self, arena: int) -> Frame:
@@ -88,13 +95,29 @@ class SkillTeacher:
         contact = bool(arenas.contact[arena, 0])
         x, y, heading, vx, vy, omega = robot
         me = RobotState(0, x, y, heading, vx, vy, omega, contact, self._limits)
+        others = tuple(
+            RobotState(number, *state) for number, state in enumerate(arenas.robots[arena, 1:].tolist())
+        )
         time = float(self._ticks[arena]) * settings.period
-        return Frame(time, settings.field, BallState(*ball), (me,), period=settings.period)
+        return Frame(time, settings.field, BallState(*ball), (me,), others, period=settings.period)
+
+
+def playing(task: ArenaTask, teacher: Teacher) -> Callable[[FloatArray], FloatArray]:
+    """Return the teacher as a policy of a task that has just been reset, for evaluations."""
+    ticks = np.full(task.n, np.inf)
+
+    def decide(observation: FloatArray) -> FloatArray:
+        # An episode that is no older than the one seen last is another.
+        begun = np.flatnonzero(task.ticks <= ticks)
+        teacher.begin(begun)
+        ticks[:] = task.ticks
+        return teacher.act(observation)
+
+    return decide
 
 
 def script(task: ArenaTask) -> Teacher:
     """Return the script that does this task."""
-    _refuse_opponents(task)
     if isinstance(task, ShootTask):
         dribbler = task.settings.simulator.dribbler
         kind, simulator = dribbler.kind, task.settings.simulator
@@ -103,6 +126,9 @@ def script(task: ArenaTask) -> Teacher:
         return _Script(lambda observation: turn_and_kick(observation, task.action, pull))
     if isinstance(task.settings, GoToBallSettings) and task.settings.to_shoot:
         return _Script(lambda observation: drive_to_shoot(observation, task.action.max_turn))
+    if task.observation is GO_TO_BALL_AMONG_ROBOTS:
+        return _Script(straight_drive_among)
+    _refuse_opponents(task)
     return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
 
 
@@ -115,9 +141,9 @@ def _drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
 
 def skill(task: ArenaTask) -> Teacher:
     """Return the skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
-    _refuse_opponents(task)
     if isinstance(task, GoToBallTask):
         return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
+    _refuse_opponents(task)
     goal, speed = task.settings.field.their_goal, task.action.kick_speed
     return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
 

@@ -12,6 +12,7 @@ from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
 from robobt.tree import Registry
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of
 from robobt.world.command import RobotCommand
 from robobt.world.features import (
     GO_TO_BALL,
@@ -30,6 +31,7 @@ from robobt.world.state import Frame, RobotState
 OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     GO_TO_BALL.name: go_to_ball_of,
     GO_TO_BALL_TO_SHOOT.name: go_to_ball_to_shoot_of,
+    GO_TO_BALL_AMONG_ROBOTS.name: among_robots_of,
     SHOOT.name: shoot_of,
     SCORE_ON_GOALKEEPER.name: score_on_goalkeeper_of,
 }

@@ -18,7 +18,7 @@ from robobt.learning.envs.scripted import straight_drive
 
 IDS = pytest.mark.parametrize(
     "name",
-    ["robobt/GoToBall-v0", "ShootTowardsGoal-v0", "ScoreOnGoalkeeper-v0"],
+    ["robobt/GoToBall-v0", "GoToBallAmongRobots-v0", "ShootTowardsGoal-v0", "ScoreOnGoalkeeper-v0"],
 )
 DISTURBED = {
     "noise": {"robot_position": 0.01, "ball_position": 0.01, "heading": 0.02, "velocity": 0.1},

@@ -9,10 +9,11 @@ from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, see
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
 from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
+from robobt.world.avoiding import AHEAD, FAR, PLACES
 from robobt.world.state import ROBOT_RADIUS
 
 
-def _space(settings: GoToBallSettings) -> Box[np.float32]:
+def go_to_ball_space(settings: GoToBallSettings) -> Box[np.float32]:
     """Return bounds that follow from walls, limits and noise."""
     limits, starts = settings.robot_limits, settings.starts
     fastest = limits.max_speed * settings.randomisation.top_speed[1]
@@ -24,17 +25,25 @@ def _space(settings: GoToBallSettings) -> Box[np.float32]:
     # Sliding along a wall turns a robot, at most until it rolls along it.
     turn += speed / ROBOT_RADIUS
     seen = seen_speed(settings, speed, settings.noise.robot_position)
+    if settings.others.count:
+        theirs = seen_speed(
+            settings, settings.simulator.limits.max_speed + BUMP, settings.noise.robot_position
+        )
+        each = [FAR, FAR, seen + theirs, seen + theirs, FAR, AHEAD]
+        own = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
+        return bounded([*own, *each * PLACES], distances=(2,))
     high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
     if settings.to_shoot:
         high += [1.0, 1.0]
     return bounded(high, distances=(2,))
 
 
-def _reach(settings: GoToBallSettings) -> float | None:
+def reach_of(settings: GoToBallSettings) -> float | None:
+    """Return the distance at which the ball counts as reached, for pictures [m]; None for none."""
     return settings.contact.distance if settings.contact.rule.startswith("distance") else None
 
 
-_KIND = EnvKind(GoToBallTask, GoToBallSettings, _space, _reach)
+_KIND = EnvKind(GoToBallTask, GoToBallSettings, go_to_ball_space, reach_of)
 
 
 class GoToBallEnv(SingleEnv):

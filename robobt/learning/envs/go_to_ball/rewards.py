@@ -14,6 +14,8 @@ from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
 
+_NEAR = 0.2
+"""From this gap on another robot is not near [m]."""
 _BELL = 1.0 / sqrt(2.0 * pi)
 
 
@@ -32,6 +34,13 @@ class GoToBallReward(Settings):
         description="times the speed at which it closes in on its place, relative to the ball [m/s]",
     )
     time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
+    touched: float = Field(0.0, ge=0, le=1e4, description="taken off where another robot is touched")
+    near: float = Field(
+        0.0,
+        ge=0,
+        le=100,
+        description="taken off beside another robot, less with the gap and none from 0.2 m on",
+    )
 
 
 @compilable
@@ -44,6 +53,8 @@ def reward(
     place_x: float,
     place_y: float,
     facing: float,
+    gap: float,
+    touched: bool,
 ) -> float:
     """Compute the reward of a step.
 
@@ -56,6 +67,8 @@ def reward(
         place_x: where it is to drive [m]: the ball, or behind it in order to shoot.
         place_y: its other coordinate.
         facing: direction in which it is to face [rad].
+        gap: hull to hull of the nearest other robot, infinite without any [m].
+        touched: whether it has touched one.
     """
     distance = hypot(place_x - robot[0], place_y - robot[1])
     angle = abs(wrap_angle(facing - robot[2]))
@@ -65,7 +78,9 @@ def reward(
         # Relative to the ball: who pushes it along comes no closer.
         closing = (place_x - robot[0]) * (robot[3] - ball[2]) + (place_y - robot[1]) * (robot[4] - ball[3])
         total += weights.closing * closing / distance
-    total -= weights.time
+    total -= weights.time + weights.near * max(1.0 - gap / _NEAR, 0.0)
+    if touched:
+        total -= weights.touched
     if reached:
         total += weights.contact  # Eq. 7
     return total

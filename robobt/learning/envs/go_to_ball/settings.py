@@ -45,6 +45,25 @@ class GoToBallStarts(OrderedSettings):
     distance: Span = Field((0.2, 100.0), description="robot to ball, drawn again until it fits [m]")
 
 
+class OthersSettings(OrderedSettings):
+    """Robots in the way that drive to and fro and look at nothing; each episode's are drawn anew."""
+
+    count: int = Field(0, ge=0, le=21, description="how many there are; touching one ends the episode")
+    speed: Span = Field((0.5, 1.5), description="top speed of each [m/s]")
+    way: float = Field(1.5, gt=0, le=10, description="least distance of the ends of a way [m]")
+    crossing: float = Field(
+        0.6, ge=0, le=1, description="share of them whose way crosses the straight one to the ball at first"
+    )
+    from_ball: float = Field(0.4, ge=0, le=3, description="least distance of a way from the ball [m]")
+    apart: float = Field(1.0, ge=0.2, le=5, description="least distance from the robot at first [m]")
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.speed[0] < 0.2:
+            raise ValueError("speed must be at least 0.2")
+        return self
+
+
 class GoToBallSettings(TaskSettings):
     """Go-To-Ball: drive to the ball. The paper's environment by default."""
 
@@ -56,6 +75,7 @@ class GoToBallSettings(TaskSettings):
         description="it sees the attacked goal's direction, has reached the ball only when a kick would go "
         "in, and is rewarded for its orientation to the goal",
     )
+    others: OthersSettings = OthersSettings()
     reward: GoToBallReward = GoToBallReward()
     starts: GoToBallStarts = GoToBallStarts()
 
@@ -65,4 +85,17 @@ class GoToBallSettings(TaskSettings):
             raise ValueError("action: Go-To-Ball needs drive actions")
         if self.contact.rule == "held" and not self.action.dribbler:
             raise ValueError("contact: the rule 'held' needs action.dribbler")
+        if self.others.count and self.to_shoot:
+            raise ValueError("to_shoot: not together with others")
         return self
+
+
+class GoToBallAmongRobotsSettings(GoToBallSettings):
+    """Go-To-Ball among five robots that move and look at nothing."""
+
+    decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
+    others: OthersSettings = OthersSettings(count=5)
+    starts: GoToBallStarts = GoToBallStarts(distance=(2.0, 100.0))
+    reward: GoToBallReward = GoToBallReward(
+        contact=5.0, distance=0.0, orientation=0.0, closing=0.015, time=0.005, touched=5.0, near=0.05
+    )

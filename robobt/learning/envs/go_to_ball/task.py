@@ -10,10 +10,13 @@ from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, reward
 from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings
-from robobt.learning.envs.go_to_ball.starts import go_to_ball_starts
+from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
+from robobt.learning.envs.judging import begin_tick, end_tick, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND
-from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import (
     GO_TO_BALL,
@@ -22,7 +25,8 @@ from robobt.world.features import (
     go_to_ball_rows,
 )
 from robobt.world.geometry import wrap_angle
-from robobt.world.state import BALL_RADIUS
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _RULES = ("distance", "distance_facing", "infrared", "held")
 _DISTANCE, _FACING, _INFRARED, _HELD = range(4)
@@ -30,12 +34,14 @@ _KICK_SPEED = 6.0
 """Kick that is thought of when the ball is fetched in order to shoot [m/s]; that of the shipped Shoot."""
 _FROM_POST = 0.15
 """How far inside the posts it has to cross the line [m]."""
+_TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
+"""Robots whose centres are nearer touch [m]: contact is seen once a tick."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
 _WEIGHTS = numbers_dtype(GoToBallReward)
 
 
 class GoToBallTask(ArenaTask):
-    """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
+    """Drive to the ball; see :class:`~robobt.learning.envs.GoToBallEnv` and ``GoToBallAmongRobotsEnv``."""
 
     observation: ObservationSpec = GO_TO_BALL
     settings: GoToBallSettings
@@ -45,6 +51,10 @@ class GoToBallTask(ArenaTask):
         self._to_shoot = settings.to_shoot
         if settings.to_shoot:
             self.observation = GO_TO_BALL_TO_SHOOT
+        elif settings.others.count:
+            self.observation = GO_TO_BALL_AMONG_ROBOTS
+        self.robots = 1 + settings.others.count
+        self.start_columns = columns_of(settings)
         super().__init__(settings, n, seed)
         self._goal = (self.settings.field.half_length, self.settings.field.goal_width / 2)
         self._contact = numbers_of(self.settings.contact)
@@ -57,7 +67,26 @@ class GoToBallTask(ArenaTask):
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """See :attr:`observation`."""
+        if self.robots > 1:
+            return among_robots_rows(robots, balls)
         return go_to_ball_rows(robots[:, 0], balls, self._goal[0], self.observation_size)
+
+    @property
+    def _robot_limits(self) -> list[RobotLimits | None]:
+        return [self.settings.robot_limits, *[None] * (self.robots - 1)]
+
+    def _build(self) -> None:
+        settings = self.settings
+        self._patrols = Patrols(settings.simulator.limits, settings.period, self.n, self.robots - 1)
+        super()._build()
+
+    def _starting(self, starts: FloatArray, which: IntArray) -> None:
+        traits = starts[:, 6 * self.robots + 4 :]
+        self._patrols.restart(which, traits.reshape(len(which), self.robots - 1, len(TRAITS)))
+
+    def _oppose(self) -> None:
+        if self.robots > 1:
+            self._patrols.decide(self.arenas.robots, self._commands[:, 1:])
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
         arenas = self.arenas
@@ -84,9 +113,10 @@ class GoToBallTask(ArenaTask):
         reach = rule.distance
         if rule.rule in ("infrared", "held"):
             reach = body.face + BALL_RADIUS + body.sensor_depth
-        way = np.hypot(starts[:, 6] - starts[:, 0], starts[:, 7] - starts[:, 1]) - reach
+        balls = starts[:, 6 * self.robots :]
+        way = np.hypot(balls[:, 0] - starts[:, 0], balls[:, 1] - starts[:, 1]) - reach
         way = np.maximum(way, 0.0)
-        way[np.any(starts[:, (3, 4, 8, 9)] != 0.0, axis=1)] = np.nan
+        way[np.any(starts[:, (3, 4)] != 0.0, axis=1) | np.any(balls[:, 2:4] != 0.0, axis=1)] = np.nan
         fastest = max(limits.acceleration, limits.lateral_acceleration) * self._randomiser.acceleration[which]
         top_speed = limits.max_speed * self._randomiser.top_speed[which]
         return straight_line_time(way, np.minimum(top_speed, settings.action.max_speed), fastest)
@@ -126,12 +156,12 @@ def _judge(
     episodes = progress.view(PROGRESS)
     any_ended = False
     for i in range(len(balls)):
-        if ends[TERMINATED, i] or ends[TRUNCATED, i]:
+        if is_over(ends, i):
             any_ended = True
             continue
         robot, ball = robots[i, 0], balls[i]
         episode: Progress = episodes[i, 0]
-        episode.ticks += 1
+        begin_tick(episode, False)
         episode.ticks_held = episode.ticks_held + 1 if in_mouth[i, 0] and dribbler else 0.0
         if rule in (_DISTANCE, _FACING):
             dx, dy = ball[0] - robot[0], ball[1] - robot[1]
@@ -151,10 +181,13 @@ def _judge(
             reached = reached and _would_score(robot[2], ball, goal_x, post_y)
         if contact.max_speed is not None:
             reached = reached and hypot(robot[3], robot[4]) <= contact.max_speed
-        earned = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing)
-        rewards[i] += earned
-        episode.total_reward += earned
-        ends[TERMINATED, i] = ends[SUCCESS, i] = reached
-        ends[TRUNCATED, i] = not reached and episode.ticks >= settings.time_limit
-        any_ended = any_ended or reached or ends[TRUNCATED, i]
+        nearest = inf
+        for other in range(1, robots.shape[1]):
+            nearest = min(nearest, hypot(robots[i, other, 0] - robot[0], robots[i, other, 1] - robot[1]))
+        touched = nearest < _TOUCHING
+        reached = reached and not touched
+        gap = nearest - 2.0 * ROBOT_RADIUS
+        earned = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing, gap, touched)
+        if end_tick(episode, earned, reached, touched, settings.time_limit, i, rewards, ends):
+            any_ended = True
     return any_ended

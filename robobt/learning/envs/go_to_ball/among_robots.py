@@ -1,0 +1,77 @@
+"""Go-To-Ball among robots that move, as Gymnasium knows it: its specification."""
+
+from __future__ import annotations
+
+from robobt.learning.envs.go_to_ball.env import go_to_ball_space, reach_of
+from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings
+from robobt.learning.envs.go_to_ball.task import GoToBallTask
+from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
+
+
+def _task(settings: GoToBallAmongRobotsSettings | None, n: int) -> GoToBallTask:
+    return GoToBallTask(GoToBallAmongRobotsSettings() if settings is None else settings, n)
+
+
+_KIND = EnvKind(_task, GoToBallAmongRobotsSettings, go_to_ball_space, reach_of)
+
+
+class GoToBallAmongRobotsEnv(SingleEnv):
+    """Go-To-Ball among robots: drive to the ball and touch nobody.
+
+    :class:`~robobt.learning.envs.GoToBallEnv` with five other robots. What is given here are the defaults of
+    :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings`, where all of it can be changed.
+
+    One step is a decision and holds for two control periods of 30 ms, each of 4 physics steps.
+
+    **The others** drive to and fro between two points, with a top speed of 0.5 to 1.5 m/s, and look at nothing.
+    One that is held up for 10 periods turns round.
+
+    **Observation**, float32, :data:`robobt.world.avoiding.GO_TO_BALL_AMONG_ROBOTS`; the frame is the robot's,
+    x ahead and y to its left:
+
+    | entry | meaning | unit | range |
+    | --- | --- | --- | --- |
+    | 0, 1 | direction to the ball, of length 1 | 1 | [-1, 1] |
+    | 2 | distance of the centres of robot and ball | m | [0, diagonal inside the walls] |
+    | 3, 4, 5 | the robot's velocity and turning rate | m/s, rad/s | as for Go-To-Ball |
+    | 6 + 6 k, 7 + 6 k | position of the other robot that is k-th nearest, k = 0 to 5, at most 3 m away | m | [-3, 3] |
+    | 8 + 6 k, 9 + 6 k | its velocity relative to the robot | m/s | both top speeds, either way |
+    | 10 + 6 k | gap of the hulls at their closest approach in the next 2 s, if both go on so | m | [-0.18, 3] |
+    | 11 + 6 k | time until then | s | [0, 2] |
+
+    A place without a robot holds (-3, 0, 0, 0, 3, 2).
+
+    **Action**: as for Go-To-Ball, at most 1.5 m/s and 1.395 rad/s.
+
+    **Reward** a period of 30 ms; the weights are in
+    :class:`~robobt.learning.envs.go_to_ball.rewards.GoToBallReward`:
+
+    | term | value |
+    | --- | --- |
+    | contact | 5 where the ball is reached |
+    | touched | -5 where another robot is touched |
+    | closing | 0.015 times the speed towards the ball: 0.5 for each metre |
+    | near | -0.05 (1 - gap / 0.2 m), where the nearest robot is nearer than 0.2 m |
+    | time | -0.005 |
+
+    **Start**: ball and robot each anywhere inside the lines less 0.1 m, at least 2 m apart, the robot with any
+    heading, both at rest. The ends of the others' ways are anywhere there, at least 1.5 m apart; with a chance of
+    0.6 a way crosses the straight one from robot to ball. No way comes nearer to the ball than 0.4 m. They begin
+    somewhere on their ways, at their top speed, at least 1 m from the robot and 0.27 m from each other.
+
+    **End**: terminated within 0.2 m of the ball, which is success; terminated by a touch, two centres within
+    0.185 m; truncated after 330 periods (9.9 s).
+
+    Args:
+        settings: a :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings` or the mapping that makes one, as
+            out of a YAML file.
+        render_mode: None or "rgb_array".
+    """  # noqa: E501 - a table's row is a line
+
+    kind = _KIND
+
+
+class GoToBallAmongRobotsVectorEnv(ManyEnv):
+    """Many arenas of :class:`GoToBallAmongRobotsEnv`, which says what is observed, rewarded and ended."""
+
+    kind = _KIND
