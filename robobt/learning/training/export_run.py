@@ -27,7 +27,12 @@ from robobt.statistics import mean_interval
 
 _Floats = NDArray[np.float64]
 
-_SKILLS = {"go_to_ball": "GoToBall", "shoot": "Shoot", "score_on_goalkeeper": "Score"}
+_SKILLS = {
+    "go_to_ball": "GoToBall",
+    "go_to_ball_among_robots": "GoToBall",
+    "shoot": "Shoot",
+    "score_on_goalkeeper": "Score",
+}
 """Skill of each task."""
 
 

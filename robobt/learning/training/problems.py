@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -18,7 +18,10 @@ from robobt.learning.envs import (
     make_task,
     run_starts,
 )
+from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.several_worlds import SeveralWorlds
 from robobt.learning.training.evaluation import Evaluation, Policy
+from robobt.world.avoiding import PLACES
 
 Split = Literal["validation", "held_out"]
 """Fixed starts of evaluations: those that choose the actor, or those that its figures come from."""
@@ -48,8 +51,18 @@ class Problem:
     smoothed: tuple[bool, ...]
 
 
-def problem_of(environment: TaskSettings, held_out: TaskSettings | None = None) -> Problem:
-    """Return the task in that environment; ``held_out`` is where held-out starts are played, if elsewhere."""
+def problem_of(
+    environment: TaskSettings,
+    held_out: TaskSettings | None = None,
+    worlds: Sequence[TaskSettings] = (),
+) -> Problem:
+    """Return the task in that environment.
+
+    Args:
+        environment: what a policy of the task is told of.
+        held_out: where held-out starts are played, if elsewhere.
+        worlds: what training's arenas and validation's starts are shared among, if not that environment.
+    """
     speed, turn = environment.action.max_speed, environment.action.max_turn
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]
@@ -57,6 +70,9 @@ def problem_of(environment: TaskSettings, held_out: TaskSettings | None = None) 
         scale, smoothed = (1.0, 1.0, 3.0, speed, speed, turn), (True,) * 3
         if environment.to_shoot:
             scale += (1.0, 1.0)
+        if environment.others.count:
+            # What is near and about to be met counts more than the rest.
+            scale += (1.0, 1.0, speed, speed, 0.5, 1.0) * PLACES
     elif isinstance(environment, ShootSettings):
         # What matters is a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
         scale = (0.1, 0.1, 1.0, 1.0, turn, 3.0, 1.0, 1.0, 1.0, 1.0)
@@ -67,13 +83,30 @@ def problem_of(environment: TaskSettings, held_out: TaskSettings | None = None) 
         smoothed = (True, True, True, False)
     else:
         raise TypeError(f"{type(environment).__name__} is no environment of a task")
-    where: dict[Split, TaskSettings] = {"validation": environment, "held_out": held_out or environment}
+    trained = tuple(worlds) or (environment,)
+    where: dict[Split, Sequence[TaskSettings]] = {
+        "validation": trained,
+        "held_out": (held_out or environment,),
+    }
     return Problem(
-        lambda n: make_task(environment, n),
+        lambda n: _arenas(trained, n),
         lambda policy, split, starts: _evaluate(where[split], policy, split, starts),
         scale,
         smoothed,
     )
+
+
+def _arenas(worlds: Sequence[TaskSettings], n: int) -> VectorTask:
+    """Return ``n`` arenas, shared evenly among the worlds."""
+    if len(worlds) == 1:
+        return make_task(worlds[0], n)
+    return SeveralWorlds(
+        [make_task(world, share) for world, share in zip(worlds, _shares(n, len(worlds)), strict=True)]
+    )
+
+
+def _shares(count: int, parts: int) -> list[int]:
+    return [(count + parts - 1 - part) // parts for part in range(parts)]
 
 
 def training_seed(seed: int, steps: int) -> int:
@@ -87,8 +120,12 @@ def split_seed(split: Split) -> int:
     return _SPLIT_SEEDS[split]
 
 
-def _evaluate(environment: TaskSettings, policy: Policy, split: Split, starts: int) -> Evaluation:
-    task, seed = make_task(environment, min(_ARENAS, starts)), split_seed(split)
-    episodes = run_starts(task, policy, task.sample_starts(seed, starts), seed)
+def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, starts: int) -> Evaluation:
+    seed = split_seed(split)
+    parts = []
+    for world, share in zip(worlds, _shares(starts, len(worlds)), strict=True):
+        task = make_task(world, min(_ARENAS, share))
+        parts.append(run_starts(task, policy, task.sample_starts(seed, share), seed))
+    episodes = Episodes.joined(parts)
     timed = episodes.kick_time if isinstance(task, ShootTask) else episodes.time
     return Evaluation(episodes.success, timed, episodes.optimum, episodes.total_reward)

@@ -13,6 +13,7 @@ from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import (
+    GoToBallAmongRobotsSettings,
     GoToBallSettings,
     ScoreOnGoalkeeperSettings,
     ShootSettings,
@@ -29,6 +30,7 @@ ENVIRONMENTS: dict[str, type[TaskSettings]] = {
     "go_to_ball": GoToBallSettings,
     "shoot": ShootSettings,
     "score_on_goalkeeper": ScoreOnGoalkeeperSettings,
+    "go_to_ball_among_robots": GoToBallAmongRobotsSettings,
 }
 """The settings of each task's environment."""
 
@@ -124,11 +126,17 @@ class EvaluationSettings(Settings):
 class TrainSettings(Settings):
     """A training run: with a seed and a version it gives the same weights, bit for bit, on a machine."""
 
-    task: str = Field(description="what is learned: go_to_ball, shoot or score_on_goalkeeper")
+    task: str = Field(description="what is learned, by name: go_to_ball, shoot, ...")
     preset: str = Field("", description="where these settings come from")
     seed: int = Field(0, ge=0, le=2**53 - 1, description="what all randomness follows from")
     steps: int = Field(description="environment steps at most", ge=1, le=1_000_000_000)
     environment: dict[str, Any] = Field(default_factory=dict, description="changes to the task's settings")
+    worlds: tuple[dict[str, Any], ...] = Field(
+        (),
+        max_length=64,
+        description="changes to the environment, such as other simulators: the arenas and the validation "
+        "starts are shared evenly among these worlds; none for the environment alone",
+    )
     learner: Literal["ddpg", "ppo"] = Field(
         "ddpg", description="what learns: ddpg with the settings of agent, replay and collection, or ppo"
     )
@@ -175,6 +183,8 @@ class TrainSettings(Settings):
                 raise ValueError(
                     f"{name} must be a multiple of collection.environments ({self.collection.environments})"
                 )
+        if len(self.worlds) > min(self.collection.environments, self.evaluation.starts):
+            raise ValueError("worlds: more than there are arenas or validation starts to share")
         return self
 
 
@@ -209,6 +219,7 @@ def load_settings(
         raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
     evaluated_on(settings, source)
+    worlds_of(settings, source)
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
 
@@ -232,6 +243,15 @@ def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSetti
     data = _merged(settings.environment, settings.evaluation.held_out_environment)
     return _validated(
         ENVIRONMENTS[settings.task], data, source, "environment with evaluation.held_out_environment"
+    )
+
+
+def worlds_of(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
+    """Return the settings of each world that the run trains in; without others, of the environment."""
+    model, data = ENVIRONMENTS[settings.task], settings.environment
+    return tuple(
+        _validated(model, _merged(data, changes), source, f"environment with worlds[{index}]")
+        for index, changes in enumerate(settings.worlds or ({},))
     )
 
 

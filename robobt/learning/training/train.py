@@ -15,7 +15,7 @@ from robobt.learning.training.results import TrainResult
 from robobt.learning.training.run import Run
 from robobt.learning.training.run import TrainError as TrainError
 from robobt.learning.training.run_folder import RunFolder, alone_in
-from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on
+from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
 
 RUNS: dict[str, type[Run]] = {"ddpg": OffPolicyRun, "ppo": OnPolicyRun}
 """How each learner collects and learns."""
@@ -51,7 +51,7 @@ def train(
     """
     clock = RunClock()
     if problem is None:
-        problem = problem_of(environment_of(settings), evaluated_on(settings))
+        problem = problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings))
     with alone_in(Path(out)):
         folder = RunFolder(Path(out), settings, resume)
         if folder.result is not None:
