@@ -15,7 +15,7 @@ import robobt
 from robobt.config.errors import one_line
 from robobt.config.resources import models_folder
 from robobt.league.programs.program import ForfeitError
-from robobt.league.programs.world import ProgramWorld
+from robobt.league.programs.staying import programs_in
 from robobt.league.referee.process import GameControllerError
 from robobt.league.wire.stream import StreamError
 from robobt.match.loop import Match
@@ -102,7 +102,7 @@ class Job:
                     outputs = {team: self._printed(fixture, team) for team in programs}
                     places = {team: Path(sides[team].source).parent for team in programs}
                     world = opened.enter_context(
-                        ProgramWorld(world, scenario, programs, places, outputs, plan.speed)
+                        programs_in(world, scenario, programs, places, outputs, plan.speed)
                     )
                 match = Match(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
                 with guarded(match, self._note(fixture), plan.silence):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from robobt.engines.run import engine, run_tasks
 from robobt.engines.work import Work
+from robobt.league.programs.staying import end_staying
 from robobt.plays.private_files import sender
 from robobt.signals import uninterrupted
 from robobt.tournament.claims import Claims
@@ -126,6 +127,8 @@ def play(
                     time.sleep(_POLL)
         except KeyboardInterrupt:
             interrupted = True
+        finally:
+            end_staying()
     return Played([driver.done[one] for one in sorted(driver.done, key=_order)], driver.failed, interrupted)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -79,6 +80,33 @@ def test_a_program_drives_its_robots_from_either_side(tmp_path: Path) -> None:
         assert start.seen_by(other).own[0].position == end.seen_by(other).own[0].position
     assert {path.read_text() for path in (tmp_path / "night.output").glob("*/*.txt")} == {"ready\n"}
     assert not left("drives")
+
+
+@pytest.mark.parametrize(
+    ("workers", "name", "settings"),
+    [(0, "steps", ("{steps}", "lockstep: true")), (1, "drives", ("{grsim}",))],
+)
+def test_a_program_that_may_stay_is_started_once_for_either_side(
+    workers: int, name: str, settings: tuple[str, ...], tmp_path: Path
+) -> None:
+    port, *more = settings
+    teams = (runner(0.0), program(tmp_path, name, port=port, more="\n  ".join(["stays: true", *more])))
+    what = plan(2, scenario=drill(1.0), entrants=teams, against="at 0", speed=3.0)
+    with what.open_store(tmp_path / "night.sqlite") as store:
+        found = play(what, store, workers)
+    assert [match.forfeited_by for match in found.matches] == [None] * 4
+    assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
+    end = time.monotonic() + 5.0
+    while left(name) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not left(name)
+
+
+def test_a_program_that_may_stay_and_has_lost_by_rule_is_started_anew(tmp_path: Path) -> None:
+    found = run(tmp_path, program(tmp_path, "crashes", more="stays: true"), seconds=24.0)
+    assert [match.forfeited_by for match in found.matches] == ["crashes"] * 2
+    assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
+    assert not left("crashes")
 
 
 STEPS = """

@@ -44,6 +44,9 @@ class Program(Settings):
     silent_for: float = Field(
         10.0, gt=0, le=600, description="how long it may then be silent until it has lost [s]"
     )
+    stays: bool = Field(
+        False, description="whether it goes on after a match and plays the next one, if the other side's does"
+    )
     ends_within: float = Field(
         30.0, gt=0, le=600, description="how long it may take to end when it is told to by SIGTERM [s]"
     )

@@ -78,7 +78,8 @@ class ProgramWorld(WrappedWorld):
         self._heard: dict[Team, float] = {}
         self._judged: Frame | None = None
         self._seen: CameraFrame | None = None
-        self._frames, self._stamped_from, self._began, self._due = 0, 0.0, 0.0, 0.0
+        self._frames, self._stamp, self._stamped_from, self._began, self._due = 0, 0.0, 0.0, 0.0, 0.0
+        self._printed: dict[Team, int] = {}
         shared = {name for program in programs.values() for name in program.league_groups}
         with ExitStack() as opened:
             self._ports = opened.enter_context(MatchPorts(programs, shared))
@@ -121,11 +122,19 @@ class ProgramWorld(WrappedWorld):
     def reset(self, placement: Placement, seed: int) -> None:
         """Put everything in its place and wait for the programs; see :meth:`robobt.world.World.reset`.
 
+        Those that still run from another match play this one.
+
         Raises:
             ForfeitError: a program cannot be started, ends, or is not ready in time.
         """
         super().reset(placement, seed)
+        self._heard.clear()
+        self._judged, self._stamped_from = None, self._stamp
         for team, program in self._programs.items():
+            running = self._processes.get(team)
+            if running is not None and running.ended() is None:
+                self._printed[team] = running.printed
+                continue
             addresses = self._ports.addresses(team)
             if team in self._steps:
                 addresses["steps"] = str(self._steps[team].port)
@@ -136,6 +145,7 @@ class ProgramWorld(WrappedWorld):
             except OSError as error:
                 raise ForfeitError(team, f"{command[0]}: {error.strerror or error}") from error
             self._processes[team] = self._opened.enter_context(process)
+            self._printed[team] = 0
         self._began = self._due = time.monotonic()
         halted = GameState(command=RefereeCommand.HALT)
         while len(self._heard) < len(self._programs):
@@ -230,7 +240,7 @@ class ProgramWorld(WrappedWorld):
             ended = process.ended(wait=port is not None and port.problem is not None)
             if ended is not None:
                 raise ForfeitError(team, ended)
-            if process.printed > MOST_OUTPUT:
+            if process.printed - self._printed[team] > MOST_OUTPUT:
                 raise ForfeitError(team, f"its program printed more than {MOST_OUTPUT >> 20} MB")
             if port is not None and port.problem is not None:
                 raise ForfeitError(team, port.problem)
@@ -247,7 +257,7 @@ class ProgramWorld(WrappedWorld):
                 raise ForfeitError(team, f"its program was silent for {program.silent_for:g} s")
 
     def _publish(self, frame: Frame) -> None:
-        stamp = self._stamped_from + frame.time
+        stamp = self._stamp = self._stamped_from + frame.time
         (self._seen,) = self._camera.capture(frame, stamp, stamp)
         geometry = None
         if self._frames % GEOMETRY_INTERVAL == 0:
