@@ -73,6 +73,23 @@ def parse_entrant(text: str) -> Entrant:
     return read_entrant(play, params, text)
 
 
+def require_programs(teams: Iterable[Entrant]) -> None:
+    """Raise an error that names the entrant whose program is not on this machine, where matches are played.
+
+    A match that cannot begin is lost by rule, so a misspelt command would look like a weak team.
+    """
+    from robobt.engines.run import engine
+    from robobt.league.programs.process import is_there
+
+    for team in teams:
+        program = team.program
+        if program is not None and engine() is None:
+            command = program.command[0]
+            # What is filled in is known with the match.
+            if "{" not in command and not is_there(command, Path(team.source).parent):
+                raise team.error(f"there is no such program: {command}", "program.command.0")
+
+
 def tell_waiting(matches: int) -> None:
     """Tell that another command holds up this one."""
     warn(

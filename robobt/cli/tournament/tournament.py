@@ -40,6 +40,7 @@ from robobt.cli.tournament.asked import (
     WorkersOption,
     asked_test,
     parse_entrant,
+    require_programs,
     tell_code,
     tell_waiting,
 )
@@ -163,6 +164,7 @@ def tournament(
     base, referees = refereed(base, referee, game_controller, stages)
     texts = [*entrants, *([against] if against is not None and against not in entrants else [])]
     teams = tuple([parse_entrant(text) for text in texts])
+    require_programs(teams)
     plan = Plan(
         base,
         teams,

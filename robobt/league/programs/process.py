@@ -56,6 +56,11 @@ environment: a program's children may have left the group.
 """
 
 
+def is_there(program: str, folder: Path) -> bool:
+    """Return whether there is such a program, by its name or in the folder where it is to run."""
+    return shutil.which(program, path=os.environ.get("PATH")) is not None or (folder / program).is_file()
+
+
 class TeamProcess:
     """A running program. A context manager, at whose end it and all its children are gone.
 
@@ -73,10 +78,7 @@ class TeamProcess:
     """
 
     def __init__(self, command: Sequence[str], folder: Path, output: Path) -> None:
-        if (
-            shutil.which(command[0], path=os.environ.get("PATH")) is None
-            and not (folder / command[0]).is_file()
-        ):
+        if not is_there(command[0], folder):
             raise FileNotFoundError(errno.ENOENT, "there is no such program", command[0])
         self._mark = f"{_MARK}={uuid4().hex}"
         self._output = output

@@ -43,8 +43,9 @@ def programs_in(
         return
     settings = sorted((team, repr(program), str(folders[team])) for team, program in programs.items())
     key = repr((settings, str(scenario.source), scenario.period, speed))
-    served = _STAYING.pop(key, None)
-    if served is None:
+    if key in _STAYING:
+        served = _STAYING.pop(key)
+    else:
         served = ProgramWorld(world, scenario, programs, folders, outputs, speed)
         # A worker process ends without asking: this is its only chance.
         Finalize(None, end_staying, exitpriority=0)

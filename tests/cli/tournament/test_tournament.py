@@ -145,6 +145,16 @@ def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem:
     assert "Traceback" not in shown.output
 
 
+def test_a_program_that_is_not_there_is_told_before_any_match(tmp_path: Path) -> None:
+    file = tmp_path / "theirs.yaml"
+    file.write_text("entrant: theirs\nprogram: {command: [./no-such-program]}\n")
+    given = (file, "--against", "take_shot", "--sprt", "0", "30", *QUICK)
+    shown = invoke(*given, "--out", tmp_path / "a.sqlite")
+    assert shown.exit_code == 1
+    assert f"{file}: program.command.0: there is no such program: ./no-such-program" in plain(shown)
+    assert not (tmp_path / "a.sqlite").exists()
+
+
 def test_a_store_of_another_tournament_is_named_with_the_field(tmp_path: Path) -> None:
     store = tmp_path / "night.sqlite"
     given = ("take_shot", "attack_nn", *QUICK[:4], "--workers", "0", "--rounds", "1", "--out", store)
