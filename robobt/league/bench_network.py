@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from robobt.config.systems import need_posix
 from robobt.league.connection import Connection
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
@@ -59,6 +60,7 @@ def bench_league(
         frames, summed over the ticks; ticks in which a tree failed; dropped packets; and the
         time from the kill until all robots were commanded to stop, and stood [s].
     """
+    need_posix("stopping a process for a while, as the benchmark does,")
     endpoints = free_endpoints()
     context = multiprocessing.get_context("spawn")
     server_pipe, server_end = context.Pipe()

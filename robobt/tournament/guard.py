@@ -38,9 +38,12 @@ def guarded(match: Match, note: Path, silence: float = SILENCE) -> Iterator[None
         silence: how long nothing may happen [s].
     """
     note.write_bytes(bytes([_NOBODY]))
-    handle = os.open(note, os.O_RDWR)
     try:
-        with mmap.mmap(handle, 1) as shared, Path(os.devnull).open("w") as nowhere:
+        with (
+            note.open("r+b") as file,
+            mmap.mmap(file.fileno(), 1) as shared,
+            Path(os.devnull).open("w") as nowhere,
+        ):
 
             def wind_up() -> None:
                 faulthandler.dump_traceback_later(silence, exit=True, file=nowhere)
@@ -59,8 +62,6 @@ def guarded(match: Match, note: Path, silence: float = SILENCE) -> Iterator[None
     except Exception:
         note.unlink()
         raise
-    finally:
-        os.close(handle)
     # A play that ends the process gets past here, and its note stays.
     note.unlink()
 

@@ -12,6 +12,7 @@ from uuid import UUID
 
 import numpy as np
 
+from robobt.config.systems import need_posix
 from robobt.league.programs.ports import MOST_PACKETS, MatchPorts
 from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
 from robobt.league.programs.program import ForfeitError, Program
@@ -56,6 +57,7 @@ class ProgramWorld(WrappedWorld):
 
     Raises:
         OSError: there is no free port.
+        SystemUnfitError: this is Windows.
     """
 
     def __init__(
@@ -67,6 +69,7 @@ class ProgramWorld(WrappedWorld):
         outputs: Mapping[Team, Path],
         speed: float = 1.0,
     ) -> None:
+        need_posix("a team's own program")
         super().__init__(world)
         self._programs, self._folders, self._outputs = programs, folders, outputs
         self._step, self._period = scenario.period / speed, scenario.period

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Self
 
 from robobt.config.errors import RobobtError, one_line
+from robobt.config.systems import need_posix
 from robobt.league.wire.sockets import LOOPBACK
 from robobt.league.wire.stream import MessageStream
 from robobt.signals import uninterrupted
@@ -94,9 +95,11 @@ class GameControllerProcess:
 
     Raises:
         GameControllerError: it does not start.
+        SystemUnfitError: this is Windows.
     """
 
     def __init__(self, program: Path, game: Mapping[str, object] | None = None) -> None:
+        need_posix("the official game controller")
         self._folder = tempfile.TemporaryDirectory(prefix="robobt-gc-", ignore_cleanup_errors=True)
         self._process: subprocess.Popen[bytes] | None = None
         try:

@@ -65,6 +65,10 @@ class _UdpSocket:
         """Yield data, ancillary data, flags and sender of the waiting datagrams, at most a batch."""
         for _ in range(_BATCH):
             try:
+                if sys.platform == "win32":  # which has no recvmsg, and drops a longer datagram itself
+                    data, sender = self._socket.recvfrom(MAX_PACKET)
+                    yield data, [], 0, sender
+                    continue
                 datagram = self._socket.recvmsg(MAX_PACKET, 64)
             except (BlockingIOError, InterruptedError):
                 return
@@ -123,8 +127,8 @@ class Receiver(_UdpSocket):
             sock.setsockopt(socket.IPPROTO_IP, _IP_PKTINFO, 1)
         if group:
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Bound to the group's own address, the kernel filters out unicast and other groups.
-        sock.bind((address, port))
+        # Bound to the group's own address, the kernel filters out unicast and other groups; Windows cannot.
+        sock.bind(("" if group and sys.platform == "win32" else address, port))
         if group:
             if linux:
                 sock.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
