@@ -54,8 +54,10 @@ def header_data(header: RecordingHeader, paths: bool = False) -> dict[str, objec
                 "radius": robot.radius,
                 "mouth": robot.mouth,
                 "tree": [
-                    [node.name, node.type, node.kind, node.depth, node.glyph, node.detail, node.path][
-                        : 7 if paths else 6
+                    [
+                        *(node.name, node.type, node.kind, node.depth, node.glyph, node.detail),
+                        int(node.condition),
+                        *([node.path] if paths else []),
                     ]
                     for node in robot.tree
                 ],

@@ -3,6 +3,7 @@
 import csv
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
@@ -10,8 +11,8 @@ from selenium.webdriver.support.ui import Select
 
 from robobt.live.replay_html import write_html
 from robobt.match import Match, load_scenario
-from robobt.match.recording import Recording, load_recording
-from robobt.world.game import GameState, RefereeCommand, TeamStatus
+from robobt.match.recording import Event, Recording, load_recording
+from robobt.world.game import GameState, RefereeCommand, Restart, Team, TeamStatus
 from robobt.worlds import sim_world
 from tests.live.chromium import Page
 
@@ -76,3 +77,82 @@ def test_a_window_of_a_chart_is_downloaded(
     assert ticks == [*range(ticks[0], ticks[0] + len(ticks))]
     xs = [float(row[2]) for row in rows[1:]]
     assert xs == pytest.approx(recording.truth.robots[ticks, 0, 0].tolist(), abs=6e-4)
+
+
+TREE = """const rows = [...document.querySelectorAll("#tree .row")], box = document.querySelector("#tree").getBoundingClientRect();
+const active = rows.findIndex(row => row.classList.contains("active")), at = active < 0 ? null : rows[active].getBoundingClientRect();
+return { shown: rows.flatMap((row, i) => row.hidden ? [] : [i]), active, seen: at !== null && at.top >= box.top && at.bottom <= box.bottom + 1,
+  strip: document.querySelector("#strip").textContent, states: rows.map(row => row.dataset.s) };"""  # noqa: E501
+
+
+def at_tick(page: Page, recording: Recording, tmp_path: Path, tick: int) -> dict[str, Any]:
+    write_html(recording, tmp_path / "m.html")
+    page.open("about:blank")
+    page.open((tmp_path / "m.html").as_uri() + f"#robot=blue 0&t={recording.times[tick] + 1e-3}")
+    found: dict[str, Any] = page.js(TREE)
+    return found
+
+
+def test_the_tree_is_open_along_the_way_to_the_active_leaf_and_folded_elsewhere(
+    page: Page, recording: Recording, tmp_path: Path
+) -> None:
+    robot = recording.header.robots[0]
+    tick = len(recording) // 2
+    tree = at_tick(page, recording, tmp_path, tick)
+    leaf = robot.tree[tree["active"]]
+    assert recording.statuses_at(robot.id, tick)[tree["active"]] == "R"
+    assert tree["seen"]
+    assert tree["strip"] == f"active leaf, {leaf.name}"
+    above = [place for place, node in enumerate(robot.tree) if f"{leaf.path}/".startswith(f"{node.path}/")]
+    beside = [
+        place
+        for place, node in enumerate(robot.tree)
+        if node.path.rpartition("/")[0]
+        in {robot.tree[place].path for place in above if robot.tree[place].kind != "leaf"}
+    ]
+    assert tree["shown"] == sorted({*above, *beside})
+    assert len(tree["shown"]) < len(robot.tree)
+    page.button("Whole tree").click()
+    assert len(page.js(TREE)["shown"]) == len(robot.tree)
+    page.js("document.querySelectorAll('#tree .row')[0].click()")
+    assert page.js(TREE)["strip"] == robot.tree[0].name
+
+
+def test_a_condition_that_does_not_hold_is_no_failure(
+    page: Page, recording: Recording, tmp_path: Path
+) -> None:
+    robot = recording.header.robots[0]
+    tree = at_tick(page, recording, tmp_path, 3)
+    failed = [place for place, letter in enumerate(recording.letters_at(robot.id, 3)) if letter == "F"]
+    conditions = [place for place in failed if robot.tree[place].condition]
+    actions = [place for place in failed if robot.tree[place].kind == "leaf" and place not in conditions]
+    assert conditions
+    assert {tree["states"][place] for place in conditions} == {"N"}
+    assert all(tree["states"][place] == "F" for place in actions)
+
+
+def test_a_free_kick_is_over_once_the_ball_is_in_play(
+    page: Page, recording: Recording, tmp_path: Path
+) -> None:
+    waiting = GameState(
+        RefereeCommand.DIRECT_FREE_BLUE, restart=Restart.FREE_KICK, restart_team=Team.BLUE, may_touch=True
+    )
+    games = [(0, waiting), (100, replace(waiting, restart=None, restart_team=None, may_touch=False))]
+    free = replace(recording, games=games)
+    at_tick(page, free, tmp_path, 50)
+    assert page.find("#word").text == "Direct free blue · free kick for blue"
+    at_tick(page, free, tmp_path, 150)
+    assert page.find("#word").text == "In play"
+
+
+def test_kinds_of_events_are_left_out(page: Page, recording: Recording, tmp_path: Path) -> None:
+    events = [Event(1.0, "kick"), Event(2.0, "out"), Event(3.0, "kick")]
+    at_tick(page, replace(recording, events=events), tmp_path, 0)
+    listed = "return [...document.querySelectorAll('#list .item')].filter(item => !item.hidden).length"
+    assert page.js(listed) == 3
+    page.button("Kick").click()
+    assert page.js(listed) == 1
+    page.find("body").send_keys(".")
+    assert page.js("return document.querySelector('#line').getAttribute('aria-valuenow')") == "2.00"
+    page.button("Kick").click()
+    assert page.js(listed) == 3

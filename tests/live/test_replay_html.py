@@ -118,7 +118,7 @@ def test_the_page_holds_the_header_events_and_the_referees_word(recording: Recor
     data = page_data(recording)
     assert (data["scenario"], data["trial"], data["seed"]) == ("made", 2, "5")
     assert data["robots"][2]["mouth"] == 0.07
-    assert data["robots"][0]["tree"][2] == ["Every", "Every", "leaf", 2, "", "count=7"]
+    assert data["robots"][0]["tree"][2] == ["Every", "Every", "leaf", 2, "", "count=7", 0]
     assert [event[1:] for event in data["events"]] == [
         ["kick", "yellow", 0, ""],
         ["goal", "blue", None, "1 : 0"],

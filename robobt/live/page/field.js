@@ -1,6 +1,7 @@
 /* The picture of the field. */
 import { $, buffer, clamp, colours } from "./base.js";
 import { ABSENT, frameOf, lettersOf, match, state, valueAt } from "./match.js";
+import { readingAt } from "./reading.js";
 
 export const canvas = $("field");
 const pen = canvas.getContext("2d");
@@ -80,10 +81,8 @@ const drawTrail = (frame, here) => {
   pen.globalAlpha = 1;
 };
 const doing = (robot, frame) => {
-  const letters = lettersOf(robot, frame);
-  let deepest = "";
-  for (let i = 0; i < letters.length; i++) if (letters[i] === "R" && robot.nodes[i].kind === "leaf") deepest = robot.nodes[i].name;
-  return deepest;
+  const { marks, active } = readingAt(robot, frame);
+  return marks[active] === "R" ? robot.nodes[active].name : "";
 };
 const drawRobot = (robot, at, frame, chosen) => {
   const s = view.scale, x = px(at.x), y = py(at.y), radius = robot.radius * s;
@@ -108,13 +107,18 @@ const drawRobot = (robot, at, frame, chosen) => {
   const back = .014 * s;
   pen.fillText(String(robot.number), x - back * Math.cos(facing), y - back * Math.sin(facing) + size * .05);
 };
-const drawLabel = (text, at) => {
+/* Below the robot, or where no robot and no label is in the way: above, else further off. */
+const drawLabel = (text, at, taken) => {
   const inside = Math.abs(at.x - view.x) * view.scale < view.width / 2 && Math.abs(at.y - view.y) * view.scale < view.height / 2;
   if (!text || !inside) return;
   pen.font = `500 11px Inter, system-ui, "DejaVu Sans", sans-serif`; pen.textAlign = "center"; pen.textBaseline = "middle";
   const shown = text.length > 28 ? text.slice(0, 27) + "…" : text, width = pen.measureText(shown).width + 10;
   const x = Math.min(view.width - width / 2 - 3, Math.max(width / 2 + 3, px(at.x)));
-  const below = py(at.y) + .09 * view.scale + 15, y = below > view.height - 10 ? py(at.y) - .09 * view.scale - 15 : below;
+  const off = .09 * view.scale + 15, free = (y, others) => y > 9 && y < view.height - 9 && !others.some(other => Math.abs(other.y - y) < 9 + other.height / 2 && Math.abs(other.x - x) < (other.width + width) / 2);
+  const spots = [off, -off, off + 18, -off - 18, off + 36, -off - 36].map(shift => py(at.y) + shift);
+  const y = spots.find(spot => free(spot, taken)) ?? spots.find(spot => free(spot, taken.filter(other => other.label)));
+  if (y === undefined) return;
+  taken.push({ x, y, width, height: 18, label: true });
   pen.fillStyle = "rgba(8,16,22,.66)"; pen.beginPath(); pen.roundRect(x - width / 2, y - 8, width, 16, 5); pen.fill();
   pen.fillStyle = "#fff"; pen.fillText(shown, x, y + .5);
 };
@@ -247,9 +251,10 @@ export const drawMatch = () => {
     pen.beginPath(); pen.arc(px(there.x), py(there.y) - .5 * height * view.scale, radius * (1 + height), 0, 7);
     pen.fillStyle = colours.ball; pen.fill(); pen.strokeStyle = "rgba(60,20,0,.6)"; pen.lineWidth = 1; pen.stroke();
   }
-  robots.forEach((robot, slot) => {
-    if (places[slot] && (state.labels || robot === state.robot)) drawLabel(doing(robot, frame), places[slot]);
-  });
+  /* The chosen robot's first: it is the one that is sure of its place. */
+  const wide = .2 * view.scale, taken = places.filter(Boolean).map(place => ({ x: px(place.x), y: py(place.y), width: wide, height: wide, label: false }));
+  if (state.robot) { const place = places[robots.indexOf(state.robot)]; if (place) drawLabel(doing(state.robot, frame), place, taken); }
+  robots.forEach((robot, slot) => { if (places[slot] && state.labels && robot !== state.robot) drawLabel(doing(robot, frame), places[slot], taken); });
 };
 
 /* ---------------------------------------------------------------- pointing */

@@ -4,7 +4,7 @@ import { buffer } from "./base.js";
 export const ABSENT = -32768;
 export const match = { frames: 0 };
 /* What is shown of it, and where in time; follow: the newest tick, as it comes. */
-export const state = { time: 0, playing: false, follow: false, speed: 1, robot: null, node: 0, labels: false, layers: new Set(["goal line", "passes", "marking", "threats", "meeting"]), show: () => {} };
+export const state = { time: 0, playing: false, follow: false, speed: 1, robot: null, node: null, unlisted: new Set(), labels: false, layers: new Set(["goal line", "passes", "marking", "threats", "meeting"]), show: () => {} };
 
 /* Values and the frames from which on they hold. */
 const changes = () => ({ frames: [], values: [] });
@@ -31,7 +31,7 @@ export const openMatch = header => {
       flags: changes(), statuses: changes(), written: new Map(), numbers: new Map(), drawn: changes(), compared: changes(), judged: changes(), said: robot.tree.map(changes),
       compares: robot.tree.flatMap(([name, type], place) => type === "ChooseKick" ? [place] : []),
       judges: robot.tree.flatMap(([name, type], place) => type === "SelectShot" ? [place] : []),
-      nodes: robot.tree.map(([name, type, kind, depth, glyph, detail, path]) => ({ name, type, kind, depth, glyph, detail, path })),
+      nodes: robot.tree.map(([name, type, kind, depth, glyph, detail, condition, path]) => ({ name, type, kind, depth, glyph, detail, condition, path })),
     })),
   });
 };

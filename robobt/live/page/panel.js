@@ -1,9 +1,11 @@
 /* Beside the field: robots to choose from, the chosen one's tree and figures, what happened. */
 import { $, clock, make, put, words } from "./base.js";
-import { ABSENT, lettersOf, match, state, valueAt } from "./match.js";
-import { drawBase, drawLine } from "./timeline.js";
+import { ABSENT, match, state, valueAt } from "./match.js";
+import { readingAt } from "./reading.js";
+import { drawBase } from "./timeline.js";
+import { buildTree, showTree } from "./tree.js";
 
-let picks = [], rows = [], items = [], lastItem = -1;
+let picks = [], items = [], lastItem = -1;
 
 /* ---------------------------------------------------------------- head */
 export const chip = (label, value, warn) => {
@@ -52,7 +54,7 @@ export const buildPicker = () => {
   });
 };
 export const choose = robot => {
-  state.robot = robot; state.node = 0;
+  state.robot = robot; state.node = null;
   picks.forEach((button, slot) => button.setAttribute("aria-pressed", String(match.robots[slot] === robot)));
   $("who").hidden = !robot;
   if (robot) { $("who-name").textContent = words(robot.name); $("who-play").textContent = robot.play; }
@@ -60,42 +62,7 @@ export const choose = robot => {
   dispatchEvent(new Event("chosen"));
 };
 
-/* ---------------------------------------------------------------- tree */
-const SVG = shape => `<svg viewBox="0 0 12 12" class="m-${shape[0]}"><path d="${shape[1]}"/></svg>`;
-const MARKS = [["R", "M4.2 2.8 8.8 6 4.2 9.2z"], ["S", "M2.5 6.4 5 8.8 9.5 3.6"], ["F", "M3.2 3.2l5.6 5.6M8.8 3.2 3.2 8.8"]].map(SVG).join("");
-/* Whether a branch line has to go on below node i at this depth. */
-const goesOn = (nodes, i, depth) => {
-  for (let j = i + 1; j < nodes.length && nodes[j].depth >= depth; j++) if (nodes[j].depth === depth) return true;
-  return false;
-};
-const buildTree = () => {
-  const robot = state.robot, tree = $("tree");
-  tree.replaceChildren(); rows = [];
-  if (!robot || !robot.nodes.length) { tree.append(make("div", "note", robot ? "No tree was recorded for this robot." : "Select a robot.")); return; }
-  robot.nodes.forEach((node, i) => {
-    const row = make("button", "row " + node.kind);
-    for (let depth = 1; depth <= node.depth; depth++) {
-      const own = depth === node.depth, on = goesOn(robot.nodes, i, depth);
-      row.append(make("span", "bar" + (own ? " turn" + (on ? "" : " last") : on ? "" : " none")));
-    }
-    const mark = make("span", "mark"); mark.innerHTML = MARKS;
-    const what = make("span", "what"), title = make("span", "title"), say = make("span", "say");
-    if (node.glyph) title.append(make("span", "glyph", node.glyph + (node.detail === "memory" ? "*" : "")));
-    title.append(make("span", "name", node.name));
-    const told = node.kind === "composite" ? [] : [node.type === node.name ? "" : node.type, node.detail].filter(Boolean);
-    if (told.length) title.append(make("span", "kind", told.join(" · ")));
-    what.append(title, say); row.append(mark, what);
-    row.title = [node.type, node.detail].filter(Boolean).join(", ");
-    row.addEventListener("click", () => { state.node = i; markNode(); drawBase(); drawLine(); });
-    tree.append(row);
-    rows.push({ row, say, status: "", text: "" });
-  });
-  markNode();
-};
-const markNode = () => {
-  rows.forEach((entry, i) => entry.row.classList.toggle("chosen", i === state.node));
-  $("strip").textContent = state.robot.nodes[state.node].name;
-};
+/* ---------------------------------------------------------------- figures */
 const told = value => Array.isArray(value) ? `(${value.map(told).join(", ")})`
   : typeof value === "number" ? String(Number.isInteger(value) ? value : Number(value.toPrecision(3)))
     : value === null ? "none" : typeof value === "object" ? Object.entries(value).map(([key, item]) => `${key} ${told(item)}`).join(", ") : String(value);
@@ -113,15 +80,10 @@ export const showPanel = frame => {
   put($("f-heading"), here ? Math.round((turn / 1000 * 180 / Math.PI + (side < 0 ? 360 : 180)) % 360 - 180) + "°" : "–");
   put($("f-ball"), (flags & 1 ? "in the mouth" : "–") + (flags & 4 ? ", kicks" : flags & 2 ? ", dribbles" : ""));
   $("f-ball").classList.toggle("on", Boolean(flags & 1));
-  const letters = lettersOf(robot, frame);
+  const { marks } = readingAt(robot, frame);
   put($("wrote"), wroteOf(robot, frame));
-  put($("why"), robot.nodes.map((node, i) => letters[i] === "F" && node.kind === "leaf" ? valueAt(robot.said[i], frame, "") && `${node.name}: ${valueAt(robot.said[i], frame, "")}` : "").filter(Boolean).join(" · "));
-  rows.forEach((entry, i) => {
-    const status = letters[i] || "-";
-    if (status !== entry.status) { entry.status = status; entry.row.dataset.s = status; }
-    const text = status === "-" ? "" : valueAt(robot.said[i], frame, "");
-    if (text !== entry.text) { entry.text = text; entry.say.textContent = text; }
-  });
+  put($("why"), robot.nodes.map((node, i) => marks[i] === "F" && node.kind === "leaf" ? valueAt(robot.said[i], frame, "") && `${node.name}: ${valueAt(robot.said[i], frame, "")}` : "").filter(Boolean).join(" · "));
+  showTree(frame);
 };
 
 /* ---------------------------------------------------------------- events */
@@ -135,6 +97,22 @@ const itemOf = (event, go) => {
   item.addEventListener("click", () => go(event.time));
   return item;
 };
+/* Kinds of events, each of which can be left out of the list, the line of time and the jumps. */
+const buildKinds = go => {
+  const kinds = [...new Set(match.events.map(event => event.kind))];
+  if ($("kinds").children.length === kinds.length) return;
+  $("kinds").replaceChildren(...kinds.map(kind => {
+    const button = make("button", "", words(kind));
+    button.title = "Show these, or leave them out";
+    button.setAttribute("aria-pressed", String(!state.unlisted.has(kind)));
+    button.addEventListener("click", () => {
+      if (!state.unlisted.delete(kind)) state.unlisted.add(kind);
+      button.setAttribute("aria-pressed", String(!state.unlisted.has(kind)));
+      buildEvents(go); drawBase(); state.show();
+    });
+    return button;
+  }));
+};
 /* List the events that are known now; go is called with the time of one that is chosen. */
 export const buildEvents = go => {
   const known = new Map(items.map(entry => [entry.event, entry]));
@@ -147,12 +125,14 @@ export const buildEvents = go => {
   });
   for (const { item } of known.values()) item.remove();
   list.append(...fresh);
+  buildKinds(go);
+  for (const { event, item } of items) item.hidden = state.unlisted.has(event.kind);
   lastItem = -1;
   $("events").hidden = !items.length;
 };
 export const showEvents = () => {
   let current = -1;
-  for (let i = 0; i < items.length && items[i].event.time <= state.time + 1e-3; i++) current = i;
+  for (let i = 0; i < items.length && items[i].event.time <= state.time + 1e-3; i++) if (!items[i].item.hidden) current = i;
   if (current === lastItem) return;
   items.forEach(({ item }, i) => item.classList.toggle("now", i === current));
   if (current >= 0) {

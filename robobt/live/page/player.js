@@ -5,13 +5,14 @@ import { canvas, drawMatch, fit, look, robotAt, spotOf, view } from "./field.js"
 import { endTime, frameOf, match, scoreOf, startTime, state, valueAt } from "./match.js";
 import { buildEvents, buildPicker, choose, showEvents, showPanel } from "./panel.js";
 import { drawBase, drawLine, fitLine, line, listenLine } from "./timeline.js";
+import { showWhole } from "./tree.js";
 
 /* At the newest tick of a match that is being played, these act on the match itself. */
 export const remote = { toggle: null, step: null, setSpeed: null, grab: null };
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 /* ---------------------------------------------------------------- showing */
-const STOPPED = /^(HALT|TIMEOUT)/, WAITING = /^(STOP|PREPARE|BALL_PLACEMENT)/;
+const STOPPED = /^(HALT|TIMEOUT)/, STARTED = /START$|_FREE/, WAITING = /^(STOP|PREPARE|BALL_PLACEMENT)/;
 /* What a game controller says besides: where none does, no goalkeeper is named. */
 const stageOf = ({ stage, upcoming, teams, happened }) => teams.some(team => team.keeper !== null) ? [
   words(stage), upcoming && `next ${words(upcoming).toLowerCase()}`,
@@ -32,7 +33,8 @@ const show = () => {
     shownGame = game;
     const lamp = make("span", "lamp" + (STOPPED.test(game.command) ? " stop" : WAITING.test(game.command) ? " wait" : ""));
     const restart = game.restart ? ` · ${game.restart.replace(/_/g, " ")}${game.team ? " for " + game.team : ""}` : "";
-    $("word").replaceChildren(lamp, words(game.command) + restart);
+    /* A command holds until the next one; what it ordered is over once the ball is in play. */
+    $("word").replaceChildren(lamp, STARTED.test(game.command) && !restart ? "In play" : words(game.command) + restart);
     put($("stage"), stageOf(game));
   }
   const clockText = N ? `${clock(state.time)} / ${clock(endTime())}` : "No frame was recorded.";
@@ -83,7 +85,7 @@ const step = count => {
   if (match.frames) go(match.times[Math.min(match.frames - 1, Math.max(0, frameOf(state.time) + count))]);
 };
 const jump = way => {
-  const marks = match.events.map(event => event.time).sort((a, b) => a - b);
+  const marks = match.events.filter(event => !state.unlisted.has(event.kind)).map(event => event.time).sort((a, b) => a - b);
   const next = way > 0 ? marks.find(time => time > state.time + .02) : marks.reverse().find(time => time < state.time - .02);
   if (next !== undefined) go(next);
 };
@@ -113,6 +115,7 @@ const listen = () => {
   $("prev").addEventListener("click", () => step(-1));
   $("next").addEventListener("click", () => step(1));
   $("labels").addEventListener("click", () => setLabels(!state.labels));
+  $("whole").addEventListener("click", () => showWhole($("whole").getAttribute("aria-pressed") !== "true"));
   let grip = null;
   canvas.addEventListener("pointerdown", event => {
     if (remote.grab && remote.grab(event)) return;

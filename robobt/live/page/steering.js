@@ -3,6 +3,7 @@ import { $, make, put, words } from "./base.js";
 import { canvas, drawMatch, robotAt, spotOf, view } from "./field.js";
 import { ABSENT, frameOf, match, state } from "./match.js";
 import { remote } from "./player.js";
+import { readingAt } from "./reading.js";
 
 /* Set by the page: sends a message of one who steers, and says something. */
 export const bridge = { act: () => false, say: () => {}, now: () => ({}) };
@@ -99,7 +100,7 @@ const moving = make("div", "group"), referee = make("div", "group");
 const offButton = button("Take off", "Take the chosen robot off the field, or put it on again", place);
 moving.append(button("⟲ Turn", "Turn the chosen robot to its left", turn(TURN)), button("Turn ⟳", "Turn the chosen robot to its right", turn(-TURN)), offButton,
   button("Edit play", "Another play for the chosen robot, and its parameters", chosen(robot => bridge.act({ do: "form", robot: robot.name }))),
-  button("Edit skill", "Parameters of the node that is chosen in the tree", chosen(robot => bridge.act({ do: "form", robot: robot.name, path: pathOf(robot, state.node) }))),
+  button("Edit skill", "Parameters of the node that is chosen in the tree", chosen(robot => bridge.act({ do: "form", robot: robot.name, path: pathOf(robot, state.node ?? readingAt(robot, frameOf(state.time)).active) }))),
   button("Save situation", "Save the present situation as a scenario file", () => bridge.act({ do: "situation" })));
 const team = make("select");
 team.setAttribute("aria-label", "Team of the referee's order");

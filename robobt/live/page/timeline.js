@@ -1,7 +1,8 @@
 /* The line of time with the strip of a node's statuses. */
 import { $, clock, colours, words } from "./base.js";
 import { view } from "./field.js";
-import { endTime, match, startTime, state } from "./match.js";
+import { endTime, frameOf, match, startTime, state } from "./match.js";
+import { readingAt, readingOf } from "./reading.js";
 
 export const line = $("line");
 const track = $("track"), chart = track.getContext("2d"), tip = $("tip");
@@ -24,13 +25,15 @@ export const drawBase = () => {
   const robot = state.robot;
   if (robot && robot.nodes.length && match.frames) {
     under.save(); under.clip();
-    const paint = { R: colours.run, S: colours.good, F: colours.bad };
+    const paint = { R: colours.run, S: colours.good, F: colours.bad, N: colours.idle };
     const { frames, values } = robot.statuses;
-    const letter = index => values[index][state.node];
+    /* Without a chosen node each leaf has a colour of its own while it is the active one. */
+    const letter = index => { const { marks, active } = readingOf(robot, values[index]); return state.node === null ? active : marks[state.node]; };
+    const colourOf = it => state.node !== null ? paint[it] : it < 0 ? "" : `hsl(${195 + (it * 53) % 130} 58% 56%)`;
     for (let i = 0; i < frames.length;) {
       let j = i + 1;
       while (j < frames.length && letter(j) === letter(i)) j++;
-      const colour = paint[letter(i)];
+      const colour = colourOf(letter(i));
       if (colour) {
         const from = lineX(match.times[frames[i]]), to = j < frames.length ? lineX(match.times[frames[j]]) : right;
         under.fillStyle = colour; under.fillRect(from, RIBBON, Math.max(.3, to - from), 9);
@@ -42,7 +45,7 @@ export const drawBase = () => {
   under.fillStyle = colours.edge; under.beginPath(); under.roundRect(PAD, RAIL - 2, lineWidth - 2 * PAD, 4, 2); under.fill();
   for (const event of match.events) {
     const x = lineX(event.time);
-    if (event.kind === "goal") continue;
+    if (event.kind === "goal" || state.unlisted.has(event.kind)) continue;
     under.globalAlpha = event.kind === "kick" ? .75 : 1; under.fillStyle = markColour(event);
     const tall = event.kind === "kick" ? 9 : 13;
     under.fillRect(x - .8, RAIL - tall / 2, 1.6, tall);
@@ -56,7 +59,7 @@ export const drawBase = () => {
     under.textAlign = x < 30 ? "left" : x > lineWidth - 30 ? "right" : "center"; under.fillText(text, x, lineHeight - 1);
   }
   for (const event of match.events) {
-    if (event.kind !== "goal") continue;
+    if (event.kind !== "goal" || state.unlisted.has(event.kind)) continue;
     const x = lineX(event.time);
     under.beginPath(); under.arc(x, RAIL, 6, 0, 7); under.fillStyle = colours.card; under.fill();
     under.beginPath(); under.arc(x, RAIL, 4.6, 0, 7); under.fillStyle = markColour(event); under.fill();
@@ -77,6 +80,11 @@ const describe = event => {
   return [words(event.kind), who, event.text].filter(Boolean).join(" · ");
 };
 
+const leafAt = time => {
+  const robot = state.robot, { active } = robot && match.frames ? readingAt(robot, frameOf(time)) : { active: -1 };
+  return active < 0 ? "" : robot.nodes[active].name;
+};
+
 /* The tip over the line, and where a pointer goes to in time. */
 const spot = event => event.clientX - line.getBoundingClientRect().left;
 export const listenLine = go => {
@@ -88,8 +96,8 @@ export const listenLine = go => {
     const x = spot(event), time = lineTime(x);
     if (dragging) go(time);
     let near = null, least = 6;
-    for (const mark of match.events) { const gap = Math.abs(lineX(mark.time) - x); if (gap < least) { near = mark; least = gap; } }
-    tip.textContent = near ? `${clock(near.time)}  ${describe(near)}` : clock(time);
+    for (const mark of match.events) { if (state.unlisted.has(mark.kind)) continue; const gap = Math.abs(lineX(mark.time) - x); if (gap < least) { near = mark; least = gap; } }
+    tip.textContent = near ? `${clock(near.time)}  ${describe(near)}` : `${clock(time)}  ${leafAt(time)}`;
     tip.style.display = "block";
     const half = tip.offsetWidth / 2;
     tip.style.left = Math.min(lineWidth - half, Math.max(half, x)) + "px";

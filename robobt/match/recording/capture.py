@@ -224,5 +224,6 @@ def _with_tree(robot: RecordedRobot, runner: TreeRunner | None) -> RecordedRobot
         return robot
     nodes = []
     for node, (depth, path) in zip(runner.nodes, node_ids(runner.nodes), strict=True):
-        nodes.append(RecordedNode(path=path, depth=depth, **asdict(describe(node))))
+        condition = bool(getattr(node, "condition", False))
+        nodes.append(RecordedNode(path=path, depth=depth, condition=condition, **asdict(describe(node))))
     return robot.model_copy(update={"tree": tuple(nodes)})

@@ -64,6 +64,7 @@ class RecordedNode(Settings):
     depth: int = Field(ge=0, description="0 at the root")
     glyph: str = Field("", description="the sign of a composite or decorator")
     detail: str = Field("", description="memory or reactive, a policy, or parameters")
+    condition: bool = Field(False, description="whether it only looks: that it fails is nothing amiss")
 
 
 class RecordedRobot(Settings):
