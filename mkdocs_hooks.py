@@ -1,28 +1,52 @@
-"""Pages of the site that are made from the package: its commands, files, plays, skills and Python names."""
+"""Pages of the site that are made: tutorials from the examples, the reference from the package."""
 
 from __future__ import annotations
 
+import ast
 import inspect
 import json
 import re
 from collections.abc import Iterable
-from typing import Any
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from mkdocs.config.defaults import MkDocsConfig
-from mkdocs.structure.files import File, Files
+if TYPE_CHECKING:
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+
+EXAMPLES = Path(__file__).parent / "examples"
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages of the reference."""
+    """Add the tutorials and the pages of the reference."""
+    from mkdocs.structure.files import File
+
+    pages = {f"tutorials/{path.stem}.md": tutorial(path.read_text()) for path in EXAMPLES.glob("*.py")}
     for name, make in (
         ("commands", commands),
         ("files", file_formats),
+        ("observations", observations),
         ("plays", plays),
         ("skills", skills),
         ("python", python_names),
     ):
-        files.append(File.generated(config, f"reference/{name}.md", content=make()))
+        pages[f"reference/{name}.md"] = make()
+    for name, content in pages.items():
+        files.append(File.generated(config, name, content=content))
     return files
+
+
+def tutorial(script: str) -> str:
+    """Return a script in percent format as a page: prose from its Markdown cells, code from the others."""
+    parts = []
+    for cell in re.split(r"(?m)^# %%", script)[1:]:
+        kind, _, text = cell.partition("\n")
+        if "[markdown]" in kind:
+            parts.append(re.sub(r"(?m)^# ?", "", text).strip())
+        else:
+            parts.append(f"```python\n{text.strip()}\n```")
+    return "\n\n".join(parts) + "\n"
 
 
 def commands() -> str:
@@ -114,6 +138,36 @@ def _type(field: dict[str, Any]) -> str:
     if field.get("type") == "array" and isinstance(field.get("items"), dict):
         return f"list of {_type(field['items'])}"
     return _cell(str(field.get("type", "any")))
+
+
+def observations() -> str:
+    """Write what each observation vector holds, and what the environments are."""
+    from robobt.learning import envs
+    from robobt.world import features, scoring
+
+    said = {}
+    for module in (features, scoring):
+        body = ast.parse(inspect.getsource(module)).body
+        for line, after in pairwise(body):
+            if isinstance(line, ast.Assign) and isinstance(after, ast.Expr):
+                said[ast.unparse(line.targets[0])] = ast.literal_eval(after.value)
+    parts = [
+        "# Observations and environments\n\nWhat learned skills and predictors are given, by the name that a "
+        "model's card says. Lengths are in metres, angles in radians.\n"
+    ]
+    for spec in features.OBSERVATIONS.values():
+        parts.append(f"## {spec.name}, version {spec.version}\n\n{_text(said.get(spec.name.upper(), ''))}\n")
+        parts.append("| index | entry | unit |\n| --- | --- | --- |")
+        parts += [f"| {place} | `{name}` | {unit} |" for place, (name, unit) in enumerate(spec.entries)]
+        parts.append("")
+    parts.append("## Environments\n\nHow each is used: [training environments](../environments.md).\n")
+    parts += [f"::: {kind.__module__}.{kind.__qualname__}\n" for kind in _environments(envs)]
+    return "\n".join(parts)
+
+
+def _environments(envs: Any) -> list[type]:
+    kinds = [getattr(envs, name) for name in dir(envs)]
+    return [kind for kind in kinds if inspect.isclass(kind) and kind.__name__.endswith("Env")]
 
 
 def plays() -> str:

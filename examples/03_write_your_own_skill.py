@@ -1,13 +1,12 @@
-"""3. Write your own skill: a leaf of your own, first alone, then in a tree, then in a match.
+# %% [markdown]
+# # Write and test a skill
+#
+# A skill is a leaf of the tree. Its parameters are the fields of its class; it names in `reads` and
+# `writes` what it shares with the other skills of its robot, and decides in `on_running` what the robot is
+# commanded at this tick. This one drives once around the ball, to tease who defends.
 
-A skill's parameters are the fields of its class. It names in ``reads`` and
-``writes`` what it shares with the other skills of its robot, and decides in
-``on_running`` what the robot is commanded at this tick.
-
-    python examples/03_write_your_own_skill.py
-"""
-
-from math import atan2, cos, pi, sin
+# %%
+from math import atan2, cos, hypot, pi, sin
 
 import robobt
 from robobt.motion.pilot import drive
@@ -45,37 +44,64 @@ class CircleBall(Skill):
         return self.run(f"towards ({target[0]:.2f}, {target[1]:.2f})")
 
 
+# %% [markdown]
+# ## Test it alone
+#
+# One skill, one frame made by hand, one tick: no simulator is needed to see what it decides. `pytest` runs
+# such functions.
+
+
+# %%
+def test_it_sets_off_to_the_right_and_faces_the_ball() -> None:
+    me = robobt.RobotState(id=1, x=-0.6, y=0.0)
+    frame = robobt.Frame(time=0.0, field=DIVISION_B, ball=robobt.BallState(0.0, 0.0), own=(me,))
+    store = Store(frame, me)
+    assert TreeRunner(CircleBall(), store).tick() is Status.RUNNING
+    assert store.command.vy < 0.0  # left is positive
+    assert abs(store.command.omega) < 1.0
+
+
+test_it_sets_off_to_the_right_and_faces_the_ball()
+
+# %% [markdown]
+# ## Test it in the simulator
+#
+# A play makes it part of a tree. `memory=True` goes on where it was at the last tick, so the circle is
+# driven once.
+
+
+# %%
 @robobt.PLAYS.register("tease_and_shoot")
 def tease_and_shoot() -> Behaviour:
-    """Once around the ball, then get it and shoot; ``memory=True`` goes on where it was."""
+    """Once around the ball, then get it and shoot."""
     steps = [CircleBall(seconds=4.0), GoToBall(), PickUpBall(), SelectShot(), KickToTarget()]
     return Sequence("tease and shoot", memory=True, children=steps)
 
 
-def tick_it_alone() -> None:
-    """One skill, one frame made by hand, one tick: how a skill is tested."""
-    me = robobt.RobotState(id=1, x=-0.6, y=0.0)
-    frame = robobt.Frame(time=0.0, field=DIVISION_B, ball=robobt.BallState(0.0, 0.0), own=(me,))
-    store = Store(frame, me)
-    runner = TreeRunner(CircleBall(), store)
-    print(f"alone: {runner.tick().value}, {runner.root.feedback_message}")
-    print(f"       command {store.command.vx:+.2f} m/s ahead, {store.command.vy:+.2f} m/s to the left")
+scenario = robobt.Scenario.model_validate(
+    {
+        "name": "own_skill",
+        "robots": {"blue": [{"number": 1, "play": "tease_and_shoot", "start": {"position": (-1.0, 0.0)}}]},
+        "ends": {"time_limit": 20.0},
+    }
+)
 
 
-def play_it() -> None:
-    scenario = robobt.Scenario.model_validate(
-        {
-            "name": "own_skill",
-            "robots": {
-                "blue": [{"number": 1, "play": "tease_and_shoot", "start": {"position": (-1.0, 0.0)}}]
-            },
-            "ends": {"time_limit": 20.0},
-        }
-    )
-    result = robobt.play_match(scenario, seed=1)
-    print(f"in a match: {result.outcome} after {result.time:.2f} s")
+def test_it_goes_round_the_ball_without_touching_it() -> None:
+    quarters = set()
+    with robobt.Match(scenario, seed=1) as match:
+        while match.tick() and match.world.truth().time < 4.0:
+            frame = match.world.truth()
+            me, ball = frame.own[0], frame.ball
+            assert hypot(me.x - ball.x, me.y - ball.y) > 0.2
+            quarters.add((me.x > ball.x, me.y > ball.y))
+    assert len(quarters) == 4
 
 
-if __name__ == "__main__":
-    tick_it_alone()
-    play_it()
+test_it_goes_round_the_ball_without_touching_it()
+result = robobt.play_match(scenario, seed=1)
+print(f"in a match: {result.outcome} after {result.time:.2f} s")
+
+# %% [markdown]
+# A skill in a file of its own is known to every command by `--import my_skills.py`; more on [skills and
+# plays of your own](../trees.md#skills-and-plays-of-your-own).

@@ -1,14 +1,12 @@
-"""5. Train a skill, export it, and put it into a tree by its file.
+# %% [markdown]
+# # Train a skill and drop it in
+#
+# Go-To-Ball is learned by DDPG in the vectorised environment, in about half a minute. All settings of a
+# run, with their units, are in the [reference](../reference/files.md); rewards of your own are [a wrapper
+# away](../environments.md#a-reward-term-of-your-own).
 
-Trains Go-To-Ball with DDPG in the vectorised environment (about half a minute),
-writes the model with its card, and lets it and its hand-written twin get the
-same balls: one word in the play is all that differs.
-
-    python examples/05_train_a_skill.py [environment steps]
-"""
-
+# %%
 import shutil
-import sys
 from pathlib import Path
 
 import robobt
@@ -16,21 +14,30 @@ from robobt.learning.training.export_run import export_run
 from robobt.learning.training.settings import load_settings
 from robobt.learning.training.train import train
 
+STEPS = 160_000
 
-def main(steps: int = 160_000) -> None:
-    shutil.rmtree("runs/example", ignore_errors=True)
-    settings = load_settings("go_to_ball", "fast", {"steps": steps, "evaluation.held_out": 200})
-    result = train(settings, "runs/example")
-    held_out = result.figures["held_out"]
-    print(f"held out: {held_out['successes']} of {held_out['starts']} balls reached")
-    (model,) = export_run(Path("runs/example"), "example", Path("out/models"))
-    print(f"written: {model}")
+shutil.rmtree("out/runs/example", ignore_errors=True)
+settings = load_settings("go_to_ball", "fast", {"steps": STEPS, "evaluation.held_out": 200})
+result = train(settings, "out/runs/example")
+held_out = result.figures["held_out"]
+print(f"held out: {held_out['successes']} of {held_out['starts']} balls reached")
 
-    scenario = robobt.load_scenario("table4_trial1_own")
-    for policy in ("geometric", str(model)):
-        figures = robobt.run_trials(scenario.with_robot("blue 0", policy=policy), 5).summary()
-        print(f"{policy}: {figures.goals['blue'].trials.count} goals of 5, {figures.time.mean:.2f} s a trial")
+# %% [markdown]
+# The best policy of the run becomes a model: a TorchScript file with a card, which says what it observes
+# and answers.
 
+# %%
+(model,) = export_run(Path("out/runs/example"), "example", Path("out/models"))
+print(f"written: {model}")
 
-if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+# %% [markdown]
+# In the tree one word tells a learned skill from its hand-written twin. Both get the same balls:
+
+# %%
+scenario = robobt.load_scenario("table4_trial1_own")
+for policy in ("geometric", str(model)):
+    figures = robobt.run_trials(scenario.with_robot("blue 0", policy=policy), 5).summary()
+    print(f"{policy}: {figures.goals['blue'].trials.count} goals of 5, {figures.time.mean:.2f} s a trial")
+
+# %% [markdown]
+# Go on with [training](../learning.md) and [learned skills](../learned_skills.md).

@@ -1,17 +1,18 @@
-"""7. Play over the network: one process is the simulator, the other plays, as with grSim.
+# %% [markdown]
+# # Play against grSim
+#
+# A play does not know what world it plays in. With grSim running, `GRSIM = True` plays in it; else robobt
+# serves its own simulator over the same protocols, from a second process, on ports that nobody uses.
 
-Serves our simulator over the league's protocols on ports nobody uses, and plays
-the same scenario against it. `robobt serve` and `--world league://grsim` do the
-same from two terminals; grSim itself takes the place of the first.
-
-    python examples/07_play_over_the_network.py [trials]
-"""
-
+# %%
 import socket
 import subprocess
 import sys
 
 import robobt
+
+GRSIM = False
+TRIALS = 3
 
 
 def free_ports(count: int) -> list[int]:
@@ -24,31 +25,38 @@ def free_ports(count: int) -> list[int]:
     return ports
 
 
-def main(trials: int = 3) -> None:
-    names = ("grsim", "control", "blue", "yellow", "blue_status", "yellow_status")
+def serve() -> tuple[subprocess.Popen[str], str]:
+    """Start `robobt serve` and return it with its address, once it serves."""
     *commands, vision, tracker = free_ports(8)
+    names = ("grsim", "control", "blue", "yellow", "blue_status", "yellow_status")
     ports = dict(zip(names, commands, strict=True))
     ports |= {"vision": f"224.5.23.2:{vision}", "tracker": f"224.5.23.2:{tracker}"}
     options: list[str] = []
     for name, port in ports.items():
         option = name if name in ("vision", "tracker") else f"{name.replace('_', '-')}-port"
         options += [f"--{option}", str(port)]
-    serve = [sys.executable, "-m", "robobt", "serve", "striker_vs_goalie", *options]
-    server = subprocess.Popen(serve, stdout=subprocess.PIPE, text=True)
-    try:
-        assert server.stdout is not None
-        print(server.stdout.readline(), end="")  # says that it serves
-        # What is served are the scenario's robots, not those of grSim itself.
-        address = "league://grsim?physics=default&" + "&".join(
-            f"{name}={port}" for name, port in ports.items()
-        )
-        run = robobt.run_trials(robobt.load_scenario("striker_vs_goalie"), trials, world=address)
-    finally:
+    program = [sys.executable, "-m", "robobt", "serve", "striker_vs_goalie", *options]
+    server = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
+    assert server.stdout is not None
+    print(server.stdout.readline(), end="")  # says that it serves
+    # What is served are the scenario's robots, not those of grSim itself.
+    return server, "league://grsim?physics=default&" + "&".join(f"{name}={ports[name]}" for name in ports)
+
+
+# %% [markdown]
+# The address of a world is all that a match over the network needs; `robobt match --world ADDRESS` takes
+# the same.
+
+# %%
+server, address = (None, "league://grsim") if GRSIM else serve()
+try:
+    run = robobt.run_trials(robobt.load_scenario("striker_vs_goalie"), TRIALS, world=address)
+finally:
+    if server is not None:
         server.terminate()
         server.communicate()
-    scored = run.summary().goals["blue"].trials
-    print(f"{scored.count} of {trials} scored over the network")
+scored = run.summary().goals["blue"].trials
+print(f"{scored.count} of {TRIALS} scored over the network")
 
-
-if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+# %% [markdown]
+# With other ports, other simulators, or on a real field: [the league's protocols](../league.md).

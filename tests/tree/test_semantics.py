@@ -1,4 +1,4 @@
-"""The table of docs/trees.md, row by row: ``test_7_...`` is the test of row 7."""
+"""The table of docs/control_nodes.md, row by row: ``test_7_...`` is the test of row 7."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty
 from tests.tree.random_trees import Log, Told
 from tests.tree.scripted import INVALID, F, Notes, R, S, Scripted, Watched, scripted
 
-TABLE = Path(__file__).parents[2] / "docs" / "trees.md"
+TABLE = Path(__file__).parents[2] / "docs" / "control_nodes.md"
 ONE_SIXTIETH = 1.0 / 60.0
 
 

@@ -466,7 +466,9 @@ def test_the_documents_example_is_a_play() -> None:
 
 
 def test_the_document_names_every_type_that_is_not_a_skill_or_links_to_where_they_are() -> None:
-    text = DOCUMENT.read_text(encoding="utf-8") + DOCUMENT.with_name("trees.md").read_text(encoding="utf-8")
+    text = DOCUMENT.read_text(encoding="utf-8") + DOCUMENT.with_name("control_nodes.md").read_text(
+        encoding="utf-8"
+    )
     sisters = {
         "FailureIsRunning",
         "RunningIsFailure",

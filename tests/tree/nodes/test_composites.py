@@ -1,4 +1,4 @@
-"""Composites of the package: what the table of docs/trees.md does not say."""
+"""Composites of the package: what the table of docs/control_nodes.md does not say."""
 
 from __future__ import annotations
 

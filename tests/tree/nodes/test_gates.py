@@ -1,4 +1,4 @@
-"""Decorators that answer for their child at times: what the table of docs/trees.md does not say."""
+"""Decorators that answer for their child at times: what the table of docs/control_nodes.md does not say."""
 
 from __future__ import annotations
 

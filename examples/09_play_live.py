@@ -1,0 +1,28 @@
+# %% [markdown]
+# # Watch and steer a match live
+#
+# The match is played at its own pace and streamed to a page in the browser: open the address that is
+# printed. There it can be paused, slowed down and steered; robots and ball can be dragged. `robobt live
+# six_v_six` does the same.
+
+# %%
+import robobt
+from robobt.live.server import Server
+from robobt.live.session import Live
+
+SECONDS = 60.0
+SPEED = 1.0
+
+match = robobt.Match(robobt.load_scenario("three_v_three").lasting(SECONDS), seed=1)
+with Server() as server, match:
+    print(f"Live: {server.url}")
+    Live(server, SPEED).play(match)
+
+# %%
+result = match.result()
+print(f"{result.blue_score}:{result.yellow_score} after {result.time:.0f} s")
+
+# %% [markdown]
+# ![The live page](../images/live.png)
+#
+# Driving by game controller or keyboard, layers, charts: [the live page](../live.md).
