@@ -46,6 +46,9 @@ Set = Annotated[
 PLAY = "PLAY[:NAME=VALUE,...]"
 TEAM_HELP = "Play of this team's robots but its goalkeeper, with parameters; ':NAME=VALUE' keeps the play."
 
+Blue = Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)]
+Yellow = Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)]
+
 
 def compare(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")],
@@ -91,11 +94,9 @@ def compare(
     exact) and holm (p corrected for the number of variants).
     """
     from robobt.experiments.compare import compare as compared
-    from robobt.match import load_scenario
-    from robobt.match.scenario.changes import changed
 
     import_files(imports)
-    base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    base = scenario_of(scenario, settings)
     variants = _variants(base, blue or [""], yellow or [""], world or ["sim"])
     if len(variants) < 2:
         raise typer.BadParameter("needs two variants: give --blue, --yellow or --world more than once")
@@ -117,6 +118,14 @@ def compare(
         f"[bold]{escape(base.name)}[/bold]: {count} trial{'s' if count > 1 else ''} a variant, seed {used}"
     )
     _print(found)
+
+
+def scenario_of(scenario: str, settings: list[str] | None) -> Scenario:
+    """Load a scenario with the changes of ``--set``."""
+    from robobt.match import load_scenario
+    from robobt.match.scenario.changes import changed
+
+    return changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
 
 
 def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:

@@ -17,12 +17,11 @@ from robobt.cli.common import (
     Seed,
     Where,
     import_files,
-    parse_assignments,
     say,
     warn,
     world_of,
 )
-from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 
@@ -54,8 +53,8 @@ def live(
         Path | None, typer.Option("--record", help="Record the first match to this file as well.")
     ] = None,
     record_layers: Layers = "",
-    blue: Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = "",
-    yellow: Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = "",
+    blue: Blue = "",
+    yellow: Yellow = "",
     settings: Set = None,
     imports: Imports = None,
     world: Where = "sim",
@@ -71,15 +70,14 @@ def live(
     The page shows all that a replay does, and can pause, step, slow down, go back up to five minutes and
     save what was seen. Ctrl-C ends it.
     """
-    from robobt.match import Match, load_scenario
+    from robobt.match import Match
     from robobt.match.runner import trial_seed
-    from robobt.match.scenario.changes import changed
 
     with page_server(host, port, open_page) as server:
         from robobt.live.session import Live
 
         import_files(imports)
-        loaded = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+        loaded = scenario_of(scenario, settings)
         loaded, referees = refereed(with_teams(loaded, blue, yellow), referee, game_controller, stages)
         start = loaded.seed if seed is None else seed
         records = [record]

@@ -33,7 +33,7 @@ from robobt.cli.common import (
     warn,
     world_of,
 )
-from robobt.cli.compare import PLAY, TEAM_HELP, Set, with_teams
+from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
 from robobt.cli.live import Host, Open, Port, page_server
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
@@ -114,8 +114,8 @@ def match(
             "'blue:*/KickToTarget=[RUNNING, SUCCESS]'; may be given often.",
         ),
     ] = None,
-    blue: Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = "",
-    yellow: Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = "",
+    blue: Blue = "",
+    yellow: Yellow = "",
     settings: Set = None,
     imports: Imports = None,
     world: Where = "sim",
@@ -154,12 +154,11 @@ def match(
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
     """
-    from robobt.match import Match, load_scenario, run_trials
-    from robobt.match.scenario.changes import changed
+    from robobt.match import Match, run_trials
     from robobt.worlds import SIM, scenario_settings
 
     import_files(imports)
-    loaded = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    loaded = scenario_of(scenario, settings)
     loaded = _changed(with_teams(loaded, blue, yellow), on_error, substitute or [])
     loaded, referees = refereed(loaded, referee, game_controller, stages)
     # The simulator's settings are checked before any worker is started.

@@ -9,6 +9,7 @@ from typing import Any
 from robobt.config.errors import RobobtError
 from robobt.config.yaml import write_yaml
 from robobt.live.driving import HandDriver
+from robobt.live.grip import Grip
 from robobt.live.messages import (
     Act,
     AskForm,
@@ -32,9 +33,6 @@ from robobt.plays import PLAYS
 from robobt.tree.parameters import Parameter
 from robobt.world.state import RobotId
 
-_GRIP = 0.5
-"""What is held is let go when its page says nothing for so long [s]."""
-
 
 class Hands:
     """Does to one match what messages ask for, and tells the viewers where that cannot be done."""
@@ -42,13 +40,15 @@ class Hands:
     def __init__(self, match: Match, server: Server, clock: Callable[[], float]) -> None:
         self._match, self._server, self._clock = match, server, clock
         self._steering = Steering(match)
-        self._held: dict[str, tuple[MoveBall | MoveRobot, float]] = {}
-        self._said = self._situations = 0
+        self._grip = Grip()
+        self._situations = 0
+        # No page may have a file of this machine loaded as a play.
+        self._plays = [*dict.fromkeys([*PLAYS, *[setup.play for _, setup in match.scenario.robots]])]
         server.tell(
             movable=self._steering.movable,
             orders=self._steering.orders,
             game_controller=match.world.refereed or (match.referee is not None and not self._steering.orders),
-            plays=list(PLAYS),
+            plays=self._plays,
             form=None,
             said=None,
             situation=0,
@@ -66,42 +66,32 @@ class Hands:
             else:
                 self._do(act, now)
         except RobobtError as error:
-            self.say(str(error))
+            self._server.say(str(error))
 
     def hold(self, now: float) -> None:
         """Keep what is held where it is held, before the next tick."""
-        for name, (move, since) in list(self._held.items()):
-            if now > since + _GRIP:
-                del self._held[name]
-                continue
+        for move in self._grip.moves(now):
             try:
                 self._move(move)
             except SteeringError as error:
-                del self._held[name]
-                self.say(str(error))
-
-    def say(self, text: str) -> None:
-        """Tell the viewers something."""
-        self._said += 1
-        self._server.tell(said=[self._said, text])
+                self._grip.follow(move.model_copy(update={"held": False}), now)
+                self._server.say(str(error))
 
     def _do(self, act: Act, now: float) -> None:
         steering = self._steering
         match act:
             case MoveBall() | MoveRobot():
-                name = act.robot if isinstance(act, MoveRobot) else "ball"
                 self._move(act)
-                if act.held:
-                    self._held[name] = act, now
-                else:
-                    self._held.pop(name, None)
+                self._grip.follow(act, now)
             case TakeOff(robot=robot):
-                self._held.pop(robot, None)
+                self._grip.let_go(robot)
                 steering.take_off(robot_of(robot))
             case GiveOrder(order=order, team=team):
                 steering.order(order, team)
             case AskForm(robot=robot, path=path):
                 self._tell_form(robot_of(robot), path)
+            case Play(play=play) if play not in self._plays:
+                raise SteeringError(f"no play of this match is called {play!r}")
             case Play(robot=robot, play=play, params=params):
                 for each in self._meant(act):
                     steering.play(each, play, params)

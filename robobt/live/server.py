@@ -70,6 +70,7 @@ class Server:
         self._host, self._port, self._names = host, port, (*LOOPBACK, *names)
         self.url = ""
         self.situation = ""
+        self._said = 0
         self.audience = Audience(self._look_now)
         self.inbox, self.refused = self.audience.inbox, self.audience.refused
         self._thread = threading.Thread(target=self._run, name="robobt live", daemon=True)
@@ -106,6 +107,11 @@ class Server:
         known = self.audience.state
         if any(known.get(name, self) != value for name, value in state.items()):
             self.audience.state = {**known, **state}
+
+    def say(self, text: str) -> None:
+        """Tell the viewers something, for a moment."""
+        self._said += 1
+        self.tell(said=[self._said, text])
 
     @property
     def layers(self) -> frozenset[str]:

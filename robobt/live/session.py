@@ -215,8 +215,8 @@ class Live:
             self._server.tell(layers=sorted(self._capture.layers))
 
     def _do(self, act: Act, arrived: float, match: Match) -> None:
-        if match.world.paced and isinstance(act, Pause | Step | Speed) and self._hands is not None:
-            self._hands.say(
+        if match.world.paced and isinstance(act, Pause | Step | Speed):
+            self._server.say(
                 "A field waits for nobody: here the match cannot be paused, stepped or slowed down."
             )
             return

@@ -89,10 +89,12 @@ class Steering:
     def order(self, order: Order, team: Team | None) -> None:
         """Give an order as the referee."""
         referee = self._match.referee
-        if not isinstance(referee, Referee) or referee.controller is None:
+        if not isinstance(referee, Referee):
             there = "a game controller" if self._match.world.refereed or referee is not None else "nobody"
             raise SteeringError(f"{there} referees this match, who takes no orders from here")
         controller = referee.controller
+        if controller is None:
+            raise SteeringError("the referee takes orders from the first tick on")
         self._try(lambda: give(controller, referee.field, order, team))
         self._note("referee's order", text=order, team=team)
 

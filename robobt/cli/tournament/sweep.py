@@ -20,13 +20,12 @@ from robobt.cli.common import (
     console,
     cores,
     import_files,
-    parse_assignments,
     print_json,
     say,
     table,
     warn,
 )
-from robobt.cli.compare import Set, parse_play
+from robobt.cli.compare import Set, parse_play, scenario_of
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
     ALPHA,
@@ -129,8 +128,6 @@ def sweep(
     or null; failed: what kept matches from being played, by match; interrupted; sprt, null without: as of
     'robobt tournament'.
     """
-    from robobt.match import load_scenario
-    from robobt.match.scenario.changes import changed
     from robobt.plays.files import is_play_file, problem_with_play
     from robobt.tournament.sweeps.search import search
     from robobt.tournament.sweeps.sweep import Sweep, confirm
@@ -145,7 +142,7 @@ def sweep(
     test = asked_test(sprt, alpha, beta)
     if referee is Who.NONE:
         raise typer.BadParameter("must be own or official", param_hint="--referee")
-    base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    base = scenario_of(scenario, settings)
     base, referees = refereed(base, referee, game_controller, stages)
     asked = Sweep(
         base,

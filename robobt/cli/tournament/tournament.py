@@ -21,12 +21,11 @@ from robobt.cli.common import (
     console,
     cores,
     import_files,
-    parse_assignments,
     print_json,
     say,
     warn,
 )
-from robobt.cli.compare import Set
+from robobt.cli.compare import Set, scenario_of
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
     ALPHA,
@@ -143,8 +142,6 @@ def tournament(
     being played, by match; interrupted; sprt, null without: elo0, elo1, alpha, beta, verdict, rounds,
     ratio (log-likelihood), bounds.
     """
-    from robobt.match import load_scenario
-    from robobt.match.scenario.changes import changed
     from robobt.tournament.plan import Plan
     from robobt.tournament.play import play
     from robobt.tournament.sequential import RunningTest
@@ -158,7 +155,7 @@ def tournament(
         raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
     if html is not None and out is not None and html.resolve() == out.resolve():
         raise typer.BadParameter(f"would take the place of the store {out}", param_hint="--html")
-    base = changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    base = scenario_of(scenario, settings)
     if referee is Who.NONE:
         raise typer.BadParameter("must be own or official", param_hint="--referee")
     base, referees = refereed(base, referee, game_controller, stages)

@@ -8,15 +8,13 @@ from queue import Empty
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.commands import BallTeleport, Teleport
+from robobt.live.grip import Grip
 from robobt.live.messages import Act, MoveBall, MoveRobot, TakeOff, robot_of
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordedRobot, RecordingHeader
 from robobt.match.recording.capture import Capture
 from robobt.world.state import Frame, RobotId
-
-_GRIP = 0.5
-"""What is held is let go when its page says nothing for so long [s]."""
 
 
 class WatchedField:
@@ -32,8 +30,7 @@ class WatchedField:
         self._server, self._name, self._referee = server, name, referee
         self._capture: Capture | None = None
         self._robots: frozenset[RobotId] = frozenset()
-        self._held: dict[str, tuple[MoveBall | MoveRobot, float]] = {}
-        self._said = 0
+        self._grip = Grip()
         server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None, span=None)
 
     def __call__(self, field: ServedField) -> None:
@@ -41,11 +38,8 @@ class WatchedField:
         with suppress(Empty):
             while True:
                 self._do(self._server.inbox.get_nowait()[0], field)
-        for name, (move, since) in list(self._held.items()):
-            if field.time > since + _GRIP:
-                del self._held[name]
-            else:
-                self._move(move, field)
+        for move in self._grip.moves(field.time):
+            self._move(move, field)
         truth = field.truth()
         if self._referee is not None:
             truth.game = self._referee.referee.game
@@ -68,14 +62,10 @@ class WatchedField:
     def _do(self, act: Act, field: ServedField) -> None:
         match act:
             case MoveBall() | MoveRobot():
-                name = act.robot if isinstance(act, MoveRobot) else "ball"
                 self._move(act, field)
-                if act.held:
-                    self._held[name] = act, field.time
-                else:
-                    self._held.pop(name, None)
+                self._grip.follow(act, field.time)
             case TakeOff(robot=robot):
-                self._held.pop(robot, None)
+                self._grip.let_go(robot)
                 self._tell(field.teleport(Teleport(robot_of(robot), present=False)))
             case _:
                 self._tell("Others decide on a served field: here only robots and ball can be moved.")
@@ -89,5 +79,4 @@ class WatchedField:
 
     def _tell(self, problem: str | None) -> None:
         if problem is not None:
-            self._said += 1
-            self._server.tell(said=[self._said, problem])
+            self._server.say(problem)
