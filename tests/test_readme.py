@@ -1,4 +1,4 @@
-"""Every command in the README works; its links are followed in test_docs."""
+"""Every command in the README and in the tour works, and the README's Python."""
 
 from __future__ import annotations
 
@@ -14,25 +14,26 @@ from robobt.cli import app
 from robobt.match import load_scenario
 
 ROOT = Path(__file__).parent.parent
-README = (ROOT / "README.md").read_text()
-BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README, re.DOTALL)
+README, TOUR = (
+    re.findall(r"```(\w+)\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    for page in ("README.md", "docs/tour.md")
+)
 
 
-def commands(first_word: str) -> list[str]:
+def commands(blocks: list[tuple[str, str]]) -> list[str]:
     lines = [
-        line.split("#")[0].strip() for kind, block in BLOCKS if kind == "sh" for line in block.splitlines()
+        line.split("#")[0].strip() for kind, block in blocks if kind == "sh" for line in block.splitlines()
     ]
-    return [line for line in lines if line.split()[:1] == [first_word]]
+    return [line for line in lines if line]
 
 
-def test_there_is_nothing_but_make_and_robobt_to_type() -> None:
-    lines = [line for kind, block in BLOCKS if kind == "sh" for line in block.splitlines() if line.strip()]
-    assert len(commands("make")) + len(commands("robobt")) == len(lines)
+def test_the_readme_is_one_screen() -> None:
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 80
 
 
 def test_the_two_commands_exist() -> None:
-    assert commands("make") == ["make match", "make test"]
-    for command in commands("make"):
+    assert commands(README) == ["make match", "make test"]
+    for command in commands(README):
         done = subprocess.run(
             [*command.split(), "--dry-run"], cwd=ROOT, capture_output=True, text=True, check=False
         )
@@ -45,8 +46,9 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("robobt.match.load_scenario", lambda source: load_scenario(source).lasting(20.0))
     fewer = [option for name in ("starts", "held_out") for option in ("--set", f"evaluation.{name}=20")]
-    for command in commands("robobt"):
-        _, *arguments = shlex.split(command)
+    for command in commands(TOUR):
+        program, *arguments = shlex.split(command)
+        assert program == "robobt"
         done = CliRunner().invoke(app, [*arguments, *(fewer if arguments[0] == "train" else [])])
         assert done.exit_code == 0, f"{command}: {done.output}"
     assert (tmp_path / "out/match.html").stat().st_size > 10_000
@@ -54,7 +56,7 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
 
 
 def test_the_python_in_it_runs_and_plays(capsys: pytest.CaptureFixture[str]) -> None:
-    blocks = [block for kind, block in BLOCKS if kind == "python"]
+    blocks = [block for kind, block in README if kind == "python"]
     scope: dict[str, object] = {}
     exec("".join(blocks).replace('"my_striker"', '"readme_striker"'), scope)
     assert scope["my_striker"]().name == "my striker"  # type: ignore[operator]
