@@ -104,7 +104,9 @@ def bench_live(
     """
     seed = scenario.seed if seed is None else seed
     played = scenario.lasting(seconds + 5.0)
-    Match(scenario.lasting(3.0), seed, world_factory).play()
+    first = Match(scenario.lasting(3.0), seed, world_factory)
+    first.be_ready()
+    first.play()
     period = scenario.period
     with ExitStack() as stack:
         alone = stack.enter_context(Match(played, seed, world_factory))

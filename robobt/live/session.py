@@ -117,6 +117,7 @@ class Live:
 
     def begin(self, match: Match) -> Hands:
         """Show a match, before its first tick, and return what viewers do to it."""
+        match.be_ready()
         self._hands = hands = Hands(match, self._server, self._clock)
         self._show(match)
         self._reset = None

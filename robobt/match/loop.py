@@ -24,6 +24,7 @@ from robobt.match.results.teams import TeamStatistics
 from robobt.match.scenario.scenario import Scenario
 from robobt.match.views import KeptView
 from robobt.signals import check, let_go
+from robobt.skills.aim.raters.shot_predictor import load_shot_predictors
 from robobt.tree import Behaviour, TreeRunner
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
@@ -106,6 +107,8 @@ class Match:
         self._time = 0.0
         path = None if record is None else Path(record)
         self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
+        if self.world.paced:
+            self.be_ready()
 
     def __repr__(self) -> str:
         standing = "playing" if self.outcome is None else self.outcome.value
@@ -121,6 +124,10 @@ class Match:
             while self.tick():
                 pass
             return self.result(perf_counter() - started - compiling())
+
+    def be_ready(self) -> None:
+        """Load now what else is loaded when it is first needed, while a match in real time would go on."""
+        load_shot_predictors()
 
     def capture(self) -> Capture:
         """Return what takes hold of every tick from now on, for recorders and viewers."""

@@ -16,6 +16,9 @@ from robobt.match import Match, load_scenario, play_match, run_trials
 from robobt.match.recording import load_recording
 from robobt.match.recording.reader import parse_recording
 from robobt.match.scenario.scenario import Scenario
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.world.features import SHOT_SCENE
 from robobt.world.protocol import WrappedWorld
 from robobt.worlds import sim_world
 from tests.live.playing import Client, wait_for
@@ -72,6 +75,15 @@ def test_what_is_shown_is_what_would_be_played_unseen(
     usual = run_trials(scenario, sim_world, 2, seed=5)
     assert [result.trace for result in run.results] == [result.trace for result in usual.results]
     assert record[1].stat().st_size > 1000
+
+
+def test_models_are_loaded_before_a_match_goes_on(server: Server) -> None:
+    shot_predictor.cache_clear()
+    with Match(load_scenario("three_v_three"), 3, sim_world) as match:
+        Live(server).begin(match)
+    before = shot_predictor.cache_info().misses
+    shot_predictor(ExpectedGoal().model, SHOT_SCENE)
+    assert shot_predictor.cache_info().misses == before
 
 
 def test_a_field_waits_for_nobody(server: Server, scenario: Scenario) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,12 +16,24 @@ if TYPE_CHECKING:
     from robobt.models.policy import Policy
 
 
+_wanted: dict[tuple[str, ObservationSpec], None] = {}
+"""What raters were made for; with their models loaded only when first asked, most processes need no torch."""
+
+
 @lru_cache(maxsize=32)
 def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
     """Load a shot predictor by a shipped model's name or a file's path, once per process."""
     from robobt.models.policy import load_policy
 
     return load_policy(model, kind="shot_predictor", observation=observation)
+
+
+def load_shot_predictors() -> None:
+    """Load what the raters made so far will ask, as before a match in real time: that may take seconds."""
+    for model, observation in _wanted:
+        # What is wrong with one is said where it is asked.
+        with suppress(ModelError):
+            shot_predictor(model, observation)
 
 
 def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
@@ -31,6 +44,7 @@ def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
     Raises:
         ModelError: it is missing, cut, foreign or made for something else; the message names the file.
     """
+    _wanted[model, observation] = None
     path = find_model(model).absolute()
     try:
         status = path.stat()
