@@ -82,6 +82,8 @@ def file_formats() -> str:
     from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
     from robobt.learning.envs.shoot.rewards import ShootReward
     from robobt.learning.envs.shoot.settings import ShootSettings
+    from robobt.learning.envs.soccer.rewards import SoccerReward
+    from robobt.learning.envs.soccer.settings import SoccerSettings
     from robobt.learning.training.settings import TrainSettings
     from robobt.match.scenario.scenario import Scenario
     from robobt.models.card import ModelCard
@@ -101,6 +103,8 @@ def file_formats() -> str:
         "Reward terms of Shoot": ShootReward,
         "The environment Score on a goalkeeper": ScoreOnGoalkeeperSettings,
         "Reward terms of Score on a goalkeeper": ScoreReward,
+        "Tasks of several robots": SoccerSettings,
+        "Reward terms of several robots": SoccerReward,
         "Model cards": ModelCard,
     }
     told: set[str] = set()

@@ -15,6 +15,7 @@ EXTRAS = {
     "onnx": "onnx",
     "onnxruntime": "onnx",
     "optuna": "sweep",
+    "pettingzoo": "agents",
     "pyarrow": "record",
     "ray": "ray",
     "scipy": "shots",

@@ -2,7 +2,7 @@
 
 Importing it makes the environments known to Gymnasium: ``GoToBall-v0``,
 ``GoToBallAmongRobots-v0``, ``ShootTowardsGoal-v0`` and ``ScoreOnGoalkeeper-v0``, also as
-``robobt/GoToBall-v0`` and so on, for ``gymnasium.make`` and, with
+``robobt/GoToBall-v0`` and so on, and the tasks of several robots, for ``gymnasium.make`` and, with
 ``vectorization_mode="vector_entry_point"``, for ``gymnasium.make_vec``.
 """
 
@@ -18,9 +18,31 @@ _ROOMS = {
     "ShootTowardsGoal": "shoot.env",
     "ScoreOnGoalkeeper": "score_on_goalkeeper.env",
 }
+TEAMS = (
+    "ScoreOnGoalkeeperAndDefenders",
+    "Save",
+    "Duel",
+    "DuelWithScript",
+    "Keepaway",
+    "Pass",
+    "Attack3v2",
+    "Small3v3",
+)
+"""Tasks of several robots; what each is says :mod:`robobt.learning.envs.soccer.suite`."""
+
 for _name, _room in _ROOMS.items():
     _class = f"robobt.learning.envs.{_room}:{_name}"
     for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
         # The environments end their episodes themselves, and a second import must not warn.
         if _id not in gymnasium.registry:
             gymnasium.register(id=_id, entry_point=f"{_class}Env", vector_entry_point=f"{_class}VectorEnv")
+for _name in TEAMS:
+    _class = "robobt.learning.envs.soccer.env:Soccer"
+    for _id in (f"{_name}-v0", f"robobt/{_name}-v0"):
+        if _id not in gymnasium.registry:
+            gymnasium.register(
+                id=_id,
+                entry_point=f"{_class}Env",
+                vector_entry_point=f"{_class}VectorEnv",
+                kwargs={"task": _name},
+            )

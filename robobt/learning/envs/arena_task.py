@@ -25,7 +25,8 @@ from robobt.world.limits import RobotLimits
 class ArenaTask(ABC):
     """``n`` arenas with a ball and a learner's robot; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    The learner's robot is the first; the others, if a task has any, do what :meth:`_oppose` decides.
+    The learner's robot is the first; the others, if a task has any, do what :meth:`_oppose` decides. Where a
+    task has several learners their observations, and their actions, stand one after the other.
 
     ``settings`` are the task's. ``seed`` is that of everything drawn from the first ``reset`` on; None
     for another each time. Each arena draws with generators of its own: what happens in it follows from
@@ -35,12 +36,16 @@ class ArenaTask(ABC):
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
         robots: in an arena.
+        blue: how many of them, the first, are the learner's team.
+        learners: indices of the robots that learn.
         start_columns: what a start consists of: each robot, the ball, and whatever else a task starts from.
         ended: the episodes that the last step ended; None without any.
     """
 
     observation: ObservationSpec
     robots: int = 1
+    blue: int = 1
+    learners: tuple[int, ...] = (0,)
     start_columns: tuple[str, ...] = START_COLUMNS
 
     def __init__(self, settings: TaskSettings, n: int, seed: int | None) -> None:
@@ -49,8 +54,8 @@ class ArenaTask(ABC):
         self.settings = settings
         self.n = n
         self.action = settings.action
-        self.observation_size = self.observation.size
-        self.action_size = self.action.size
+        self.observation_size = len(self.learners) * self.observation.size
+        self.action_size = len(self.learners) * self.action.size
         self.ended: Episodes | None = None
         self.arenas: Arenas
         self._numbers = numbers_of(settings)
@@ -153,8 +158,12 @@ class ArenaTask(ABC):
         given = np.ascontiguousarray(actions, dtype=np.float64)
         if given.shape != (self.n, self.action_size):
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
-        if not fill_commands(given, self._scaling, *self._kind, self._randomiser.kick, self._command_rows):
+        each, filled = len(self.learners), self._filled
+        kick = self._randomiser.kick if each == 1 else np.repeat(self._randomiser.kick, each)
+        rows = given.reshape(len(filled), self.action.size)
+        if not fill_commands(rows, self._scaling, *self._kind, kick, filled):
             raise ValueError("an action is not finite")
+        self._commands[:, self.learners] = filled.reshape(self.n, each, COMMAND)
         rewards = np.zeros(self.n)
         ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
         for _ in range(self.settings.decide_every):
@@ -184,7 +193,7 @@ class ArenaTask(ABC):
         self._perception = Perception(settings, self.observe, self.observation_size, robots, self._noise_rngs)
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
         self._commands = np.zeros((n, robots, COMMAND))
-        self._command_rows = self._commands[:, 0]
+        self._filled = np.zeros((n * len(self.learners), COMMAND))
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
         self._progress_rows: FloatArray = self._progress.view(np.float64).reshape(n, -1)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from functools import cache
+from typing import Any, Protocol
 
 import gymnasium
 import numpy as np
@@ -14,10 +15,11 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.settings import TaskSettings
-from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.learning.envs.task import BoolArray, FloatArray, StepResult
+from robobt.sim.arenas import Arenas
+from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point
 from robobt.world.painting import Painter
@@ -33,6 +35,41 @@ _INFO = {"is_success": "success", "time": "time", "optimum": "optimum", "kick_ti
 """What the infos say of an episode that has ended, and where :class:`Episodes` has it."""
 
 
+class Stepped(Protocol):
+    """What the interfaces need: a :class:`~robobt.learning.envs.arena_task.ArenaTask`, or one like it."""
+
+    n: int
+    blue: int
+    action_size: int
+
+    @property
+    def settings(self) -> TaskSettings:
+        """Of the task."""
+
+    @property
+    def arenas(self) -> Arenas:
+        """The simulator."""
+
+    @property
+    def ended(self) -> Episodes | None:
+        """The episodes that the last step ended; None without any."""
+
+    def reset(self, seed: int | None = None) -> FloatArray:
+        """See :meth:`ArenaTask.reset`."""
+
+    def reset_to(self, starts: ArrayLike, seed: int | None = None) -> FloatArray:
+        """See :meth:`ArenaTask.reset_to`."""
+
+    def restart(self) -> FloatArray:
+        """See :meth:`ArenaTask.restart`."""
+
+    def step(self, actions: FloatArray) -> StepResult:
+        """See :meth:`ArenaTask.step`."""
+
+    def advance(self, actions: FloatArray) -> StepResult:
+        """See :meth:`ArenaTask.advance`."""
+
+
 @dataclass(frozen=True)
 class EnvKind:
     """What Gymnasium has to know of a task.
@@ -44,7 +81,7 @@ class EnvKind:
         reach: distance at which the ball counts as reached, for pictures [m]; None for none.
     """
 
-    task: Callable[[Any, int], ArenaTask]
+    task: Callable[[Any, int], Stepped]
     settings: type[TaskSettings]
     space: Callable[[Any], Box[np.float32]]
     reach: Callable[[Any], float | None] = lambda _: None
@@ -53,7 +90,7 @@ class EnvKind:
 class _OverArenas:
     """What both interfaces do with the arenas of a task."""
 
-    kind: ClassVar[EnvKind]
+    kind: EnvKind
 
     def _set_up(
         self, settings: TaskSettings | Mapping[str, object] | None, n: int, render_mode: str | None
@@ -66,7 +103,6 @@ class _OverArenas:
         self.task = self.kind.task(given, n)
         self._reach = self.kind.reach(self.task.settings)
         self._begun = False
-        self._painter: Painter | None = None
         return self.kind.space(self.task.settings)
 
     def _need_reset(self, what: str) -> None:
@@ -75,14 +111,24 @@ class _OverArenas:
 
     def _picture(self, arena: int, *trails: Sequence[Point]) -> Picture:
         self._need_reset("render")
-        if self._painter is None:
-            settings = self.task.settings
-            self._painter = Painter(settings.field, settings.simulator.body.face)
-        x, y = self.task.arenas.balls[arena, :2].tolist()
-        teams = (Team.BLUE, Team.YELLOW)  # what is trained, and who opposes it
-        poses = self.task.arenas.robots[arena, :, :3].tolist()
-        robots = [(team, "", *pose) for team, pose in zip(teams, poses, strict=False)]
-        return np.asarray(self._painter.paint(robots, (x, y), self._reach, *trails))
+        return picture_of(self.task, arena, self._reach, *trails)
+
+
+@cache
+def _painter(field: FieldGeometry, face: float) -> Painter:
+    return Painter(field, face)
+
+
+def picture_of(task: Stepped, arena: int, reach: float | None = None, *trails: Sequence[Point]) -> Picture:
+    """Return an arena as (height, width, 3) pixels; the rest is as for :meth:`Painter.paint`."""
+    settings, arenas = task.settings, task.arenas
+    x, y = arenas.balls[arena, :2].tolist()
+    robots = [
+        (Team.BLUE if index < task.blue else Team.YELLOW, "", *pose)
+        for index, pose in enumerate(arenas.robots[arena, :, :3].tolist())
+    ]
+    painter = _painter(settings.field, settings.simulator.body.face)
+    return np.asarray(painter.paint(robots, (x, y), reach, *trails))
 
 
 class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
@@ -225,10 +271,10 @@ class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         """Draw one picture an arena in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
-        return tuple(self._picture(arena) for arena in range(self.num_envs))
+        return tuple(self._picture(arena) for arena in range(len(self.task.arenas.balls)))
 
 
-def _action_space(task: ArenaTask) -> Box[np.float32]:
+def _action_space(task: Stepped) -> Box[np.float32]:
     return Box(-1.0, 1.0, (task.action_size,), np.float32)
 
 

@@ -1,0 +1,1 @@
+"""Tasks of several robots, learned and scripted. A reward term is added in ``rewards.py``."""

@@ -1,0 +1,128 @@
+"""Tasks of several robots as PettingZoo's parallel API knows them: an agent for each learner."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from robobt.config.extras import need
+
+need("agents", "pettingzoo")
+
+import numpy as np  # noqa: E402
+from gymnasium.spaces import Box  # noqa: E402
+from numpy.typing import NDArray  # noqa: E402
+from pettingzoo import ParallelEnv  # noqa: E402
+
+from robobt.learning.envs.gymnasium_base import Picture, picture_of  # noqa: E402
+from robobt.learning.envs.soccer.env import kind_of, learner_space  # noqa: E402
+from robobt.learning.envs.soccer.settings import SoccerSettings  # noqa: E402
+from robobt.learning.envs.soccer.task import SoccerTask  # noqa: E402
+from robobt.learning.envs.task import FloatArray  # noqa: E402
+
+Observation = NDArray[np.float32]
+Info = dict[str, Any]
+
+
+class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
+    """One arena of a task with an agent for each learner, named by team and number: ``blue_0``, ``yellow_1``.
+
+    What an agent observes, does and earns is what is said of a learner in :class:`SoccerEnv`; episodes end
+    for all of them together. The last step's infos hold ``is_success``, blue's, and ``time`` [s].
+
+    Args:
+        task: name in :data:`~robobt.learning.envs.soccer.suite.SUITE`.
+        settings: that task's settings, or the mapping that makes them.
+        render_mode: None or "rgb_array".
+
+    Raises:
+        ValueError: there is no such task.
+    """
+
+    def __init__(
+        self,
+        task: str,
+        settings: SoccerSettings | Mapping[str, object] | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
+        kind = kind_of(task)
+        made = kind.task(None if settings is None else kind.settings.model_validate(settings), 1)
+        assert isinstance(made, SoccerTask)
+        self.task = made
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": 33, "name": task}
+        self.render_mode = render_mode
+        blue = len(made.settings.blue)
+        self.possible_agents = [
+            f"blue_{index}" if index < blue else f"yellow_{index - blue}" for index in made.learners
+        ]
+        self.agents: list[str] = []
+        space, action = learner_space(made.settings), Box(-1.0, 1.0, (made.action.size,), np.float32)
+        self.observation_spaces = dict.fromkeys(self.possible_agents, space)
+        self.action_spaces = dict.fromkeys(self.possible_agents, action)
+        high = np.full(7 * made.robots + 4, np.inf, dtype=np.float32)
+        self.state_space = Box(-high, high, dtype=np.float32)
+        self._begun = False
+
+    def observation_space(self, agent: str) -> Box[np.float32]:
+        """Return the space of an agent's observations, always the same object."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> Box[np.float32]:
+        """Return the space of its actions, always the same object."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Observation], dict[str, Info]]:
+        """Start an episode; ``seed`` fixes all that follows, ``options`` may hold a ``start`` (S,).
+
+        Raises:
+            ValueError: a start that is none.
+        """
+        start = (options or {}).get("start")
+        if start is not None:
+            seen = self.task.reset_to(start, seed)
+        elif seed is not None or not self._begun:
+            seen = self.task.reset(seed)
+        else:
+            seen = self.task.restart()
+        self._begun = True
+        self.agents = list(self.possible_agents)
+        return self._by_agent(seen), {agent: {} for agent in self.agents}
+
+    def step(
+        self, actions: Mapping[str, NDArray[Any]]
+    ) -> tuple[dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
+        """Let one decision pass under all agents' actions."""
+        agents = self.agents
+        given = np.concatenate([np.asarray(actions[agent], dtype=np.float64) for agent in agents])
+        result, ended = self.task.advance(given[None]), self.task.ended
+        info: Info = {}
+        if ended is not None:
+            info = {"is_success": bool(ended.success[0]), "time": float(ended.time[0])}
+            self.agents = []
+        rewards = dict(zip(agents, self.task.shares[0].tolist(), strict=True))
+        return (
+            self._by_agent(result.observation),
+            rewards,
+            dict.fromkeys(agents, bool(result.terminated[0])),
+            dict.fromkeys(agents, bool(result.truncated[0])),
+            {agent: dict(info) for agent in agents},
+        )
+
+    def state(self) -> Observation:
+        """Return the arena's true state for a central critic, (7 R + 4,); see :meth:`SoccerTask.state`."""
+        state: Observation = self.task.state()[0].astype(np.float32)
+        return state
+
+    def render(self) -> Picture | None:
+        """Draw the field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
+        if self.render_mode is None:
+            return None
+        return picture_of(self.task, 0)
+
+    def _by_agent(self, seen: FloatArray) -> dict[str, Observation]:
+        rows = seen.astype(np.float32).reshape(len(self.possible_agents), -1)
+        return dict(zip(self.possible_agents, rows, strict=True))

@@ -1,0 +1,79 @@
+"""Every learner of a task of several robots as an arena of its own: how one policy learns for all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.soccer.task import SoccerTask
+from robobt.learning.envs.task import FloatArray, StepResult
+from robobt.sim.arenas import Arenas
+
+
+class PerRobot:
+    """A :class:`~robobt.learning.envs.task.VectorTask` with a row for each learner of each arena.
+
+    An arena's learners stand one after the other; their episodes end together. The reward is each one's own.
+    """
+
+    def __init__(self, task: SoccerTask) -> None:
+        self.task = task
+        self.settings = task.settings
+        self.observation = task.observation
+        self.blue = task.blue
+        self.each = len(task.learners)
+        self.n = task.n * self.each
+        self.observation_size = task.observation.size
+        self.action_size = task.action.size
+
+    @property
+    def arenas(self) -> Arenas:
+        """The simulator."""
+        return self.task.arenas
+
+    @property
+    def ended(self) -> Episodes | None:
+        """The episodes that the last step ended, once for each learner; None without any."""
+        ended = self.task.ended
+        return None if ended is None else ended.pick(np.repeat(np.arange(len(ended)), self.each))
+
+    def reset(self, seed: int | None = None) -> FloatArray:
+        """See :meth:`robobt.learning.envs.task.VectorTask.reset`."""
+        return self._rows(self.task.reset(seed))
+
+    def reset_to(self, starts: ArrayLike, seed: int | None = None) -> FloatArray:
+        """See :meth:`robobt.learning.envs.arena_task.ArenaTask.reset_to`; a start is an arena's."""
+        return self._rows(self.task.reset_to(starts, seed))
+
+    def restart(self) -> FloatArray:
+        """See :meth:`robobt.learning.envs.arena_task.ArenaTask.restart`."""
+        return self._rows(self.task.restart())
+
+    def step(self, actions: FloatArray) -> StepResult:
+        """See :meth:`robobt.learning.envs.task.VectorTask.step`.
+
+        Raises:
+            ValueError: wrong shape, or an action that is not finite.
+        """
+        return self._spread(self.task.step(self._of_arenas(actions)))
+
+    def advance(self, actions: FloatArray) -> StepResult:
+        """See :meth:`robobt.learning.envs.arena_task.ArenaTask.advance`."""
+        return self._spread(self.task.advance(self._of_arenas(actions)))
+
+    def _of_arenas(self, actions: FloatArray) -> FloatArray:
+        given = np.asarray(actions, dtype=np.float64)
+        if given.shape != (self.n, self.action_size):
+            raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
+        return given.reshape(self.task.n, -1)
+
+    def _spread(self, result: StepResult) -> StepResult:
+        terminated, truncated, success = (
+            np.repeat(column, self.each) for column in (result.terminated, result.truncated, result.success)
+        )
+        seen, final = self._rows(result.observation), self._rows(result.final_observation)
+        return StepResult(seen, self.task.shares.ravel(), terminated, truncated, final, success)
+
+    def _rows(self, observation: FloatArray) -> FloatArray:
+        return observation.reshape(self.n, -1)

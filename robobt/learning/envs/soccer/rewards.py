@@ -1,0 +1,113 @@
+"""The reward of tasks of several robots: what a weight is called and what it weighs.
+
+For a new term add its weight to :class:`SoccerReward`, and the term to :func:`team_reward` or
+:func:`own_reward`.
+"""
+
+from __future__ import annotations
+
+from math import hypot, isnan
+
+from pydantic import Field
+
+from robobt.config.validation import Settings
+from robobt.learning.envs.task import FloatArray
+from robobt.world.compiled import compilable
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+
+class SoccerReward(Settings):
+    """Weights of the reward's terms: the team's, the same for all its robots, and a robot's own."""
+
+    goal: float = Field(5.0, ge=0, le=1e3, description="team: on a goal, and taken off on one against it")
+    fault: float = Field(
+        1.0,
+        ge=0,
+        le=1e3,
+        description="team: taken off for a ball out or lost or a rule broken, which the others earn",
+    )
+    passed: float = Field(0.0, ge=0, le=1e3, description="team: on a pass that has come to a mate")
+    holding: float = Field(
+        0.0, ge=0, le=10, description="team: every tick with the ball in a mouth of its own"
+    )
+    advance: float = Field(
+        0.3, ge=0, le=10, description="team: each metre that the ball gets nearer to the goal"
+    )
+    time: float = Field(0.002, ge=0, le=10, description="team: taken off every tick")
+    approach: float = Field(0.3, ge=0, le=10, description="own: for each metre nearer to the ball")
+    shot: float = Field(0.5, ge=0, le=100, description="own: on a kick that will go between the posts")
+    crash: float = Field(
+        0.02, ge=0, le=10, description="own: taken off every tick in which it touches a robot"
+    )
+    shared: float = Field(
+        0.0, ge=0, le=1, description="share of the own terms that are the team's mean instead"
+    )
+
+
+@compilable
+def team_reward(
+    weights: SoccerReward,
+    goal: float,
+    fault: float,
+    passed: bool,
+    holding: bool,
+    ball_to_goal: float,
+    before: FloatArray,
+) -> float:
+    """Compute the team's terms of a tick, seen from one of its robots.
+
+    Args:
+        weights: of the terms.
+        goal: 1 for a goal of the team, -1 for one against it, 0 for none.
+        fault: 1 where the team ended the episode by a fault, -1 where the others did, else 0.
+        passed: whether a pass of the team has come to a mate.
+        holding: whether the ball lies in a mouth of the team.
+        ball_to_goal: distance from the ball to the attacked goal [m].
+        before: (2,) that of the tick before, nan at first, which is replaced, and the robot's to the ball.
+    """
+    total = weights.goal * goal - weights.fault * fault - weights.time
+    if passed:
+        total += weights.passed
+    if holding:
+        total += weights.holding
+    if not isnan(before[0]):
+        total += weights.advance * (before[0] - ball_to_goal)
+    before[0] = ball_to_goal
+    return total
+
+
+@compilable
+def own_reward(
+    weights: SoccerReward,
+    goal_x: float,
+    post_y: float,
+    robot: FloatArray,
+    ball: FloatArray,
+    fired: bool,
+    gap: float,
+    before: FloatArray,
+) -> float:
+    """Compute a robot's own terms of a tick.
+
+    Args:
+        weights: of the terms.
+        goal_x: where the attacked goal's line is, which may be negative [m].
+        post_y: distance of its posts from the field's long axis [m].
+        robot: (6,) x, y, heading, vx, vy, omega after the tick.
+        ball: (4,) x, y, vx, vy after it.
+        fired: whether its kicker fired in it.
+        gap: from its hull to the nearest one [m].
+        before: as for :func:`team_reward`; the second entry is replaced.
+    """
+    total = 0.0
+    far = max(hypot(ball[0] - robot[0], ball[1] - robot[1]) - ROBOT_RADIUS - BALL_RADIUS, 0.0)
+    if not isnan(before[1]):
+        total += weights.approach * (before[1] - far)
+    before[1] = far
+    if fired and (goal_x - ball[0]) * ball[2] > 0.0:
+        crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
+        if abs(crosses) < post_y - BALL_RADIUS:
+            total += weights.shot
+    if gap < 0.005:
+        total -= weights.crash
+    return total

@@ -1,0 +1,105 @@
+"""Settings of the tasks of several robots."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from robobt.config.validation import Settings
+from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings
+from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
+from robobt.learning.envs.soccer.rewards import SoccerReward
+from robobt.models.actions import SCORE_ACTION, ActionScaling
+
+Role = Literal["learner", "goalkeeper", "still", "press", "mark", "wall", "attack", "pass"]
+Aim = Literal["score", "save", "keep", "pass"]
+AIMS = ("score", "save", "keep", "pass")
+LEARNER: Role = "learner"
+GOALKEEPER: Role = "goalkeeper"
+
+
+class SoccerStarts(OrderedSettings):
+    """Where episodes start: everybody and the ball anywhere in their ranges, with any heading, at rest.
+
+    Goalkeepers stand before the middles of their goals.
+    """
+
+    blue_x: Span = Field((-3.0, 2.5), description="[m]")
+    yellow_x: Span = Field((-2.5, 3.0), description="[m]")
+    y: Span = Field((-2.5, 2.5), description="of all robots and the ball [m]")
+    ball_x: Span = Field((-2.5, 2.5), description="[m]")
+    ball_speed: Span = Field((0.0, 0.5), description="in any direction, of a free ball [m/s]")
+    held: float = Field(0.0, ge=0, le=1, description="share that starts with the ball in blue's mouth")
+    holder: Literal["blue", "yellow"] = Field("blue", description="whose first field player holds it then")
+    apart: float = Field(0.35, ge=0.2, le=2, description="least distance of any two, and of the ball [m]")
+
+
+class SoccerRules(Settings):
+    """What ends an episode besides a goal, the ball over a line and the time limit."""
+
+    held_by: int | None = Field(
+        8, ge=1, le=1000, description="ticks in the other team's mouths after which the ball is lost"
+    )
+    areas: bool = Field(True, description="a learner's centre in the other team's defence area is a fault")
+    dribbling: float | None = Field(
+        None, gt=0, le=20, description="longest way with the ball in one mouth, by the rules 1 [m]"
+    )
+    pass_length: float = Field(0.8, ge=0.2, le=10, description="what is shorter is no pass [m]")
+
+
+class SoccerSettings(TaskSettings):
+    """Any mix of learned and scripted robots: blue attacks towards +x, yellow towards -x."""
+
+    action: ActionScaling = SCORE_ACTION
+    time_limit: int = Field(334, ge=1, le=100_000, description="ticks to the end of an episode")
+    decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
+    blue: tuple[Role, ...] = Field(("learner",), min_length=1, max_length=11, description="who plays")
+    yellow: tuple[Role, ...] = Field((), max_length=11, description="who plays against them")
+    aim: Aim = Field(
+        "score",
+        description="success: blue's goal, none against it, the ball kept to the end, or a pass of blue's",
+    )
+    mates: int | None = Field(None, ge=0, le=10, description="seen; None for as many as there are")
+    opponents: int | None = Field(None, ge=0, le=11, description="seen; None for as many as there are")
+    player_speed: float = Field(2.0, gt=0, le=10, description="top speed of scripted field players [m/s]")
+    keepers: KeeperSettings = KeeperSettings()
+    rules: SoccerRules = SoccerRules()
+    reward: SoccerReward = SoccerReward()
+    starts: SoccerStarts = SoccerStarts()
+
+    @property
+    def roles(self) -> tuple[Role, ...]:
+        """Of all robots in an arena, blue's first."""
+        return (*self.blue, *self.yellow)
+
+    @property
+    def learners(self) -> tuple[int, ...]:
+        """Indices of the robots that learn."""
+        return tuple(index for index, role in enumerate(self.roles) if role == LEARNER)
+
+    @property
+    def places(self) -> tuple[int, int]:
+        """How many mates and opponents each learner sees."""
+        sizes = [(len(self.blue) - 1, len(self.yellow)), (len(self.yellow) - 1, len(self.blue))]
+        learning = [LEARNER in self.blue, LEARNER in self.yellow]
+        seen = [size for size, learns in zip(sizes, learning, strict=True) if learns] or sizes[:1]
+        mates, opponents = (max(column) for column in zip(*seen, strict=True))
+        return (
+            mates if self.mates is None else self.mates,
+            opponents if self.opponents is None else self.opponents,
+        )
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.action.kind != "drive_and_kick":
+            raise ValueError("action: tasks of several robots need drive_and_kick actions")
+        if not self.learners:
+            raise ValueError("blue, yellow: nobody is a learner")
+        if self.blue.count(GOALKEEPER) > 1 or self.yellow.count(GOALKEEPER) > 1:
+            raise ValueError("blue, yellow: a team has one goalkeeper at most")
+        if (GOALKEEPER in self.blue and not self.yellow) or (not self.blue and GOALKEEPER in self.yellow):
+            raise ValueError("blue: a goalkeeper has nobody to mind")
+        if self.aim == "pass" and len(self.blue) < 2:
+            raise ValueError("aim: to pass takes two")
+        return self

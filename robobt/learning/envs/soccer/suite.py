@@ -1,0 +1,152 @@
+"""The graded suite's tasks of several robots: each a mix of robots, an aim, a start and an end.
+
+What is not said is the default of :class:`~robobt.learning.envs.soccer.settings.SoccerSettings`.
+"""
+
+from __future__ import annotations
+
+from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings
+from robobt.learning.envs.soccer.rewards import SoccerReward
+from robobt.learning.envs.soccer.settings import (
+    GOALKEEPER,
+    LEARNER,
+    Aim,
+    Role,
+    SoccerRules,
+    SoccerSettings,
+    SoccerStarts,
+)
+
+_ATTACKED = SoccerStarts(
+    blue_x=(0.0, 3.0), yellow_x=(2.0, 3.2), y=(-2.2, 2.2), ball_x=(0.0, 3.0), held=0.5, apart=0.35
+)
+_IN_PLAY = SoccerStarts(ball_speed=(0.0, 1.0))
+
+
+class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
+    """Get the ball and score past a wall of one before a goalkeeper.
+
+    All start in the attacked half; in half of the episodes the attacker has the ball. Success is a goal; a
+    ball that is out, the goalkeeper's or held by yellow for 8 periods, and an attacker in the defence area
+    end it.
+    """
+
+    blue: tuple[Role, ...] = (LEARNER,)
+    yellow: tuple[Role, ...] = (GOALKEEPER, "wall")
+    starts: SoccerStarts = _ATTACKED
+
+
+class SaveSettings(SoccerSettings):
+    """Keep goal against one who gets the ball and shoots.
+
+    The attacker starts with the ball, 1 to 4 m before the goal. Success is every end but a goal: the ball out
+    or held by the goalkeeper for 8 periods, or 6.7 s gone by.
+    """
+
+    blue: tuple[Role, ...] = (LEARNER,)
+    yellow: tuple[Role, ...] = ("attack",)
+    aim: Aim = "save"
+    time_limit: int = 222
+    rules: SoccerRules = SoccerRules(areas=False)
+    reward: SoccerReward = SoccerReward(advance=0.1, approach=0.1, shot=0.0)
+    starts: SoccerStarts = SoccerStarts(
+        blue_x=(-4.4, -4.0), yellow_x=(-3.3, -0.5), y=(-1.5, 1.5), held=1.0, holder="yellow"
+    )
+
+
+class DuelSettings(SoccerSettings):
+    """One against one that learns too: the ball lies between them, and a goal decides."""
+
+    blue: tuple[Role, ...] = (LEARNER,)
+    yellow: tuple[Role, ...] = (LEARNER,)
+    rules: SoccerRules = SoccerRules(held_by=None)
+    starts: SoccerStarts = _IN_PLAY
+
+
+class DuelWithScriptSettings(DuelSettings):
+    """One against one that fetches the ball, carries it and shoots, at up to 2 m/s."""
+
+    yellow: tuple[Role, ...] = ("attack",)
+
+
+class KeepawaySettings(SoccerSettings):
+    """Three keep the ball from one that presses at up to 1 m/s, for 6 s.
+
+    It starts with the first of the three. It ends when the presser has held the ball for 8 periods, with the
+    ball over a line, and with one who has carried it farther than 1 m. Success is to have it still when time
+    is up.
+    """
+
+    blue: tuple[Role, ...] = (LEARNER, LEARNER, LEARNER)
+    yellow: tuple[Role, ...] = ("press",)
+    aim: Aim = "keep"
+    time_limit: int = 200
+    player_speed: float = 1.0
+    rules: SoccerRules = SoccerRules(dribbling=1.0)
+    reward: SoccerReward = SoccerReward(goal=0.0, advance=0.0, shot=0.0, passed=0.5, approach=0.1)
+    starts: SoccerStarts = SoccerStarts(
+        blue_x=(-2.0, 2.0), yellow_x=(-2.0, 2.0), y=(-2.0, 2.0), held=1.0, apart=0.8
+    )
+
+
+class PassSettings(SoccerSettings):
+    """Pass to a mate past one that presses at up to 1 m/s.
+
+    Success is the ball in the other's mouth, 0.8 m or more from where it was passed.
+    """
+
+    blue: tuple[Role, ...] = (LEARNER, LEARNER)
+    yellow: tuple[Role, ...] = ("press",)
+    aim: Aim = "pass"
+    time_limit: int = 200
+    player_speed: float = 1.0
+    rules: SoccerRules = SoccerRules(dribbling=1.0)
+    reward: SoccerReward = SoccerReward(goal=0.0, advance=0.0, shot=0.0, passed=5.0, approach=0.1)
+    starts: SoccerStarts = SoccerStarts(
+        blue_x=(-2.0, 2.0), yellow_x=(-2.0, 2.0), y=(-2.0, 2.0), held=1.0, apart=0.8
+    )
+
+
+class Attack3v2Settings(SoccerSettings):
+    """Three attack a goalkeeper, one who marks and one who stands in the way, for 10 s."""
+
+    blue: tuple[Role, ...] = (LEARNER, LEARNER, LEARNER)
+    yellow: tuple[Role, ...] = (GOALKEEPER, "mark", "wall")
+    reward: SoccerReward = SoccerReward(passed=0.2, shared=0.5)
+    starts: SoccerStarts = _ATTACKED.model_copy(update={"blue_x": (-1.0, 3.0)})
+
+
+class Small3v3Settings(SoccerSettings):
+    """Two and a goalkeeper a side, the field players of both learning; a goal decides, within 15 s."""
+
+    blue: tuple[Role, ...] = (GOALKEEPER, LEARNER, LEARNER)
+    yellow: tuple[Role, ...] = (GOALKEEPER, LEARNER, LEARNER)
+    time_limit: int = 500
+    keepers: KeeperSettings = KeeperSettings(speed=(1.5, 3.0))
+    rules: SoccerRules = SoccerRules(held_by=None, dribbling=1.0)
+    reward: SoccerReward = SoccerReward(passed=0.2, shared=0.5)
+    starts: SoccerStarts = _IN_PLAY
+
+
+SUITE: dict[str, type[SoccerSettings]] = {
+    "ScoreOnGoalkeeperAndDefenders": ScoreOnGoalkeeperAndDefendersSettings,
+    "Save": SaveSettings,
+    "Duel": DuelSettings,
+    "DuelWithScript": DuelWithScriptSettings,
+    "Keepaway": KeepawaySettings,
+    "Pass": PassSettings,
+    "Attack3v2": Attack3v2Settings,
+    "Small3v3": Small3v3Settings,
+}
+"""The tasks by name; any other mix of robots is a :class:`SoccerSettings` of one's own."""
+
+SCRIPTS: dict[str, Role] = {"score": "attack", "save": GOALKEEPER, "keep": "pass", "pass": "pass"}
+"""Who plays in the learners' places for a task's script score, by its aim."""
+
+
+def scripted(settings: SoccerSettings) -> SoccerSettings:
+    """Return the ``settings`` with the script in the place of blue's learners, and attackers in yellow's."""
+    own: Role = SCRIPTS[settings.aim]
+    blue = tuple(own if role == LEARNER else role for role in settings.blue)
+    yellow = tuple("attack" if role == LEARNER else role for role in settings.yellow)
+    return settings.model_copy(update={"blue": blue, "yellow": yellow})

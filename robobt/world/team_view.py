@@ -1,0 +1,155 @@
+"""The observation of a robot in a team: itself, the ball, both goals and who is near; defined once."""
+
+from __future__ import annotations
+
+from math import copysign, cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+from robobt.world.observation import ObservationSpec, observation_spec
+from robobt.world.scoring import FAR_OFF, KICK_SPEED
+
+AWAY = 5.0
+"""Nobody is observed as one at rest so far behind [m]."""
+
+_OWN, _EACH = 19, 4
+
+
+def team_view(mates: int, opponents: int) -> ObservationSpec:
+    """Return the observation with places for so many mates and opponents, the nearest first.
+
+    Velocities are those over the field, in the robot's frame, as are positions but ``x``, ``y`` and the
+    heading: these are the team's, which attacks towards +x. ``aim`` is where a kick would cross the goal
+    line, from its middle, at most 1 m either way; ``lane`` how far to the left of that shot the opponent is
+    who is nearest to it, at most 0.5 m either way, 0.5 without any on the way.
+    """
+    units: dict[str, str] = {
+        **dict.fromkeys(("vx", "vy"), "m/s"),
+        "omega": "rad/s",
+        **dict.fromkeys(("x", "y"), "m"),
+        **dict.fromkeys(("cos_heading", "sin_heading"), "1"),
+        **dict.fromkeys(("ball_x", "ball_y"), "m"),
+        **dict.fromkeys(("ball_vx", "ball_vy"), "m/s"),
+        **dict.fromkeys(("left_post_x", "left_post_y", "right_post_x", "right_post_y"), "m"),
+        **dict.fromkeys(("own_goal_x", "own_goal_y", "aim", "lane"), "m"),
+    }
+    for who, places in (("mate", mates), ("opponent", opponents)):
+        for k in range(places):
+            units |= {
+                f"{who}_{k}_x": "m",
+                f"{who}_{k}_y": "m",
+                f"{who}_{k}_vx": "m/s",
+                f"{who}_{k}_vy": "m/s",
+            }
+    return observation_spec(f"team_view_{mates}_{opponents}", 1, **units)
+
+
+@compiled
+def team_view_rows(
+    robots: FloatArray,
+    balls: FloatArray,
+    who: NDArray[np.int64],
+    blue: int,
+    mates: int,
+    opponents: int,
+    goal_x: float,
+    post_y: float,
+) -> FloatArray:
+    """Compute the states :func:`team_view` of the robots ``who`` in many arenas, (n, len(who) * size).
+
+    Args:
+        robots: (n, R, 6) x, y, heading, vx, vy, omega in field coordinates.
+        balls: (n, 4) x, y, vx, vy.
+        who: (L,) indices of the robots that observe.
+        blue: how many robots, the first, attack towards +x; the others towards -x.
+        mates: places for them.
+        opponents: likewise.
+        goal_x: where the goal lines are, either way [m].
+        post_y: distance of the posts from the field's long axis [m].
+    """
+    size = _OWN + _EACH * (mates + opponents)
+    rows = np.empty((len(robots), len(who) * size))
+    for i in range(len(robots)):
+        for k in range(len(who)):
+            row = rows[i, k * size : (k + 1) * size]
+            index = who[k]
+            first, last = (0, blue) if index < blue else (blue, robots.shape[1])
+            _observe(robots[i], balls[i], index, first, last, goal_x, post_y, row)
+            places = row[_OWN:].reshape(mates + opponents, _EACH)
+            _nearest(robots[i], index, first, last, True, places[:mates])
+            _nearest(robots[i], index, first, last, False, places[mates:])
+    return rows
+
+
+@compiled
+def _observe(
+    robots: FloatArray,
+    ball: FloatArray,
+    index: int,
+    first: int,
+    last: int,
+    goal_x: float,
+    post_y: float,
+    row: FloatArray,
+) -> None:
+    me, sign = robots[index], 1.0 if first == 0 else -1.0
+    c, s = cos(me[2]), sin(me[2])
+    goal, left = sign * goal_x, sign * post_y
+    row[2] = me[5]
+    row[3], row[4], row[5], row[6] = sign * me[0], sign * me[1], sign * c, sign * s
+    for entry, x, y in (
+        (0, me[3], me[4]),
+        (7, ball[0] - me[0], ball[1] - me[1]),
+        (9, ball[2], ball[3]),
+        (11, goal - me[0], left - me[1]),
+        (13, goal - me[0], -left - me[1]),
+        (15, -goal - me[0], -me[1]),
+    ):
+        row[entry] = c * x + s * y
+        row[entry + 1] = c * y - s * x
+    # A kicked ball keeps the velocity that it has across the heading.
+    vx, vy = KICK_SPEED * c - row[10] * s, KICK_SPEED * s + row[10] * c
+    fast = hypot(vx, vy)
+    ahead = sign * vx > 0.1 * fast
+    crosses = sign * (ball[1] + (goal - ball[0]) * vy / vx) if ahead else copysign(FAR_OFF, sign * vy)
+    row[17] = min(max(crosses, -FAR_OFF), FAR_OFF)
+    lane = 0.5 * FAR_OFF
+    for r in range(len(robots)):
+        if first <= r < last:
+            continue
+        dx, dy = robots[r, 0] - ball[0], robots[r, 1] - ball[1]
+        aside = (dy * vx - dx * vy) / fast
+        if dx * vx + dy * vy > 0.0 and abs(aside) < abs(lane):
+            lane = aside
+    row[18] = lane
+
+
+@compiled
+def _nearest(robots: FloatArray, index: int, first: int, last: int, mates: bool, places: FloatArray) -> None:
+    """Fill the places with the nearest mates, or opponents, of a robot."""
+    me = robots[index]
+    c, s = cos(me[2]), sin(me[2])
+    away = np.full(len(places), np.inf)
+    for place in range(len(places)):
+        places[place, 0] = -AWAY
+        places[place, 1:] = 0.0
+    for r in range(len(robots)):
+        if r == index or (first <= r < last) != mates:
+            continue
+        other = robots[r]
+        dx, dy = other[0] - me[0], other[1] - me[1]
+        far = hypot(dx, dy)
+        # Insert it behind those that are as near, and move the farther ones on.
+        place = len(places)
+        while place > 0 and far < away[place - 1]:
+            place -= 1
+            if place + 1 < len(places):
+                away[place + 1] = away[place]
+                places[place + 1] = places[place]
+        if place < len(places):
+            away[place] = far
+            places[place, 0], places[place, 1] = c * dx + s * dy, c * dy - s * dx
+            places[place, 2], places[place, 3] = c * other[3] + s * other[4], c * other[4] - s * other[3]

@@ -1,0 +1,130 @@
+"""Tasks of several robots keep the rules of Gymnasium, PettingZoo and the libraries that learn with them."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import robobt.learning
+from robobt.learning.envs.soccer.env import SoccerEnv
+from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.task import SoccerTask
+
+FEW = pytest.mark.parametrize("name", ["Save", "Duel", "Attack3v2"])
+
+
+def many(name: str, num_envs: int, **more: Any) -> Any:
+    return gymnasium.make_vec(f"{name}-v0", num_envs, vectorization_mode="vector_entry_point", **more)
+
+
+def test_every_task_of_the_suite_has_its_id() -> None:
+    assert set(robobt.learning.TEAMS) == set(SUITE)
+    for name in SUITE:
+        assert f"robobt/{name}-v0" in gymnasium.registry
+    with pytest.raises(ValueError, match="there are ScoreOnGoalkeeperAndDefenders, Save"):
+        SoccerEnv("Chess")
+
+
+@pytest.mark.integration
+@FEW
+def test_gymnasiums_checker_has_nothing_to_say(name: str) -> None:
+    check_env(gymnasium.make(f"{name}-v0", settings={"noise": {"robot_position": 0.01}}).unwrapped)
+
+
+@FEW
+def test_every_learner_is_an_environment_of_the_vector(name: str) -> None:
+    each = len(SUITE[name]().learners)
+    envs, again = many(name, 2 * each), many(name, 2 * each)
+    seen, _ = envs.reset(seed=3)
+    np.testing.assert_array_equal(seen, again.reset(seed=3)[0])
+    assert envs.observation_space.contains(seen)
+    envs.action_space.seed(1)
+    ended = 0
+    for _ in range(330):
+        seen, reward, terminated, truncated, info = envs.step(envs.action_space.sample())
+        assert envs.observation_space.contains(seen)
+        done = terminated | truncated
+        assert reward.shape == done.shape == (2 * each,)
+        # Episodes end for all of an arena.
+        assert (done.reshape(2, each).all(1) == done.reshape(2, each).any(1)).all()
+        if info:
+            ended += int(done.sum())
+            np.testing.assert_array_equal(info["final_obs"][~done], seen[~done])
+            assert (info["final_info"]["time"][done] > 0.0).all()
+    assert ended >= each
+    with pytest.raises(ValueError, match="multiple of the arena's 2"):
+        many("Duel", 3)
+
+
+@FEW
+def test_pettingzoos_checkers_have_nothing_to_say(name: str) -> None:
+    pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")
+    from pettingzoo.test import parallel_api_test, parallel_seed_test
+
+    from robobt.learning.envs.soccer.parallel import SoccerParallelEnv
+
+    with warnings.catch_warnings():
+        # It advises against settings that are no keyword arguments of their own.
+        warnings.simplefilter("ignore", UserWarning)
+        parallel_api_test(SoccerParallelEnv(name), num_cycles=200)
+        parallel_seed_test(lambda: SoccerParallelEnv(name))
+
+
+def test_agents_are_the_tasks_learners() -> None:
+    pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")
+    from robobt.learning.envs.soccer.parallel import SoccerParallelEnv
+
+    env = SoccerParallelEnv("Small3v3", {"time_limit": 20}, render_mode="rgb_array")
+    task = SoccerTask(SUITE["Small3v3"](time_limit=20), seed=5)
+    seen, _ = env.reset(seed=5)
+    assert env.agents == ["blue_1", "blue_2", "yellow_1", "yellow_2"]
+    np.testing.assert_array_equal(np.concatenate(list(seen.values())), task.reset()[0].astype(np.float32))
+    rng = np.random.default_rng(0)
+    while env.agents:
+        actions = {agent: rng.uniform(-1, 1, 4) for agent in env.agents}
+        seen, rewards, terminated, truncated, infos = env.step(actions)
+        result = task.advance(np.concatenate(list(actions.values()))[None])
+        np.testing.assert_array_equal(list(rewards.values()), task.shares[0])
+        np.testing.assert_array_equal(env.state(), task.state()[0].astype(np.float32))
+        assert set(terminated.values()) == {bool(result.terminated[0])}
+    assert all(terminated.values()) or all(truncated.values())
+    assert infos["blue_1"]["time"] > 0.0
+    assert env.render().ndim == 3
+
+
+@pytest.mark.integration
+def test_stable_baselines3_learns_on_it() -> None:
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3, which is no dependency")
+    from stable_baselines3 import PPO
+
+    from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
+
+    envs = ArenasVecEnv(many("Duel", 8, settings={"time_limit": 40}))
+    seen = envs.reset()
+    for _ in range(25):
+        seen, _, done, infos = envs.step(np.zeros((8, 4), dtype=np.float32))
+        assert envs.observation_space.contains(seen[0])
+        for k in np.flatnonzero(done):
+            assert infos[k]["terminal_observation"].shape == seen[k].shape
+            assert infos[k]["TimeLimit.truncated"]
+            assert infos[k]["episode"]["l"] == 20
+    learner = PPO("MlpPolicy", envs, n_steps=16, batch_size=64, n_epochs=1, device="cpu")
+    learner.learn(256)
+    assert learner.num_timesteps == 256
+
+
+@pytest.mark.integration
+def test_torchrl_wraps_it() -> None:
+    pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")
+    libs = pytest.importorskip("torchrl.envs", reason="needs TorchRL, which is no dependency")
+    from robobt.learning.envs.soccer.parallel import SoccerParallelEnv
+
+    env = libs.PettingZooWrapper(SoccerParallelEnv("Duel"), use_mask=False)
+    libs.check_env_specs(env)
+    rollout = env.rollout(10)
+    assert rollout["blue", "observation"].shape[-1] == env.observation_spec["blue", "observation"].shape[-1]
