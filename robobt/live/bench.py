@@ -14,7 +14,6 @@ from typing import TypedDict
 
 from robobt.live.server import Server
 from robobt.live.session import LATE, Live
-from robobt.live.stream import Stream
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.scenario.scenario import Scenario
 
@@ -112,9 +111,10 @@ def bench_live(
         alone = stack.enter_context(Match(played, seed, world_factory))
         shown = stack.enter_context(Match(played, seed, world_factory))
         server = stack.enter_context(Server())
-        Live(server)
-        stream = Stream(shown.capture())
-        server.show(stream)
+        # The pace is kept here.
+        live = Live(server, sleep=lambda _: None)
+        live.begin(shown)
+        play = alone.tick, lambda: live.tick(shown)
         usual = [stack.enter_context(_ending(_Viewer(server))) for _ in range(viewers)]
         slow = stack.enter_context(_ending(_Viewer(server, rate=1e6)))
         stalled = stack.enter_context(_ending(_Viewer(server, rest=2.0 * seconds / 3.0)))
@@ -134,7 +134,7 @@ def bench_live(
                     sleep(ahead)
                 late[which] += perf_counter() > due + LATE
                 start = thread_time()
-                (alone, shown)[which].tick()
+                play[which]()
                 busy[which] += thread_time() - start
                 if perf_counter() > due + 0.25:
                     due = perf_counter()

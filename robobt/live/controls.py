@@ -24,7 +24,8 @@ class Controls:
 
     def ticked(self) -> None:
         """Count a tick that was played."""
-        self._steps = max(0, self._steps - 1)
+        if self._steps:
+            self._steps -= 1
 
     def take(self, act: Act) -> None:
         """Do what is asked for, as far as it is about time."""

@@ -28,5 +28,7 @@ class Grip:
 
     def moves(self, now: float) -> list[MoveBall | MoveRobot]:
         """Return what keeps everything in its place that is still held."""
+        if not self._held:
+            return []
         self._held = {name: held for name, held in self._held.items() if now <= held[1] + _LASTS}
         return [move for move, _ in self._held.values()]

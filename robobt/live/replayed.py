@@ -85,9 +85,8 @@ class Replay:
             while self._controls.wait and not (self._again or self._ended):
                 self._idle()
                 due = self._clock()
-            with suppress(Empty):
-                while True:
-                    self._do(self._server.inbox.get_nowait()[0])
+            while not self._server.inbox.empty():
+                self._do(self._server.inbox.get_nowait()[0])
             if self._again or self._ended:
                 return
             ahead = due - self._clock()

@@ -193,9 +193,8 @@ class Live:
 
     def _obey(self, match: Match) -> None:
         """Do what viewers have asked for by now."""
-        with suppress(Empty):
-            while True:
-                self._do(*self._server.inbox.get_nowait(), match)
+        while not self._server.inbox.empty():
+            self._do(*self._server.inbox.get_nowait(), match)
 
     def _show(self, match: Match) -> None:
         """Show the match as it is captured now."""

@@ -30,6 +30,19 @@ class Page:
     def open(self, url: str) -> None:
         self.driver.get(url)
 
+    def steer(self, url: str) -> None:
+        """Open a live page and wait until it steers."""
+        self.open(url)
+        self.wait(
+            "return window.robobt && document.querySelector('.live button[aria-pressed=true]') !== null"
+        )
+
+    def begin_again(self) -> None:
+        """Let the match that is shown begin again."""
+        before = self.js("return window.robobt.measured.matches")
+        self.button("Again").click()
+        self.wait("return window.robobt.measured.matches > arguments[0]", before)
+
     def js(self, script: str, *args: Any) -> Any:
         """Run a function's body in the page and return what it returns."""
         return self.driver.execute_script(script, *args)

@@ -33,14 +33,9 @@ def session() -> Iterator[Session]:
 def live(page: Page, session: Session) -> Page:
     """The live page with a match that has just begun."""
     session.act(Pause(do="pause", on=False))
-    page.open(session.server.url)
-    page.wait(SHOWN)
-    page.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
-    matches = page.js("return window.robobt.measured.matches")
-    page.button("Again").click()
-    page.wait(
-        "return window.robobt.measured.matches > arguments[0] && window.robobt.match.frames > 2", matches
-    )
+    page.steer(session.server.url)
+    page.begin_again()
+    page.wait("return window.robobt.match.frames > 2")
     return page
 
 
@@ -118,9 +113,7 @@ def test_the_recording_that_is_saved_is_replayed_as_it_was_shown(
     write_html(parse_recording(body, tmp_path), tmp_path / "saved.html")
     live.open((tmp_path / "saved.html").as_uri())
     assert live.js(ROWS) == shown
-    session.server.inbox.put(
-        __import__("robobt.live.messages", fromlist=["Pause"]).Pause(do="pause", on=False)
-    )
+    session.act(Pause(do="pause", on=False))
 
 
 def test_of_two_viewers_one_steers(live: Page, session: Session) -> None:

@@ -34,11 +34,8 @@ def session(scenario: Scenario) -> Iterator[Session]:
 def driven(page: Page, session: Session) -> Iterator[Page]:
     """A page that drives the only robot of a match that goes on."""
     session.act(Pause(do="pause", on=True))
-    page.open(session.server.url)
-    page.wait("return window.robobt && document.querySelector('.live button[aria-pressed=true]') !== null")
-    before = page.js("return window.robobt.measured.matches")
-    page.button("Again").click()
-    page.wait("return window.robobt.measured.matches > arguments[0]", before)
+    page.steer(session.server.url)
+    page.begin_again()
     page.button("Drive").click()
     page.wait("return document.querySelector('.driving button').textContent === 'Let go'")
     session.act(Pause(do="pause", on=False))

@@ -16,9 +16,8 @@ return { frames: measured.frames, painted: [at(measured.painted, .5), at(measure
 
 def test_eleven_a_side_are_painted_at_once(page: Page) -> None:
     with playing("eleven_v_eleven") as session:
-        page.open(session.server.url)
-        page.wait("return window.robobt && window.robobt.match.frames > 120", seconds=60.0)
-        page.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
+        page.steer(session.server.url)
+        page.wait("return window.robobt.match.frames > 120", seconds=60.0)
         page.js("window.robobt.measured.painted.length = 0; window.robobt.measured.frames = 0")
         page.js("window.begun = performance.now()")
         page.wait("return performance.now() > window.begun + 20000", seconds=60.0)

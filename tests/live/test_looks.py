@@ -42,9 +42,8 @@ def session() -> Iterator[Session]:
 
 @pytest.fixture
 def live(page: Page, session: Session) -> Page:
-    page.open(session.server.url)
-    page.wait("return window.robobt && window.robobt.match.frames > 2")
-    page.wait("return document.querySelector('.live button[aria-pressed=true]') !== null")
+    page.steer(session.server.url)
+    page.wait("return window.robobt.match.frames > 2")
     return page
 
 

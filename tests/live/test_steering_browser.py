@@ -36,11 +36,8 @@ def session() -> Iterator[Session]:
 def live(page: Page, session: Session) -> Page:
     """The live page with a paused match that this page steers."""
     session.act(Pause(do="pause", on=True))
-    page.open(session.server.url)
-    page.wait("return window.robobt && document.querySelector('.live button[aria-pressed=true]') !== null")
-    before = page.js("return window.robobt.measured.matches")
-    page.button("Again").click()
-    page.wait("return window.robobt.measured.matches > arguments[0]", before)
+    page.steer(session.server.url)
+    page.begin_again()
     play(page, session, 3)
     return page
 

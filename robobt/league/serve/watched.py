@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from queue import Empty
-
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.commands import BallTeleport, Teleport
@@ -35,9 +32,8 @@ class WatchedField:
 
     def __call__(self, field: ServedField) -> None:
         """Do what viewers ask for, and show what there is now."""
-        with suppress(Empty):
-            while True:
-                self._do(self._server.inbox.get_nowait()[0], field)
+        while not self._server.inbox.empty():
+            self._do(self._server.inbox.get_nowait()[0], field)
         for move in self._grip.moves(field.time):
             self._move(move, field)
         truth = field.truth()

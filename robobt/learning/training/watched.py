@@ -75,9 +75,8 @@ class _Shows:
             time.sleep(max(0.0, due - time.perf_counter()))
 
     def _obey(self) -> None:
-        with suppress(Empty):
-            while True:
-                self._controls.take(self._server.inbox.get_nowait()[0])
+        while not self._server.inbox.empty():
+            self._controls.take(self._server.inbox.get_nowait()[0])
         while self._controls.wait and self._server.viewers:
             check()
             with suppress(Empty):
