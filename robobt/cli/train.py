@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 Task = Annotated[
     str,
-    typer.Argument(help="What to learn: go_to_ball, go_to_ball_among_robots, shoot or score_on_goalkeeper."),
+    typer.Argument(help="What to learn: go_to_ball, shoot, score_on_goalkeeper, duel, ..."),
 ]
 Changes = Annotated[
     list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -100,6 +101,18 @@ class ArenaTask(ABC):
         """How long each arena's episode has gone on, (n,)."""
         ticks: FloatArray = self._progress["ticks"]
         return ticks
+
+    def jointly(self, policy: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
+        """Return ``policy``, which decides for each learner alone, as one for all of an arena."""
+        each = len(self.learners)
+        if each == 1:
+            return policy
+
+        def decide(observation: FloatArray) -> FloatArray:
+            arenas = len(observation)
+            return policy(observation.reshape(arenas * each, -1)).reshape(arenas, -1)
+
+        return decide
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""

@@ -78,6 +78,10 @@ def export_run(
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
             policy_of(result.actor), "held_out", count
         )
+    if settings.task not in _SKILLS:
+        raise ModelError(
+            f"{run}: no skill plays a policy for {settings.task}; there are {', '.join(_SKILLS)}"
+        )
     skill, observation = _SKILLS[settings.task], make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",

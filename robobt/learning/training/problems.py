@@ -19,7 +19,9 @@ from robobt.learning.envs import (
     run_starts,
 )
 from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.make import learners_of, make_rows
 from robobt.learning.envs.several_worlds import SeveralWorlds
+from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.world.avoiding import PLACES
 
@@ -81,6 +83,10 @@ def problem_of(
         # Beside the line of the heading, less counts than along it.
         scale = (speed, speed, turn, 2.0, 1.5, 3.0, 3.0, 1.0, 1.0, *(4.0, 2.0) * 3, 2.0, 2.0, 0.3, 0.2)
         smoothed = (True, True, True, False)
+    elif isinstance(environment, SoccerSettings):
+        own = (speed, speed, turn, 3.0, 2.0, 1.0, 1.0, 2.0, 1.5, 3.0, 3.0, *(4.0, 2.0) * 3, 0.3, 0.2)
+        scale = (*own, *(2.0, 2.0, speed, speed) * sum(environment.places))
+        smoothed = (True, True, True, False)
     else:
         raise TypeError(f"{type(environment).__name__} is no environment of a task")
     trained = tuple(worlds) or (environment,)
@@ -99,10 +105,10 @@ def problem_of(
 def _arenas(worlds: Sequence[TaskSettings], n: int) -> VectorTask:
     """Return ``n`` arenas, shared evenly among the worlds."""
     if len(worlds) == 1:
-        return make_task(worlds[0], n)
-    return SeveralWorlds(
-        [make_task(world, share) for world, share in zip(worlds, _shares(n, len(worlds)), strict=True)]
-    )
+        return make_rows(worlds[0], n)
+    each = learners_of(worlds[0])
+    shares = [each * share for share in _shares(n // each, len(worlds))]
+    return SeveralWorlds([make_rows(world, share) for world, share in zip(worlds, shares, strict=True)])
 
 
 def _shares(count: int, parts: int) -> list[int]:
@@ -125,7 +131,7 @@ def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, star
     parts = []
     for world, share in zip(worlds, _shares(starts, len(worlds)), strict=True):
         task = make_task(world, min(_ARENAS, share))
-        parts.append(run_starts(task, policy, task.sample_starts(seed, share), seed))
+        parts.append(run_starts(task, task.jointly(policy), task.sample_starts(seed, share), seed))
     episodes = Episodes.joined(parts)
     timed = episodes.kick_time if isinstance(task, ShootTask) else episodes.time
     return Evaluation(episodes.success, timed, episodes.optimum, episodes.total_reward)

@@ -12,27 +12,14 @@ from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
-from robobt.learning.envs import (
-    GoToBallAmongRobotsSettings,
-    GoToBallSettings,
-    ScoreOnGoalkeeperSettings,
-    ShootSettings,
-    TaskSettings,
-)
+from robobt.learning.envs import TaskSettings
+from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of
 
 _PRESETS = Path(__file__).parent / "presets"
 SWITCHES = _PRESETS / "switches.yaml"
 """The changes to the fast preset that comparisons are made of."""
 
 _M = TypeVar("_M", bound=BaseModel)
-
-ENVIRONMENTS: dict[str, type[TaskSettings]] = {
-    "go_to_ball": GoToBallSettings,
-    "shoot": ShootSettings,
-    "score_on_goalkeeper": ScoreOnGoalkeeperSettings,
-    "go_to_ball_among_robots": GoToBallAmongRobotsSettings,
-}
-"""The settings of each task's environment."""
 
 
 class SettingsError(ConfigError):
@@ -81,7 +68,7 @@ class ReplaySettings(Settings):
 class CollectionSettings(Settings):
     """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
 
-    environments: int = Field(1, ge=1, le=4096, description="that run side by side")
+    environments: int = Field(1, ge=1, le=4096, description="that run side by side, each learner counted")
     random_steps: int = Field(10_000, ge=0, description="of uniformly random actions, to begin with")
     update_after: int = Field(1_000, ge=0, description="steps before the first update")
     update_every: int = Field(50, ge=1, description="steps between rounds of updates")
@@ -190,7 +177,11 @@ class TrainSettings(Settings):
 
 def presets(task: str) -> list[str]:
     """Return the names of the presets that ship for a task."""
-    return sorted(path.stem for path in (_PRESETS / task).glob("*.yaml"))
+    return sorted(path.stem for path in _folder(task).glob("*.yaml"))
+
+
+def _folder(task: str) -> Path:
+    return _PRESETS / ("several_robots" if task in SEVERAL else task)
 
 
 def load_settings(
@@ -220,6 +211,9 @@ def load_settings(
     environment = environment_of(settings, source)
     evaluated_on(settings, source)
     worlds_of(settings, source)
+    if settings.collection.environments % learners_of(environment):
+        problem = f"must be a multiple of the {learners_of(environment)} robots that learn in an arena"
+        raise SettingsError(source, problem, "collection.environments")
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
 
@@ -265,7 +259,7 @@ def _validated(model: type[_M], data: dict[str, Any], source: str, group: str) -
 
 
 def _read(task: str, preset: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
-    bundled = _PRESETS / task / f"{preset}.yaml"
+    bundled = _folder(task) / f"{preset}.yaml"
     path = bundled if bundled.is_file() else Path(preset)
     if path is not bundled and path.suffix not in (".yaml", ".yml"):
         known = presets(task)

@@ -12,7 +12,7 @@ import numpy as np
 from robobt.learning.envs import ArenaTask, make_task
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.problems import Problem, Split, problem_of, split_seed
-from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on
+from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
 from robobt.live.controls import Controls
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -34,7 +34,7 @@ def watched_problem(server: Server, settings: TrainSettings) -> Problem:
 
     Training waits meanwhile, as long as somebody watches; what it learns is the same.
     """
-    problem = problem_of(environment_of(settings), evaluated_on(settings))
+    problem = problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings))
     shows = _Shows(server, settings)
 
     def evaluate(policy: Policy, split: Split, starts: int) -> Evaluation:
@@ -60,11 +60,11 @@ class _Shows:
         self._server.show(Stream(capture))
         period = task.settings.period * task.settings.decide_every
         seed, left, ticks, due = split_seed(split), SHOWN, 0, time.perf_counter()
-        observation = task.reset_to(task.sample_starts(seed, SHOWN), seed)
+        decide, observation = task.jointly(policy), task.reset_to(task.sample_starts(seed, SHOWN), seed)
         while left > 0 and self._server.viewers:
             check()
             capture.tick(_frame_of(task, ticks * period, period))
-            observation = task.step(policy(observation)).observation
+            observation = task.step(decide(observation)).observation
             ticks += 1
             if task.ended is not None and (task.ended.start >= 0).any():
                 left -= 1
@@ -84,24 +84,24 @@ class _Shows:
         self._controls.ticked()
 
 
-_TEAMS = (Team.BLUE, Team.YELLOW)
-"""Of the robots of an arena: the learner's first, then its opponent's."""
-
-
 def _header_of(task: ArenaTask, name: str) -> RecordingHeader:
-    robots = tuple([RecordedRobot(team=team, number=0) for team in _TEAMS[: task.robots]])
+    robots = tuple(
+        RecordedRobot(team=Team.BLUE, number=index)
+        if index < task.blue
+        else RecordedRobot(team=Team.YELLOW, number=index - task.blue)
+        for index in range(task.robots)
+    )
     period = task.settings.period * task.settings.decide_every
     return RecordingHeader(scenario=name, period=period, field=task.settings.field, robots=robots)
 
 
 def _frame_of(task: ArenaTask, time: float, period: float) -> Frame:
     arenas = task.arenas
-    robots = [
-        (RobotState(0, x, y, heading, vx, vy, omega, held),)
-        for (x, y, heading, vx, vy, omega), held in zip(
-            arenas.robots[0].tolist(), arenas.contact[0].tolist(), strict=True
-        )
-    ]
+    robots = []
+    for index, (x, y, heading, vx, vy, omega) in enumerate(arenas.robots[0].tolist()):
+        number = index if index < task.blue else index - task.blue
+        held = bool(arenas.contact[0, index])
+        robots.append(RobotState(number, x, y, heading, vx, vy, omega, held))
     ball = BallState(*np.asarray(arenas.balls[0]).tolist())
-    opponents = robots[1] if len(robots) > 1 else ()
-    return Frame(time, task.settings.field, ball, robots[0], opponents, period=period)
+    own, opponents = tuple(robots[: task.blue]), tuple(robots[task.blue :])
+    return Frame(time, task.settings.field, ball, own, opponents, period=period)

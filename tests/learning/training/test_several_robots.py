@@ -1,0 +1,75 @@
+"""Several robots that learn with one policy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robobt.learning.envs import run_starts
+from robobt.learning.envs.soccer.per_robot import PerRobot
+from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.task import SoccerTask
+from robobt.learning.training.export_run import export_run
+from robobt.learning.training.problems import problem_of
+from robobt.learning.training.settings import SettingsError, environment_of, load_settings
+from robobt.learning.training.train import train
+from robobt.models.file import ModelError
+
+TINY = {
+    "steps": 480,
+    "collection.environments": 12,
+    "ppo.rollout": 10,
+    "ppo.hidden": [8],
+    "ppo.batch": 60,
+    "evaluation.every": 240,
+    "evaluation.starts": 4,
+    "evaluation.held_out": 4,
+    "rebuild_every": 120,
+    "checkpoint_seconds": 0,
+    "tensorboard": False,
+    "environment.time_limit": 20,
+}
+
+
+@pytest.mark.integration
+def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
+    settings = load_settings("small3v3", "fast", TINY)
+    whole = train(settings, tmp_path / "whole")
+
+    class BrokenOffError(Exception):
+        """Breaks a run off."""
+
+    def stop(progress: object) -> None:
+        if getattr(progress, "steps", 0) >= 240:
+            raise BrokenOffError
+
+    with pytest.raises(BrokenOffError):
+        train(settings, tmp_path / "broken", on_progress=stop)
+    resumed = train(settings, tmp_path / "broken", resume=True)
+    assert resumed.figures["weights"] == whole.figures["weights"]
+    with pytest.raises(ModelError, match="no skill plays a policy for small3v3"):
+        export_run(tmp_path / "whole", "mine", tmp_path)
+
+
+def test_one_policy_decides_for_every_learner() -> None:
+    task = SoccerTask(SUITE["Duel"](time_limit=10), 3)
+    asked = []
+
+    def policy(seen: np.ndarray) -> np.ndarray:
+        asked.append(seen.shape)
+        return np.zeros((len(seen), 4))
+
+    run_starts(task, task.jointly(policy), task.sample_starts(0, 3))
+    assert set(asked) == {(6, task.observation.size)}
+
+
+def test_a_problem_has_a_row_for_each_learner() -> None:
+    environment = environment_of(load_settings("attack3v2"))
+    problem = problem_of(environment)
+    made = problem.make(6)
+    assert isinstance(made, PerRobot)
+    assert (made.n, made.task.n, len(problem.scale)) == (6, 2, made.observation_size)
+    with pytest.raises(SettingsError, match=r"collection\.environments: must be a multiple of the 3 robots"):
+        load_settings("attack3v2", "fast", {"collection.environments": 128})
