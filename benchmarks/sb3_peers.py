@@ -1,12 +1,13 @@
-"""Stable-Baselines3's DDPG and TD3 on robobt's environments, judged as robobt's own learner is.
+"""Stable-Baselines3's DDPG, TD3, SAC and PPO on robobt's environments, judged as robobt's own learner is.
 
     pip install stable-baselines3
     python benchmarks/sb3_peers.py go_to_ball --seeds 5 --out runs/sb3
 
-Both train with their own defaults and the exploration noise of Spinning Up, for as many
-environment steps as the preset ``fast`` may take at most. The best actor by the validation
-starts plays the held-out starts and is written as a model file, which is a skill like any
-other: ``GoToBall(policy="runs/sb3/go_to_ball_sb3_td3_0.pt")``.
+They train with their own defaults, DDPG and TD3 with the exploration noise of Spinning Up, in one
+environment or in one simulator with many arenas (``--arenas``), for as many environment steps as
+the preset ``fast`` may take at most. The best actor by the validation starts plays the held-out
+starts and is written as a model file, which is a skill like any other:
+``GoToBall(policy="runs/sb3/go_to_ball_sb3_td3_0.pt")``.
 """
 
 from __future__ import annotations
@@ -24,11 +25,14 @@ import stable_baselines3
 import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.noise import NormalActionNoise
+from stable_baselines3.common.vec_env import VecEnv
 from torch import nn
 
 import robobt
 from robobt.config.atomic import write_atomically
 from robobt.config.commit import source_commit
+from robobt.learning.envs import make_task
+from robobt.learning.envs.task import VectorTask
 from robobt.learning.training.evaluation import Policy
 from robobt.learning.training.export_run import held_out
 from robobt.learning.training.problems import Problem, problem_of
@@ -37,7 +41,12 @@ from robobt.models.card import ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model
 from robobt.world.features import GO_TO_BALL, SHOOT
 
-ALGORITHMS = {"ddpg": stable_baselines3.DDPG, "td3": stable_baselines3.TD3}
+ALGORITHMS = {
+    "ddpg": stable_baselines3.DDPG,
+    "td3": stable_baselines3.TD3,
+    "sac": stable_baselines3.SAC,
+    "ppo": stable_baselines3.PPO,
+}
 NOISE = 0.1
 TASKS = {
     "go_to_ball": ("GoToBall-v0", "GoToBall", GO_TO_BALL),
@@ -49,9 +58,10 @@ def main() -> None:
     """Train, and write model files and ``peers.json``."""
     parser = argparse.ArgumentParser(description="Stable-Baselines3 on robobt's environments")
     parser.add_argument("task", choices=sorted(TASKS))
-    parser.add_argument("--algorithms", nargs="+", choices=sorted(ALGORITHMS), default=sorted(ALGORITHMS))
+    parser.add_argument("--algorithms", nargs="+", choices=sorted(ALGORITHMS), default=["ddpg", "td3"])
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--steps", type=int, help="environment steps; by default those of the preset fast")
+    parser.add_argument("--arenas", type=int, default=1, help="how many are stepped together")
     parser.add_argument("--every", type=int, default=20_000, help="steps between evaluations")
     parser.add_argument("--starts", type=int, default=1000, help="held-out starts")
     parser.add_argument("--out", type=Path, default=Path("runs/sb3"))
@@ -60,14 +70,16 @@ def main() -> None:
     runs: list[dict[str, Any]] = []
     for algorithm in given.algorithms:
         for seed in range(given.seeds):
-            figures = train_peer(given.task, algorithm, seed, steps, given.every, given.starts, given.out)
+            figures = train_peer(
+                given.task, algorithm, seed, steps, given.every, given.starts, given.out, given.arenas
+            )
             runs.append(figures)
             print(json.dumps(figures), flush=True)
             write_atomically(given.out / "peers.json", (json.dumps(runs, indent=2) + "\n").encode())
 
 
 def train_peer(
-    task: str, algorithm: str, seed: int, steps: int, every: int, starts: int, out: Path
+    task: str, algorithm: str, seed: int, steps: int, every: int, starts: int, out: Path, arenas: int = 1
 ) -> dict[str, Any]:
     """Train one agent and write its best actor as a model file into ``out``.
 
@@ -80,18 +92,19 @@ def train_peer(
     environment = environment_of(load_settings(task))
     problem = problem_of(environment)
     name, skill, observation = TASKS[task]
+    single = gymnasium.make(name, settings=environment)
     actions = len(problem.smoothed)
+    noise = NormalActionNoise(np.zeros(actions), np.full(actions, NOISE))
     agent = ALGORITHMS[algorithm](
         "MlpPolicy",
-        gymnasium.make(name, settings=environment),
-        action_noise=NormalActionNoise(np.zeros(actions), np.full(actions, NOISE)),
+        single if arenas == 1 else Arenas(make_task(environment, arenas), single),
         seed=seed,
         device="cpu",
+        **({"action_noise": noise} if algorithm in ("ddpg", "td3") else {}),
     )
     evaluator = _Evaluator(problem, every)
     agent.learn(steps, callback=evaluator)
-    if evaluator.num_timesteps % every:
-        evaluator.evaluate()
+    evaluator.evaluate()
     figures = held_out(problem.evaluate(_policy(evaluator.best), "held_out", starts))
     action = environment.action
     card = ModelCard(
@@ -125,6 +138,70 @@ def train_peer(
     }
 
 
+class Arenas(VecEnv):
+    """A task with many arenas in one simulator, as Stable-Baselines3 steps environments."""
+
+    def __init__(self, task: VectorTask, single: gymnasium.Env[Any, Any]) -> None:
+        super().__init__(task.n, single.observation_space, single.action_space)
+        self._task = task
+
+    def reset(self) -> np.ndarray:
+        """Start all arenas anew."""
+        observation = self._task.reset(self._seeds[0])
+        self._reset_seeds()
+        return observation.astype(np.float32)
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Take the next actions."""
+        self._actions = actions.astype(np.float64)
+
+    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """Let a control period pass; an episode that ends starts anew, and its info says how it ended."""
+        step = self._task.step(self._actions)
+        done = step.terminated | step.truncated
+        infos: list[dict[str, Any]] = [{} for _ in done]
+        for i in np.flatnonzero(done):
+            infos[i] = {
+                "terminal_observation": step.final_observation[i].astype(np.float32),
+                "TimeLimit.truncated": bool(step.truncated[i] and not step.terminated[i]),
+            }
+        return step.observation.astype(np.float32), step.reward.astype(np.float32), done, infos
+
+    def close(self) -> None:
+        """Leave nothing open."""
+
+    def get_attr(self, attr_name: str, indices: object = None) -> list[Any]:  # noqa: ARG002
+        """Return what Stable-Baselines3 asks of its environments: none of them draws."""
+        return [getattr(self, attr_name, None)] * self.num_envs
+
+    def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
+        """Refuse: all arenas are one object."""
+        raise NotImplementedError(attr_name)
+
+    def env_method(self, method_name: str, *_: object, **__: object) -> list[Any]:
+        """Refuse: all arenas are one object."""
+        raise NotImplementedError(method_name)
+
+    def env_is_wrapped(self, wrapper_class: type, indices: object = None) -> list[bool]:  # noqa: ARG002
+        """Return that none is."""
+        return [False] * self.num_envs
+
+
+def actor_of(agent: Any) -> nn.Module:
+    """Return the part of an agent's policy that maps raw observations to actions in [-1, 1].
+
+    Flattening and scaling, which a policy has besides, do nothing to a vector within its bounds.
+    """
+    policy = agent.policy
+    if isinstance(agent, stable_baselines3.PPO):
+        # The mean of a Gaussian; PPO clips what it draws.
+        return nn.Sequential(policy.mlp_extractor.policy_net, policy.action_net, nn.Hardtanh())
+    if isinstance(agent, stable_baselines3.SAC):
+        return nn.Sequential(policy.actor.latent_pi, policy.actor.mu, nn.Tanh())
+    network: nn.Module = policy.actor.mu
+    return network
+
+
 class _Evaluator(BaseCallback):
     """Plays the validation starts now and then and keeps the best actor, by success and then time."""
 
@@ -135,6 +212,7 @@ class _Evaluator(BaseCallback):
         self._problem = problem
         self._every = every
         self._score = (-1.0, 0.0)
+        self._evaluated = 0
         self._begun = time.process_time()
         self._evaluation_s = 0.0
         self.to_99: dict[str, float] | None = None
@@ -147,8 +225,7 @@ class _Evaluator(BaseCallback):
     def evaluate(self) -> None:
         """Evaluate the actor as it is now."""
         spent, begun = self.cpu_s, time.process_time()
-        # Of the policy only this maps observations: flattening and scaling do nothing to a vector.
-        network = deepcopy(self.model.policy.actor.mu)
+        network = deepcopy(actor_of(self.model))
         figures = self._problem.evaluate(_policy(network), "validation", 300)
         score = (figures.rate, -figures.mean_time if figures.mean_time is not None else float("-inf"))
         if score > self._score:
@@ -158,7 +235,8 @@ class _Evaluator(BaseCallback):
         self._evaluation_s += time.process_time() - begun
 
     def _on_step(self) -> bool:
-        if self.num_timesteps % self._every == 0:
+        if self.num_timesteps // self._every > self._evaluated:
+            self._evaluated = self.num_timesteps // self._every
             self.evaluate()
         return True
 

@@ -88,7 +88,7 @@ _SHEET = re.sub(r"(?m)^(?=[a-z])", ".bt ", _STYLE).replace("\n", "")
 def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
     """Place a subtree from ``row`` on and return the row after it; parents stand amid their children."""
     box = _Box(node, describe(node), layer)
-    texts = _text_width(box.shown.title, 7.7), _text_width(box.shown.remark, 6.2)
+    texts = _text_width(box.shown.title, 7.7), _text_width(box.shown.remark, 6.8)
     box.width = 22.0 + max(texts)
     boxes.append(box)
     after = row

@@ -1,11 +1,14 @@
 """The page on a phone, in the dark, by keyboard alone, and how well it can be read."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
+from robobt.skills import KickToTarget, SelectShot
+from robobt.tree import Sequence, tree_svg
 from tests.live.chromium import Page
 from tests.live.playing import Session, playing, wait_for
 
@@ -91,3 +94,17 @@ def test_it_is_used_by_the_keyboard_alone(live: Page, session: Session) -> None:
     live.js("[...document.querySelectorAll('.live button')].find(b => b.textContent === 'Again').focus()")
     ActionChains(live.driver).send_keys(Keys.ENTER).perform()
     wait_for(lambda: len(session.matches) > matches)
+
+
+def test_texts_stay_in_the_boxes_of_a_trees_picture(page: Page, tmp_path: Path) -> None:
+    shot = SelectShot(tolerance=0.123456, min_score=0.12345, max_distance=3.4567)
+    kick = KickToTarget(name="with the widest letters: WWWWMMMM", target=(4.123456789, -0.123456789))
+    (tmp_path / "tree.svg").write_text(tree_svg(Sequence("both", memory=False, children=[shot, kick])))
+    page.open((tmp_path / "tree.svg").as_uri())
+    over = """return [...document.querySelectorAll("g")].map(node => {
+      const end = element => element.getBBox().x + element.getBBox().width;
+      return Math.max(...[...node.querySelectorAll("text")].map(end)) - end(node.querySelector("rect"));
+    })"""
+    beyond = page.js(over)
+    assert len(beyond) == 3
+    assert max(beyond) < 0.0
