@@ -92,9 +92,13 @@ def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
     assert 'pip install "robobt[record]"' in refused.stderr
     assert clean.size() < 350e6
 
-    clean.install("torch")
-    listed = json.loads(clean.run("robobt", "models", "--json").stdout)["models"]
+    said = json.loads(clean.run("robobt", "models", "--json").stdout)
+    listed = said["models"]
+    assert said["problems"] == []
     assert {model["card"]["name"] for model in listed} == {path.stem for path in ROOT.glob("models/*.pt")}
+    if sys.version_info[:2] != tuple(map(int, version.split("."))):
+        return  # of the PyTorch of other versions several gigabytes may be fetched
+    clean.install("torch")
     models = [model["card"]["name"] for model in listed]
     loaded = clean.run("python", "-c", f"import robobt\nfor name in {models}: robobt.load_policy(name)")
     assert loaded.returncode == 0, loaded.stderr

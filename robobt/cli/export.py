@@ -81,8 +81,9 @@ def models(
         paths = [find_model(name)]
     else:
         paths = []
-        # What else lies in the working folder need not be a model.
-        for extra in (*[folder for folder in model_folders() if folder != Path()], *(path or ())):
+        # What else lies in the working folder need not be a model, and it need not have a folder of them.
+        own = (Path(), *([] if Path("models").is_dir() else [Path("models")]))
+        for extra in (*[folder for folder in model_folders() if folder not in own], *(path or ())):
             paths += list_models(extra) if extra.is_dir() else [extra]
         paths = list({path.resolve(): path for path in paths}.values())
     found: list[ModelFile] = []

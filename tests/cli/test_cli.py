@@ -522,3 +522,14 @@ def test_the_package_runs_as_the_command_does():
     run = subprocess.run([sys.executable, "-m", "robobt", "--version"], capture_output=True, text=True)
     assert run.stdout == f"robobt {__version__}\n"
     assert run.returncode == 0
+
+
+def test_models_are_listed_where_there_is_no_folder_of_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    listed = told("models")
+    assert listed["problems"] == []
+    assert len(listed["models"]) == len([*models_folder().glob("*.pt")])
+    monkeypatch.setenv("ROBOBT_MODELS", "nowhere")
+    assert "nowhere: there is no such file" in robobt("models", code=1).output
