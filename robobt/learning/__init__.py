@@ -25,6 +25,8 @@ TEAMS = (
     "DuelWithScript",
     "Keepaway",
     "Pass",
+    "Receive",
+    "Redirect",
     "Attack3v2",
     "Small3v3",
 )

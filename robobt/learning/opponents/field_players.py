@@ -13,17 +13,18 @@ from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
 
-PLAYERS = ("still", "press", "mark", "wall", "attack", "pass")
+PLAYERS = ("still", "press", "mark", "wall", "attack", "pass", "redirect")
 """What a field player does.
 
 ``still`` stands; ``press`` drives at the ball; ``mark`` stands between one of the others and its own goal,
 the first marker at the nearest to the ball; ``wall`` stands on the ball's line to its own goal, outside the
 defence area, several of them side by side. ``attack`` and ``pass``: whoever of them is nearest fetches the
 ball and carries it to a shot at the corner farther from the goalkeeper, or turns to the mate with the freest
-way and passes; the others wait, those who attack before the goal.
+way and passes; the others wait, those who attack before the goal. ``redirect`` waits on the ball's way,
+turned to the goal, and kicks it as it comes.
 """
 
-_STILL, _PRESS, _MARK, _WALL, _ATTACK, _PASS = range(6)
+_STILL, _PRESS, _MARK, _WALL, _ATTACK, _PASS, _REDIRECT = range(7)
 _FIELD = numbers_dtype(FieldGeometry)
 _LOOK = 6.0
 """How fast they turn for each radian [1/s]."""
@@ -43,6 +44,8 @@ _ARRIVES = 0.8
 """Speed with which a pass comes to a mate [m/s]."""
 _KEPT, _ROLLING = 0.66, 0.3
 """What is left of a kick's speed once the ball rolls, and how it slows down then [m/s^2]."""
+_MOUTH = 0.09
+"""How far before a robot's centre the ball lies in its mouth [m]."""
 _GUARD = 0.35
 """How far from whom it marks a marker stands [m]."""
 _BESIDE = 0.2
@@ -118,6 +121,12 @@ def _decide(
                 x, y = _marked(all_, ball, roles, r, first, last, sign * field.length / 2)
             elif role == _WALL:
                 x, y = _walled(field, ball, roles, r, first, last, -sign * field.length / 2)
+            elif role == _REDIRECT:
+                x, y = _coming(me, ball)
+                # There its mouth is to be, not its middle.
+                x, y = x - _MOUTH * cos(me[2]), y - _MOUTH * sin(me[2])
+                look_x, look_y, _ = _shot_at(field, all_, me, sign, blue)
+                kick = _SHOT
             elif role in (_ATTACK, _PASS):
                 if contact[i, r]:
                     turn = _GENTLE

@@ -158,6 +158,27 @@ def test_how_blue_loses(changes: dict[str, Any], start: list[float], action: lis
     assert earned[0] < -0.4
 
 
+@pytest.mark.parametrize(("aim", "won"), [("hold", True), ("score", False)])
+def test_a_ball_held_for_long_is_received_or_no_redirection(aim: str, won: bool) -> None:
+    start = [*at(0, 0), *at(-3, 2), *in_mouth(0, 0)]
+    rules = {"hold": 6} if won else {"longest_hold": 6}
+    made = playing(start, yellow=["still"], aim=aim, rules=rules)
+    result, _ = to_the_end(made, STAY)
+    assert result.terminated[0]
+    assert result.success[0] == won
+    assert made.ended is not None
+    assert 6 <= made.ended.ticks[0] <= 8
+
+
+def test_a_ball_that_comes_rolls_near_by_who_is_to_take_it() -> None:
+    rows = SoccerTask(SUITE["Receive"]()).sample_starts(2, 300)
+    way, velocity = rows[:, :2] - rows[:, 12:14], rows[:, 14:16]
+    fast = np.hypot(*velocity.T)
+    assert (way * velocity).sum(1).min() > 0.0
+    assert (np.abs(way[:, 0] * velocity[:, 1] - way[:, 1] * velocity[:, 0]) / fast).max() < 0.22
+    assert fast.min() >= 1.5
+
+
 def test_to_hold_out_is_a_success_and_a_truncation() -> None:
     start = [*at(0, 0), *at(-3, 2), *in_mouth(0, 0)]
     made = playing(start, yellow=["still"], aim="keep", time_limit=10)

@@ -22,7 +22,7 @@ LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS = range(7)
 it was last in it [m]; for how many ticks in a row each team has held it."""
 MIND = 7
 
-_SCORE, _SAVE, _KEEP, _PASS = range(4)
+_SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
 _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
 _WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
 
@@ -97,6 +97,8 @@ def judge(
         fault = 0.0
         if out and touch[i] >= 0:
             fault = 1.0 if touch[i] < blue else -1.0
+        if rules.longest_hold is not None and mind[BLUE_TICKS] > rules.longest_hold:
+            fault = 1.0
         if too_far:
             fault = 1.0 if holder < blue else -1.0
         if rules.areas:
@@ -115,6 +117,9 @@ def judge(
             failed = side < 0 or fault > 0.0
         elif aim == _PASS:
             success = passed and not failed
+            failed = failed or side > 0
+        elif aim == _HOLD:
+            success = mind[BLUE_TICKS] >= rules.hold and not failed
             failed = failed or side > 0
         elif aim == _KEEP:
             success = False

@@ -12,9 +12,9 @@ from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
 from robobt.learning.envs.soccer.rewards import SoccerReward
 from robobt.models.actions import SCORE_ACTION, ActionScaling
 
-Role = Literal["learner", "goalkeeper", "still", "press", "mark", "wall", "attack", "pass"]
-Aim = Literal["score", "save", "keep", "pass"]
-AIMS = ("score", "save", "keep", "pass")
+Role = Literal["learner", "goalkeeper", "still", "press", "mark", "wall", "attack", "pass", "redirect"]
+Aim = Literal["score", "save", "keep", "pass", "hold"]
+AIMS = ("score", "save", "keep", "pass", "hold")
 LEARNER: Role = "learner"
 GOALKEEPER: Role = "goalkeeper"
 
@@ -30,6 +30,9 @@ class SoccerStarts(OrderedSettings):
     y: Span = Field((-2.5, 2.5), description="of all robots and the ball [m]")
     ball_x: Span = Field((-2.5, 2.5), description="[m]")
     ball_speed: Span = Field((0.0, 0.5), description="in any direction, of a free ball [m/s]")
+    coming: float = Field(
+        0.0, ge=0, le=1, description="share in which the ball rolls at blue's first field player, from afar"
+    )
     held: float = Field(0.0, ge=0, le=1, description="share that starts with the ball in blue's mouth")
     holder: Literal["blue", "yellow"] = Field("blue", description="whose first field player holds it then")
     apart: float = Field(0.35, ge=0.2, le=2, description="least distance of any two, and of the ball [m]")
@@ -45,6 +48,12 @@ class SoccerRules(Settings):
     dribbling: float | None = Field(
         None, gt=0, le=20, description="longest way with the ball in one mouth, by the rules 1 [m]"
     )
+    longest_hold: int | None = Field(
+        None, ge=1, le=1000, description="most ticks in a row in blue's mouths; None for any"
+    )
+    hold: int = Field(
+        8, ge=1, le=1000, description="ticks in a mouth that count as held, for the aim to hold"
+    )
     pass_length: float = Field(0.8, ge=0.2, le=10, description="what is shorter is no pass [m]")
 
 
@@ -58,7 +67,7 @@ class SoccerSettings(TaskSettings):
     yellow: tuple[Role, ...] = Field((), max_length=11, description="who plays against them")
     aim: Aim = Field(
         "score",
-        description="success: blue's goal, none against it, the ball kept to the end, or a pass of blue's",
+        description="success: blue's goal, none against it, the ball kept, a pass of blue's, the ball held",
     )
     mates: int | None = Field(None, ge=0, le=10, description="seen; None for as many as there are")
     opponents: int | None = Field(None, ge=0, le=11, description="seen; None for as many as there are")

@@ -15,6 +15,9 @@ from robobt.world.state import BALL_RADIUS
 _GAP = 3e-4
 """Between ball and front before the dribbler takes it [m]."""
 
+_ASIDE = 0.15
+"""How far beside a robot a ball that comes to it passes at most, along each axis [m]."""
+
 
 def columns_of(settings: SoccerSettings) -> tuple[str, ...]:
     """Return the columns of a start: the robots, the ball, and what each goalkeeper is, blue's first."""
@@ -58,6 +61,13 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
         places = np.concatenate((places, robots[:, index : index + 1, :2]), axis=1)
     ball[:, :2] = _free(rng, (starts.ball_x, starts.y), places, starts.apart)
     ball[:, 2:] = velocities(rng, starts.ball_speed, count)
+    coming, aside = rng.random(count) < starts.coming, rng.uniform(-_ASIDE, _ASIDE, (count, 2))
+    fielders = [index for index in range(blue) if roles[index] != GOALKEEPER]
+    if starts.coming > 0.0 and fielders:
+        # Through a point beside it, as an inexact pass would be.
+        way = robots[:, fielders[0], :2] + aside - ball[:, :2]
+        speed = np.hypot(ball[:, 2], ball[:, 3]) / np.hypot(*way.T)
+        ball[coming, 2:] = (way * speed[:, None])[coming]
     held = rng.random(count) < starts.held
     first, last = (0, blue) if starts.holder == "blue" else (blue, total)
     players = [index for index in range(first, last) if roles[index] != GOALKEEPER]

@@ -107,6 +107,33 @@ class PassSettings(SoccerSettings):
     )
 
 
+class ReceiveSettings(SoccerSettings):
+    """Take a ball that comes at 1.5 to 4 m/s past one that presses, and hold it for 8 periods."""
+
+    blue: tuple[Role, ...] = (LEARNER,)
+    yellow: tuple[Role, ...] = ("press",)
+    aim: Aim = "hold"
+    time_limit: int = 134
+    player_speed: float = 1.0
+    reward: SoccerReward = SoccerReward(goal=0.0, advance=0.0, shot=0.0, approach=0.2, holding=0.1)
+    starts: SoccerStarts = SoccerStarts(
+        blue_x=(0.0, 2.5), yellow_x=(-2.5, 2.5), y=(-2.0, 2.0), ball_x=(-3.0, -1.5), ball_speed=(1.5, 4.0),
+        coming=1.0, apart=0.8,
+    )  # fmt: skip
+
+
+class RedirectSettings(SoccerSettings):
+    """Score on a goalkeeper with a ball that comes at 1.5 to 4 m/s, held for no more than 6 periods."""
+
+    blue: tuple[Role, ...] = (LEARNER,)
+    yellow: tuple[Role, ...] = (GOALKEEPER,)
+    time_limit: int = 134
+    rules: SoccerRules = SoccerRules(longest_hold=6)
+    starts: SoccerStarts = SoccerStarts(
+        blue_x=(1.5, 3.0), y=(-2.0, 2.0), ball_x=(-1.0, 1.0), ball_speed=(1.5, 4.0), coming=1.0, apart=0.8
+    )
+
+
 class Attack3v2Settings(SoccerSettings):
     """Three attack a goalkeeper, one who marks and one who stands in the way, for 10 s."""
 
@@ -135,18 +162,26 @@ SUITE: dict[str, type[SoccerSettings]] = {
     "DuelWithScript": DuelWithScriptSettings,
     "Keepaway": KeepawaySettings,
     "Pass": PassSettings,
+    "Receive": ReceiveSettings,
+    "Redirect": RedirectSettings,
     "Attack3v2": Attack3v2Settings,
     "Small3v3": Small3v3Settings,
 }
 """The tasks by name; any other mix of robots is a :class:`SoccerSettings` of one's own."""
 
-SCRIPTS: dict[str, Role] = {"score": "attack", "save": GOALKEEPER, "keep": "pass", "pass": "pass"}
-"""Who plays in the learners' places for a task's script score, by its aim."""
+SCRIPTS: dict[str, Role] = {
+    "score": "attack",
+    "save": GOALKEEPER,
+    "keep": "pass",
+    "pass": "pass",
+    "hold": "pass",
+}
+"""Who plays in the learners' places for a script score, by the aim; ``redirect`` where none may hold long."""
 
 
 def scripted(settings: SoccerSettings) -> SoccerSettings:
     """Return the ``settings`` with the script in the place of blue's learners, and attackers in yellow's."""
-    own: Role = SCRIPTS[settings.aim]
+    own: Role = "redirect" if settings.rules.longest_hold else SCRIPTS[settings.aim]
     blue = tuple(own if role == LEARNER else role for role in settings.blue)
     yellow = tuple("attack" if role == LEARNER else role for role in settings.yellow)
     return settings.model_copy(update={"blue": blue, "yellow": yellow})
