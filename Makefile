@@ -38,13 +38,14 @@ docs: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	$(BIN)/python -m mkdocs build --strict
 
-# The animations in README and docs.
+# The animations in README and docs, and with Chromium the pictures of the live page.
 pictures: $(INSTALLED)
 	@mkdir -p out
 	$(BIN)/robobt match striker_vs_goalie --trials 1 --replay out/striker.robobt.arrows
 	$(BIN)/robobt replay out/striker.robobt.arrows --gif docs/images/striker.gif --robot "blue 0"
 	$(BIN)/robobt match six_v_six --trials 1 --set ends.time_limit=30 --replay out/six.robobt.arrows
 	$(BIN)/robobt replay out/six.robobt.arrows --gif docs/images/six.gif --from 10 --to 20
+	$(BIN)/python -m tests.live.pictures
 
 install: $(INSTALLED)
 
