@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from time import process_time
 
 import gymnasium
@@ -11,8 +12,10 @@ import numpy as np
 import robobt.learning  # noqa: F401 - registers the environments
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
 from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
-from robobt.learning.envs.scripted import drive_and_kick, straight_drive, turn_and_kick
+from robobt.learning.envs.scripted import crowd, drive_and_kick, straight_drive, turn_and_kick
 from robobt.learning.envs.shoot.task import ShootTask
+from robobt.learning.envs.soccer.suite import Small3v3Settings
+from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
 
 SIZES = {"single": 1, "vector_64": 64, "vector": 256}
@@ -23,7 +26,7 @@ _CHUNK = 2000
 
 _FEWEST = 20
 
-Task = GoToBallTask | ShootTask | ScoreOnGoalkeeperTask
+Task = GoToBallTask | ShootTask | ScoreOnGoalkeeperTask | SoccerTask
 Decide = Callable[[FloatArray], FloatArray]
 
 
@@ -31,23 +34,31 @@ def bench_env(seconds: float = 2.0) -> dict[str, float]:
     """Measure the environments on one core, with 30 ms control and the default 4 physics steps.
 
     The robots drive to the ball, turn and kick, or do both, by hand-written policies, so
-    that episodes start and end as in training; deciding is not in the time.
+    that episodes start and end as in training; in Small3v3 all four learners crowd round it. Deciding is
+    not in the time.
 
     Each figure takes ``seconds`` of CPU time, in chunks of which the fastest counts.
 
     Returns:
-        environment steps a second of CPU time, a step of Score-On-Goalkeeper being two control
-        periods: ``go_to_ball_...``, ``shoot_...`` and ``score_...`` with each of :data:`SIZES`, of the
-        tasks that learners step;
+        environment steps a second of CPU time, a step of Score-On-Goalkeeper and Small3v3 being two
+        control periods: ``go_to_ball_...``, ``shoot_...``, ``score_...`` and ``small3v3_...`` with each of
+        :data:`SIZES`, of the tasks that learners step;
         ``..._gymnasium`` of one environment from ``gymnasium.make``. And
         ``..._physics_share``, the part of a vector step's time that the physics
         alone takes with the same commands.
     """
     figures: dict[str, float] = {}
-    cases: tuple[tuple[str, type[Task], Decide, str], ...] = (
+    small = Small3v3Settings()
+    cases: tuple[tuple[str, Callable[..., Task], Decide, str], ...] = (
         ("go_to_ball", GoToBallTask, straight_drive, "robobt/GoToBall-v0"),
         ("shoot", ShootTask, turn_and_kick, "robobt/ShootTowardsGoal-v0"),
         ("score", ScoreOnGoalkeeperTask, drive_and_kick, "robobt/ScoreOnGoalkeeper-v0"),
+        (
+            "small3v3",
+            partial(SoccerTask, small),
+            lambda seen: crowd(seen, len(small.learners)),
+            "robobt/Small3v3-v0",
+        ),
     )
     for name, kind, decide, env_id in cases:
         for size, n in SIZES.items():

@@ -15,6 +15,9 @@ from robobt.world.scoring import FAR_OFF, KICK_SPEED
 AWAY = 5.0
 """Nobody is observed as one at rest so far behind [m]."""
 
+BALL = 7
+"""Index of the ball's place."""
+
 _OWN, _EACH = 19, 4
 
 

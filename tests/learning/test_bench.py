@@ -17,6 +17,7 @@ def test_bench_env_measures_every_environment() -> None:
     assert result.exit_code == 0
     figures = json.loads(result.stdout)
     ends = ("single", "vector_64", "vector", "gymnasium", "physics_share")
-    assert set(figures) == {f"{task}_{end}" for task in ("go_to_ball", "shoot", "score") for end in ends}
+    tasks = ("go_to_ball", "shoot", "score", "small3v3")
+    assert set(figures) == {f"{task}_{end}" for task in tasks for end in ends}
     assert all(figure > 0 for figure in figures.values())
     assert figures["go_to_ball_vector"] > figures["go_to_ball_single"]

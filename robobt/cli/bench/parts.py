@@ -114,10 +114,11 @@ def bench_env(
 
     Observations, rewards, walls, ball contacts and new starts are in the time.
 
-    A step of Score-On-Goalkeeper is a decision, of two periods.
+    A step of Score-On-Goalkeeper and Small3v3 is a decision, of two periods; of Small3v3's arenas, of all
+    learners together.
 
-    Keys of --json, steps a second: go_to_ball_vector, shoot_vector and score_vector (256
-    arenas), ..._vector_64, ..._single (one arena) and ..._gymnasium (one
+    Keys of --json, steps a second: go_to_ball_vector, shoot_vector, score_vector and
+    small3v3_vector (256 arenas), ..._vector_64, ..._single (one arena) and ..._gymnasium (one
     environment of gymnasium.make); and ..._physics_share, the part of a vector
     step that the physics alone takes.
     """
@@ -131,7 +132,7 @@ def bench_env(
         return
     sizes = {**{end: f"{arenas} arenas" for end, arenas in SIZES.items()}, "gymnasium": "gymnasium.make"}
     listed = table("steps/s", *sizes.values(), "physics")
-    for task in ("go_to_ball", "shoot", "score"):
+    for task in ("go_to_ball", "shoot", "score", "small3v3"):
         speeds = [f"{figures[f'{task}_{end}']:,.0f}" for end in sizes]
         listed.add_row(task.replace("_", " "), *speeds, f"{figures[f'{task}_physics_share']:.0%}")
     console.print(listed)

@@ -7,6 +7,7 @@ import numpy as np
 from robobt.learning.envs.task import FloatArray
 from robobt.models.actions import SCORE_ACTION, SHOOT_ACTION, ActionScaling
 from robobt.world.geometry import wrap_angles
+from robobt.world.team_view import BALL
 
 AIM_GAIN = 6.0
 """Turning rate for each radian off the aim [1/s]."""
@@ -50,6 +51,16 @@ def straight_drive(observation: FloatArray) -> FloatArray:
 def straight_drive_among(observation: FloatArray) -> FloatArray:
     """Do the same among others, looking at none of them, (n, 42) -> (n, 3)."""
     return np.column_stack((observation[:, :2], np.zeros(len(observation))))
+
+
+def crowd(observation: FloatArray, learners: int) -> FloatArray:
+    """Drive everybody at the ball, (n, learners * size of a team's view) -> (n, learners * 4)."""
+    ball = observation.reshape(len(observation), learners, -1)[..., BALL : BALL + 2]
+    actions = np.full((len(observation), learners, SCORE_ACTION.size), -1.0)
+    actions[..., :2] = ball / np.maximum(np.linalg.norm(ball, axis=-1, keepdims=True), 1e-6)
+    turn = AIM_GAIN / SCORE_ACTION.max_turn * np.arctan2(ball[..., 1], ball[..., 0])
+    actions[..., 2] = np.clip(turn, -1.0, 1.0)
+    return actions.reshape(len(observation), -1)
 
 
 def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
