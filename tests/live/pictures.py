@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
-
-from PIL import Image
 
 from tests.live.chromium import Page, chromium
 from tests.live.playing import playing, wait_for
@@ -17,8 +14,7 @@ SHOWN = 8.0
 
 
 def save(page: Page, name: str) -> None:
-    picture = Image.open(BytesIO(page.driver.get_screenshot_as_png())).convert("RGB")
-    picture.quantize(256).save(FOLDER / f"{name}.png", optimize=True)
+    page.driver.save_screenshot(str(FOLDER / f"{name}.png"))
 
 
 def main() -> None:
