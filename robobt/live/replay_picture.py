@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from robobt.config.atomic import replacing
-from robobt.config.errors import RobobtError, naming
+from robobt.config.errors import RobobtError
 from robobt.match.recording import RecordedNode, Recording
 from robobt.world.painting import Painter, font
 from robobt.world.state import RobotId
@@ -111,7 +111,8 @@ def write_png(
         RobobtError: that time was not recorded.
     """
     picture = Stage(recording, robot).paint(tick_of(recording, time, -1))
-    with naming(path), replacing(path) as draft:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as draft:
         picture.save(draft, "PNG", optimize=True)
     return path
 
@@ -142,7 +143,8 @@ def write_gif(
             yield stage.paint(tick).quantize(palette=palette, dither=Image.Dither.NONE)
 
     following = pictures()
-    with naming(path), replacing(path) as draft:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as draft:
         next(following).save(
             draft, "GIF", save_all=True, append_images=following, duration=round(1000 * _PERIOD), loop=0
         )
