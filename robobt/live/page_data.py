@@ -72,7 +72,8 @@ class ChunkEncoder:
 
     def __init__(self, header: RecordingHeader) -> None:
         self._header = header
-        self._published: dict[str, set[tuple[str, str]]] = {str(robot.id): set() for robot in header.robots}
+        self._names = [str(robot.id) for robot in header.robots]
+        self._published: dict[str, set[tuple[str, str]]] = {name: set() for name in self._names}
         self._plans = {team.value: Plans() for team in Team}
 
     def chunk(
@@ -88,21 +89,22 @@ class ChunkEncoder:
         """
         texts, letters = _Table(), _Table()
         frames = len(ticks.times[::stride])
+        x, y, heading, vx, vy = np.moveaxis(ticks.truth.robots[::stride, :, :5], 2, 0)
+        rows = _int16(np.stack((x, y, heading, np.hypot(vx, vy)), axis=-1) * 1000.0)
+        flags = (ticks.flags[::stride] & _SHOWN).T.tolist()
         robots = []
-        for slot, robot in enumerate(self._header.robots):
-            rows = ticks.truth.robots[::stride, slot]
-            speed = np.hypot(rows[:, 3], rows[:, 4])
-            written, drawn = ticks.written.get(str(robot.id), []), ticks.drawn.get(str(robot.id), [])
+        for slot, name in enumerate(self._names):
+            written, drawn = ticks.written.get(name, []), ticks.drawn.get(name, [])
             robots.append(
                 {
-                    "rows": _int16(np.column_stack((rows[:, 0], rows[:, 1], rows[:, 2], speed)) * 1000.0),
-                    "flags": _steps(_runs((ticks.flags[::stride, slot] & _SHOWN).tolist()), frames, 1),
+                    "rows": _base64(rows[:, slot].tobytes()),
+                    "flags": _steps(_runs(flags[slot]), frames, 1),
                     "statuses": _steps(
                         ((tick, letters[word]) for tick, word in statuses[slot]), frames, stride
                     ),
                     "feedback": _feedback_steps(feedback[slot], texts, frames, stride),
                     "written": _written_steps(written, frames, stride),
-                    "numbers": self._numbers(str(robot.id), drawn, frames, stride),
+                    "numbers": self._numbers(name, drawn, frames, stride),
                     "drawn": _steps(_drawings(drawn), frames, stride),
                     "goal_line": _steps(_goal_lines(written, texts), frames, stride),
                     "candidates": _steps(candidates(written), frames, stride),
@@ -113,7 +115,7 @@ class ChunkEncoder:
         return {
             "frames": frames,
             "times": _base64(ticks.times[::stride].astype("<f4").tobytes()),
-            "ball": _int16(ball_rows * 1000.0),
+            "ball": _base64(_int16(ball_rows * 1000.0).tobytes()),
             "robots": robots,
             "plans": {
                 team: _steps(known.follow(ticks.written.get(team, [])), frames, stride)
@@ -170,11 +172,12 @@ def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode("ascii")
 
 
-def _int16(values: NDArray[np.floating]) -> str:
+def _int16(values: NDArray[np.floating]) -> NDArray[np.int16]:
+    """Return rows as whole numbers; one that is not known is absent as a whole."""
     most = 2.0**15 - 1.0
     known = np.isfinite(values).all(axis=-1, keepdims=True)
-    whole = np.rint(np.clip(np.nan_to_num(values), -most, most))
-    return _base64(np.where(known, whole, _ABSENT).astype("<i2").tobytes())
+    whole = np.rint(np.clip(np.where(known, values, 0.0), -most, most))
+    return np.where(known, whole, _ABSENT).astype("<i2")
 
 
 def _runs(values: list[int]) -> Iterable[tuple[int, int]]:

@@ -57,20 +57,19 @@ class _Segment:
 
     start: float
     messages: list[bytes] = field(default_factory=list)
-    ticks: list[EncodedTicks] = field(default_factory=list)
+    batches: list[pa.RecordBatch] = field(default_factory=list)
     closed: pa.RecordBatch | None = None
     size: int = 0
 
     def rows(self) -> pa.RecordBatch:
         if self.closed is not None:
             return self.closed
-        table = pa.Table.from_batches([ticks.batch() for ticks in self.ticks])
-        return table.combine_chunks().to_batches()[0]
+        return pa.Table.from_batches(self.batches).combine_chunks().to_batches()[0]
 
     def close(self) -> None:
         """Keep one batch of all rows, which takes less room."""
         self.closed = self.rows()
-        self.ticks.clear()
+        self.batches.clear()
         self.size += self.closed.nbytes
 
 
@@ -137,7 +136,8 @@ class Stream:
         message = _message(ticks, self._header, self._chunks, whole, at)
         segment = self._segments[-1]
         segment.messages.append(message)
-        segment.ticks.append(ticks)
+        # At once, and not all of a segment at its end, which would hold up the match as well.
+        segment.batches.append(ticks.batch())
         segment.size += len(message)
         self._last = ticks
         self.end += 1
