@@ -20,11 +20,17 @@ EXTRAS = {
     "ray": "ray",
     "scipy": "shots",
     "sklearn": "shots",
+    "stable_baselines3": "sb3",
     "websockets": "live",
 }
 """By the name under which a package is imported, the extra that brings it."""
 
-_DISTRIBUTIONS = {"google": "protobuf", "PIL": "pillow", "sklearn": "scikit-learn"}
+_DISTRIBUTIONS = {
+    "google": "protobuf",
+    "PIL": "pillow",
+    "sklearn": "scikit-learn",
+    "stable_baselines3": "stable-baselines3",
+}
 
 
 class MissingExtraError(RobobtError, ImportError):

@@ -34,7 +34,12 @@ def light(*command: str) -> subprocess.CompletedProcess[str]:
 
 def test_every_package_is_brought_by_the_extra_that_is_named() -> None:
     extras = PROJECT["optional-dependencies"]
-    names = {"google": "protobuf", "PIL": "pillow", "sklearn": "scikit-learn"}
+    names = {
+        "google": "protobuf",
+        "PIL": "pillow",
+        "sklearn": "scikit-learn",
+        "stable_baselines3": "stable-baselines3",
+    }
     for package, extra in EXTRAS.items():
         brought = {re.split(r"[\[>=<]", one)[0] for one in extras[extra]}
         assert names.get(package, package) in brought

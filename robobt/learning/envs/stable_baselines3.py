@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
+from robobt.config.extras import need
 
-from robobt.learning.envs.gymnasium_base import Info, ManyEnv
+need("sb3", "stable_baselines3")
+
+import numpy as np  # noqa: E402
+from numpy.typing import NDArray  # noqa: E402
+from stable_baselines3.common.vec_env import VecEnv  # noqa: E402
+
+from robobt.learning.envs.gymnasium_base import Info, ManyEnv  # noqa: E402
 
 _Indices = None | int | Iterable[int]
 

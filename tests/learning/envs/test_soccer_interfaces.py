@@ -99,7 +99,7 @@ def test_agents_are_the_tasks_learners() -> None:
 
 @pytest.mark.integration
 def test_stable_baselines3_learns_on_it() -> None:
-    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3, which is no dependency")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3: pip install 'robobt[sb3]'")
     from stable_baselines3 import PPO
 
     from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
