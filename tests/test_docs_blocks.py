@@ -23,6 +23,7 @@ from robobt.cli import app
 from robobt.config.yaml import parse_marked
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
+from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import load_scenario, scenario_from
 from robobt.plays import PLAYS
@@ -58,6 +59,8 @@ REPLACED = {
 ELSEWHERE = {
     "TeamConnection": "tests/league/test_remote.py: it takes a game controller that knows the team's key",
     "OfficialRefereeFactory": "tests/league/test_official_controller.py: it takes the official program",
+    "SoccerParallelEnv": "tests/learning/envs/test_soccer_interfaces.py: it takes PettingZoo",
+    "stable_baselines3": "tests/learning/envs/test_soccer_interfaces.py: it takes Stable-Baselines3",
     "check_regression_case": "tests/match/test_regression_cases.py: it takes a case saved before",
 }
 """By a word of it, where a block runs that cannot run here."""
@@ -159,6 +162,7 @@ def scenario(data: dict[str, Any]) -> object:
 CHECKED: dict[str, Callable[[Any], object]] = {
     "environments": environment,
     "referee": scenario,
+    "several_robots": SoccerSettings.model_validate,
     "scenarios": lambda data: scenario({"robots": {"blue": data}} if isinstance(data, list) else data),
     "simulator": scenario,
     "tournament": EntrantFile.model_validate,
