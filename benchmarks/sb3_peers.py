@@ -25,14 +25,12 @@ import stable_baselines3
 import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.noise import NormalActionNoise
-from stable_baselines3.common.vec_env import VecEnv
 from torch import nn
 
 import robobt
 from robobt.config.atomic import write_atomically
 from robobt.config.commit import source_commit
-from robobt.learning.envs import make_task
-from robobt.learning.envs.task import VectorTask
+from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
 from robobt.learning.training.evaluation import Policy
 from robobt.learning.training.export_run import held_out
 from robobt.learning.training.problems import Problem, problem_of
@@ -92,12 +90,18 @@ def train_peer(
     environment = environment_of(load_settings(task))
     problem = problem_of(environment)
     name, skill, observation = TASKS[task]
-    single = gymnasium.make(name, settings=environment)
+    envs: Any = (
+        gymnasium.make(name, settings=environment)
+        if arenas == 1
+        else ArenasVecEnv(
+            gymnasium.make_vec(name, arenas, vectorization_mode="vector_entry_point", settings=environment)
+        )
+    )
     actions = len(problem.smoothed)
     noise = NormalActionNoise(np.zeros(actions), np.full(actions, NOISE))
     agent = ALGORITHMS[algorithm](
         "MlpPolicy",
-        single if arenas == 1 else Arenas(make_task(environment, arenas), single),
+        envs,
         seed=seed,
         device="cpu",
         **({"action_noise": noise} if algorithm in ("ddpg", "td3") else {}),
@@ -136,55 +140,6 @@ def train_peer(
         "file": str(file),
         "held_out": {key: one.model_dump(mode="json") for key, one in figures.items()},
     }
-
-
-class Arenas(VecEnv):
-    """A task with many arenas in one simulator, as Stable-Baselines3 steps environments."""
-
-    def __init__(self, task: VectorTask, single: gymnasium.Env[Any, Any]) -> None:
-        super().__init__(task.n, single.observation_space, single.action_space)
-        self._task = task
-
-    def reset(self) -> np.ndarray:
-        """Start all arenas anew."""
-        observation = self._task.reset(self._seeds[0])
-        self._reset_seeds()
-        return observation.astype(np.float32)
-
-    def step_async(self, actions: np.ndarray) -> None:
-        """Take the next actions."""
-        self._actions = actions.astype(np.float64)
-
-    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
-        """Let a control period pass; an episode that ends starts anew, and its info says how it ended."""
-        step = self._task.step(self._actions)
-        done = step.terminated | step.truncated
-        infos: list[dict[str, Any]] = [{} for _ in done]
-        for i in np.flatnonzero(done):
-            infos[i] = {
-                "terminal_observation": step.final_observation[i].astype(np.float32),
-                "TimeLimit.truncated": bool(step.truncated[i] and not step.terminated[i]),
-            }
-        return step.observation.astype(np.float32), step.reward.astype(np.float32), done, infos
-
-    def close(self) -> None:
-        """Leave nothing open."""
-
-    def get_attr(self, attr_name: str, indices: object = None) -> list[Any]:  # noqa: ARG002
-        """Return what Stable-Baselines3 asks of its environments: none of them draws."""
-        return [getattr(self, attr_name, None)] * self.num_envs
-
-    def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
-        """Refuse: all arenas are one object."""
-        raise NotImplementedError(attr_name)
-
-    def env_method(self, method_name: str, *_: object, **__: object) -> list[Any]:
-        """Refuse: all arenas are one object."""
-        raise NotImplementedError(method_name)
-
-    def env_is_wrapped(self, wrapper_class: type, indices: object = None) -> list[bool]:  # noqa: ARG002
-        """Return that none is."""
-        return [False] * self.num_envs
 
 
 def actor_of(agent: Any) -> nn.Module:

@@ -57,7 +57,7 @@ class ArenasVecEnv(VecEnv):
         for k in np.flatnonzero(done).tolist():
             infos[k] = {
                 "terminal_observation": info["final_obs"][k],
-                "TimeLimit.truncated": bool(truncated[k]),
+                "TimeLimit.truncated": bool(truncated[k] and not terminated[k]),
                 "is_success": bool(info["final_info"]["is_success"][k]),
                 "episode": {
                     "r": float(self._returns[k]),
