@@ -1,4 +1,4 @@
-"""The compiled goalkeeper decides what the play ``goalkeeper`` decides."""
+"""The compiled goalkeepers decide what the plays ``goalkeeper`` and ``fitted_goalkeeper`` decide."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from robobt.learning.opponents.goalkeeper import AIM, CLEAR, COVER, FETCH, HOME, SHOT, Goalkeepers
+from robobt.learning.opponents.cases import AIM, CLEAR, COVER, FETCH, HOME, SHOT
+from robobt.learning.opponents.fitted_goalkeeper import FittedGoalkeepers
+from robobt.learning.opponents.goalkeeper import Goalkeepers
 from robobt.plays import goalkeeper
+from robobt.plays.goalkeeper import fitted_goalkeeper
 from robobt.sim.arenas import Arenas
 from robobt.sim.settings import preset
 from robobt.world import RobotLimits
@@ -60,12 +63,43 @@ def turned(robots: FloatArray, balls: FloatArray) -> tuple[FloatArray, FloatArra
 @pytest.mark.parametrize("speed", [1.0, 0.5])
 @pytest.mark.parametrize("limits", [RobotLimits(), LATE], ids=["default", "late"])
 def test_it_decides_as_the_tree_on_random_frames(limits: RobotLimits, speed: float) -> None:
-    n, rng = 150, np.random.default_rng(4)
+    keepers = Goalkeepers(DIVISION_B, limits, PERIOD, 150, speed)
+    decides_as(keepers, [Alone(goalkeeper(speed=speed)) for _ in range(150)], limits, NAMES)
+
+
+@pytest.mark.parametrize("limits", [RobotLimits(), LATE], ids=["default", "late"])
+def test_the_fitted_one_decides_as_its_tree_on_random_frames(limits: RobotLimits) -> None:
+    speeds = np.linspace(0.7, 1.4, 150)
+    keepers = FittedGoalkeepers(DIVISION_B, limits, PERIOD, 150, acceleration=3.5, braking=1.2)
+    keepers.restart(np.arange(150), speeds)
+    trees = [
+        Alone(fitted_goalkeeper(max_speed=speed, acceleration=3.5, braking=1.2)) for speed in speeds.tolist()
+    ]
+    decides_as(keepers, trees, limits, (*NAMES[:4], "CoverNearPost", "ReturnToGoal"))
+
+
+def test_the_fitted_one_does_what_it_decided_a_delay_before() -> None:
+    rng = np.random.default_rng(5)
+    robots, balls = turned(*scenes(20, rng))
+    contact = np.zeros((20, 2), dtype=bool)
+    at_once, late = (FittedGoalkeepers(DIVISION_B, RobotLimits(), PERIOD, 20, delay=d) for d in (0.0, 0.036))
+    told = np.zeros((5, 2, 20, 6))
+    for tick in range(5):
+        for keepers, row in zip((at_once, late), told[tick], strict=True):
+            keepers.decide(robots, balls, contact, 0, row)
+        robots[..., :2] += 0.01
+    assert told[:, 0].any()
+    np.testing.assert_allclose(told[2:, 1], 0.2 * told[:-2, 0] + 0.8 * told[1:-1, 0], atol=1e-12)
+
+
+def decides_as(
+    keepers: Goalkeepers | FittedGoalkeepers, trees: list[Alone], limits: RobotLimits, names: tuple[str, ...]
+) -> None:
+    """Statement: on random frames each plays the case that its tree plays, with the same command."""
+    n, rng = len(trees), np.random.default_rng(4)
     robots, balls = scenes(n, rng)
     contact = rng.random((n, 2)) < 0.1
     contact &= np.hypot(*(balls[:, None, :2] - robots[..., :2]).transpose(2, 0, 1)) < 0.12
-    keepers = Goalkeepers(DIVISION_B, limits, PERIOD, n, speed)
-    trees = [Alone(goalkeeper(speed=speed)) for _ in range(n)]
     commands, seen = np.empty((n, 6)), set()
     for tick in range(TICKS):
         keepers.decide(*turned(robots, balls), contact, 0, commands)
@@ -83,7 +117,7 @@ def test_it_decides_as_the_tree_on_random_frames(limits: RobotLimits, speed: flo
             name = tip.name if tip.parent is tree.tree else tip.parent.name
             case = int(keepers.cases[i])
             seen.add(case)
-            assert name == NAMES[case]
+            assert name == names[case]
             if case in (FETCH, CLEAR):
                 assert (commands[i] == 0.0).all()
                 continue

@@ -6,13 +6,21 @@ the two on random frames.
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, pi
+from math import atan2, hypot, inf
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.learning.opponents.cases import (
+    AIM,
+    COVER,
+    HOME,
+    SHOT,
+    case_of,
+    see,
+    set_out_for_home,
+)
 from robobt.motion.ball_watch import rolling_after
-from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
 from robobt.motion.pilot import roughly
 from robobt.motion.scene import (
     AVOID_ROBOTS,
@@ -33,11 +41,8 @@ from robobt.motion.scene import (
 from robobt.motion.speeds import BRAKING, FORWARD, REACTION, TOP, TURN, drive_numbers, numbers
 from robobt.motion.way import travel_numbers
 from robobt.skills.base import FACING
-from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge
-from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
 from robobt.skills.defence.block_shot import dive_speed
 from robobt.skills.defence.cover_angle import CoverAngle, cover_place
-from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
@@ -48,15 +53,10 @@ from robobt.world.geometry import (
     closest_point_on_segment,
     direction,
     distance,
-    line_crossing_x,
-    wrap_angle,
 )
 from robobt.world.limits import RobotLimits
-from robobt.world.rules import ALONG, MOUTH_SECTOR, before_mouth, in_area
+from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
-
-AIM, SHOT, FETCH, CLEAR, COVER, HOME = range(6)
-"""Cases of the play, in the order in which their conditions are looked at."""
 
 _FIELD = numbers_dtype(FieldGeometry)
 _WATCHES, _FETCHING, _MEMORY = 2, 6, 7
@@ -66,12 +66,8 @@ rolls [s, m/s, m/s]; then whether a ball is being fetched."""
 _MARGIN = 0.1
 """How far beside the goal a shot still counts, as the play has it [m]."""
 
-_MIN_SPEED, _EDGE_REST, _REST = (
-    ShotComing.min_speed,
-    BallAtDefenseEdge.rest_speed,
-    BallRestsInDefense.rest_speed,
-)
-_STAND_OUT, _BEFORE_GOAL = CoverAngle.stand_out, ReturnToGoal.before_goal
+_MIN_SPEED = ShotComing.min_speed
+_STAND_OUT = CoverAngle.stand_out
 _SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
 _SHARE = DEFAULT_BALL.switch_share
 
@@ -176,17 +172,9 @@ def _decide(
     seen, movers, sensed = np.empty((count, 6)), np.zeros((count, 7)), np.empty(count, dtype=np.bool_)
     scene, task = scene_.copy(), task_.copy()
     for i in range(len(balls)):
-        # As its team sees it: the own goal at -x, the own robot first.
-        for k in range(count):
-            row = 0 if k == me else (k + 1 if k < me else k)
-            seen[row] = -robots[i, k]
-            seen[row, 2], seen[row, 5] = wrap_angle(robots[i, k, 2] + pi), robots[i, k, 5]
-            sensed[row] = contact[i, k]
-            # All of a mover that a way in open play depends on.
-            movers[row, :2] = seen[row, :2]
-            movers[row, 2:4] = seen[row, 3:5]
+        see(robots[i], contact[i], me, seen, movers, sensed)
         ball = -balls[i]
-        case, y = _case(field_, seen, sensed, ball, memory[i])
+        case, y = case_of(field_, seen, sensed, ball, memory[i, _FETCHING:], _MIN_SPEED, _MARGIN, 0.0)
         cases[i] = case
         commands[i] = 0.0
         task[:TARGET_X] = seen[0]
@@ -196,54 +184,14 @@ def _decide(
             commands[i, 5] = 1.0
         elif case in (COVER, HOME):
             scene[BALL_X], scene[BALL_Y], scene[BALL_VX], scene[BALL_VY] = ball[0], ball[1], ball[2], ball[3]
-            _set_out(field_, task, ball, case == COVER)
+            if case == COVER:
+                _set_out(field_, task, ball)
+            else:
+                set_out_for_home(task, scene[HALF_LENGTH])
             order = travel_numbers(task, scene, movers, own, given[i], slowed[i], False)
         else:
             continue
         commands[i, 0], commands[i, 1], commands[i, 2] = order
-
-
-@compiled
-def _case(
-    field_: FloatArray, seen: FloatArray, sensed: NDArray[np.bool_], ball: FloatArray, memory: FloatArray
-) -> tuple[int, float]:
-    """Return the case, and where the ball would cross the goal line if it is one of a shot [m]."""
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    half_length, half_goal = field.length / 2, field.goal_width / 2
-    depth, width = field.defense_depth, field.defense_width
-    x, y, speed = ball[0], ball[1], hypot(ball[2], ball[3])
-    carried, carries, nearest = False, False, inf
-    for k in range(len(seen)):
-        robot = seen[k]
-        dx, dy = x - robot[0], y - robot[1]
-        held = sensed[k] or before_mouth(dx, dy, robot[2], MOUTH_SECTOR)
-        along = held and hypot(ball[2] - robot[3], ball[3] - robot[4]) < ALONG
-        carried = carried or along
-        if k == 0:
-            carries = along
-            continue
-        nearest = min(nearest, hypot(dx, dy))
-        if held and cos(robot[2]) < 0.0:
-            crossing = line_crossing_x((x, y), robot[2], -half_length)
-            if crossing is not None and abs(crossing) < half_goal:
-                return AIM, crossing
-    if ball[2] <= -_MIN_SPEED and x >= -half_length and not carried:
-        crosses = y - (x + half_length) * ball[3] / ball[2]
-        if abs(crosses) < half_goal + _MARGIN:
-            return SHOT, crosses
-    inside = abs(x) <= half_length and abs(y) <= field.width / 2
-    near = inside and in_area(-x, y, half_length, depth, width, 2.0 * ROBOT_RADIUS)
-    if memory[_FETCHING] > 0.0:
-        fetching = near and not in_area(-x, y, half_length, depth, width, -ROBOT_RADIUS)
-        memory[_FETCHING] = 1.0 if fetching else 0.0
-    elif near and not in_area(-x, y, half_length, depth, width, -0.5 * ROBOT_RADIUS):
-        ours = nearest - hypot(x - seen[0, 0], y - seen[0, 1]) > ROBOT_RADIUS
-        memory[_FETCHING] = 1.0 if ours and speed <= _EDGE_REST else 0.0
-    if memory[_FETCHING] > 0.0:
-        return FETCH, 0.0
-    if inside and in_area(-x, y, half_length, depth, width, 0.0) and (speed <= _REST or carries):
-        return CLEAR, 0.0
-    return (COVER if x > -half_length else HOME), 0.0
 
 
 @compiled
@@ -274,19 +222,14 @@ def _block(
 
 
 @compiled
-def _set_out(field_: FloatArray, task: FloatArray, ball: FloatArray, cover: bool) -> None:
-    """Set the task of the skill CoverAngle, or else of ReturnToGoal."""
+def _set_out(field_: FloatArray, task: FloatArray, ball: FloatArray) -> None:
+    """Set the task of the skill CoverAngle."""
     field: FieldGeometry = field_.view(_FIELD)[0]
     half_length, depth, width = field.length / 2, field.defense_depth, field.defense_width
-    task[FINAL_SPEED] = 0.0
-    if cover:
-        here, there = (task[0], task[1]), (ball[0], ball[1])
-        place = cover_place(there, _STAND_OUT, half_length, field.goal_width / 2, depth, width)
-        slack = FACING + atan2(ROBOT_RADIUS, distance(here, there))
-        task[HEADING] = roughly(task[2], direction(here, there), slack)
-        at_home = in_area(-here[0], here[1], half_length, depth, width, ROBOT_RADIUS)
-        task[BALL_GAP], task[AVOID_ROBOTS] = -1.0, 0.0 if at_home else 1.0
-    else:
-        place = (_BEFORE_GOAL - half_length, 0.0)
-        task[HEADING], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, PLANNED_GAP, 1.0
+    here, there = (task[0], task[1]), (ball[0], ball[1])
+    place = cover_place(there, _STAND_OUT, half_length, field.goal_width / 2, depth, width)
+    slack = FACING + atan2(ROBOT_RADIUS, distance(here, there))
+    task[HEADING] = roughly(task[2], direction(here, there), slack)
+    at_home = in_area(-here[0], here[1], half_length, depth, width, ROBOT_RADIUS)
+    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, -1.0, 0.0 if at_home else 1.0
     task[TARGET_X], task[TARGET_Y] = place

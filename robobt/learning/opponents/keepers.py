@@ -1,17 +1,22 @@
 """Goalkeepers of several kinds over many arenas, for attackers to be trained against and evaluated on.
 
-Four kinds are a few lines each and differ in what they watch; the fifth, "shipped", is the play
-``goalkeeper`` (:mod:`robobt.learning.opponents.goalkeeper`), for evaluations.
+Four kinds are a few lines each and differ in what they watch. Two are for evaluations: "shipped" is the play
+``goalkeeper`` (:mod:`robobt.learning.opponents.goalkeeper`), "fitted" the play ``fitted_goalkeeper`` with the
+traits of those that the paper's real shots met (:mod:`robobt.learning.opponents.fitted_goalkeeper`).
 """
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan2, cos, hypot, sin, sqrt, tan
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.goalkeeper import CLEAR, FETCH, Goalkeepers
+from robobt.learning.opponents.cases import CLEAR, FETCH
+from robobt.learning.opponents.fitted_goalkeeper import FittedGoalkeepers
+from robobt.learning.opponents.goalkeeper import Goalkeepers
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
@@ -19,16 +24,21 @@ from robobt.world.limits import RobotLimits
 from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS
 
-KINDS = ("line", "angle", "aim", "rush", "shipped")
+if TYPE_CHECKING:
+    from robobt.shots.keepers.population import Population
+
+KINDS = ("line", "angle", "aim", "rush", "shipped", "fitted")
 """What a goalkeeper does until a shot comes, onto whose line all of them drive.
 
 ``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does so too, but while the
 attacker's heading leads into the goal goes where it crosses its line; ``rush`` comes out to a near ball.
 """
 
-_LINE, _ANGLE, _AIM, _RUSH, SHIPPED = range(5)
+_LINE, _ANGLE, _AIM, _RUSH, SHIPPED, FITTED = range(6)
 TRAITS = ("keeper_kind", "keeper_speed", "keeper_out")
-"""What makes a goalkeeper: index of its kind, top speed [m/s], how far before its line it stands [m]."""
+"""What makes a goalkeeper: index of its kind, top speed [m/s], how far before its line it stands [m].
+
+The last says nothing of ``shipped`` and ``fitted``, which have places of their own."""
 
 _FIELD = numbers_dtype(FieldGeometry)
 _SHOT = 1.0
@@ -66,16 +76,19 @@ class Keepers:
         self._top = limits.max_speed
         self._traits = np.zeros((n, len(TRAITS)))
         self._shipped = Goalkeepers(field, limits, period, n)
+        self._fitted: FittedGoalkeepers | None = None
+        self._new_fitted = partial(_real, field, limits, period, n)
         self._theirs = np.zeros((n, 6))
-        self._are_shipped: NDArray[np.bool_] = np.zeros(n, dtype=np.bool_)
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
         """Begin anew in the arenas ``which``, with goalkeepers of these ``traits`` (m, 3), :data:`TRAITS`."""
         self._traits[which] = traits
         self.kept[which] = False
-        shipped = traits[:, 0] == SHIPPED
-        self._are_shipped[which] = shipped
+        shipped, fitted = traits[:, 0] == SHIPPED, traits[:, 0] == FITTED
         self._shipped.restart(which[shipped], traits[shipped, 1] / self._top)
+        if fitted.any():
+            self._fitted = self._fitted or self._new_fitted()
+            self._fitted.restart(which[fitted], traits[fitted, 1])
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
@@ -92,11 +105,28 @@ class Keepers:
             commands,
             self.kept,
         )
-        shipped = self._are_shipped
-        if shipped.any():
-            self._shipped.decide(robots, balls, contact, 1, self._theirs)
-            commands[shipped, :6] = self._theirs[shipped]
-            self.kept[shipped] |= np.isin(self._shipped.cases[shipped], (FETCH, CLEAR))
+        for kind, play in ((SHIPPED, self._shipped), (FITTED, self._fitted)):
+            these = self._traits[:, 0] == kind
+            if play is not None and these.any():
+                play.decide(robots, balls, contact, 1, self._theirs)
+                commands[these, :6] = self._theirs[these]
+                self.kept[these] |= np.isin(play.cases[these], (FETCH, CLEAR))
+
+
+def _real(field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> FittedGoalkeepers:
+    real = real_population()
+    return FittedGoalkeepers(field, limits, period, n, real.acceleration, real.braking, real.delay)
+
+
+def real_population() -> Population:
+    """Return the goalkeepers that the paper's real shots met.
+
+    Raises:
+        MissingExtraError: the extra "shots" is not installed.
+    """
+    from robobt.shots.keepers.population import REAL, read_population
+
+    return read_population(REAL)
 
 
 @compiled

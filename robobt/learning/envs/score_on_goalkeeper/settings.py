@@ -10,13 +10,14 @@ from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward
 from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
 from robobt.models.actions import SCORE_ACTION, ActionScaling
 
-Kind = Literal["line", "angle", "aim", "rush", "shipped"]
+Kind = Literal["line", "angle", "aim", "rush", "shipped", "fitted"]
 
 
 class KeeperSettings(OrderedSettings):
     """The goalkeepers that are met; each episode's is drawn anew.
 
-    ``shipped`` is the play ``goalkeeper``; the others are in :mod:`robobt.learning.opponents.keepers`.
+    ``shipped`` is the play ``goalkeeper``; ``fitted`` the one that was fitted to real shots, whose speed
+    and place are its own (extra "shots"); the others are in :mod:`robobt.learning.opponents.keepers`.
     """
 
     kinds: tuple[Kind, ...] = Field(

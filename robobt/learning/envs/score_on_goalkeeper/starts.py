@@ -6,10 +6,10 @@ from math import pi
 
 import numpy as np
 
-from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
+from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
 from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import KINDS, TRAITS
+from robobt.learning.opponents.keepers import FITTED, KINDS, TRAITS, real_population
 from robobt.world.geometry import wrap_angles
 from robobt.world.state import BALL_RADIUS
 
@@ -51,10 +51,20 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
     rows[:, 3:5] = np.where(held, 0.0, drifting)
     rows[:, 12:14] = np.where(held, mouth, ball)
     rows[:, 14:16] = np.where(held, 0.0, rolling)
-    rows[:, 16] = rng.choice([KINDS.index(kind) for kind in keepers.kinds], count)
-    rows[:, 17] = rng.uniform(*keepers.speed, count)
-    rows[:, 18] = rng.uniform(*keepers.out, count)
+    rows[:, 16:] = keeper_traits(keepers, rng, count)
     rows[:, 6] = field.half_length - rows[:, 18]
     rows[:, 7] = rng.uniform(*starts.keeper_y, count)
     rows[:, 8] = pi
+    return rows
+
+
+def keeper_traits(keepers: KeeperSettings, rng: np.random.Generator, count: int) -> FloatArray:
+    """Draw ``count`` goalkeepers (count, 3), columns :data:`~robobt.learning.opponents.keepers.TRAITS`."""
+    rows = np.empty((count, len(TRAITS)))
+    rows[:, 0] = rng.choice([KINDS.index(kind) for kind in keepers.kinds], count)
+    rows[:, 1] = rng.uniform(*keepers.speed, count)
+    rows[:, 2] = rng.uniform(*keepers.out, count)
+    if "fitted" in keepers.kinds:
+        fitted, real = rows[:, 0] == FITTED, real_population()
+        rows[fitted, 1] = real.max_speed * np.exp(real.spread * rng.standard_normal(count))[fitted]
     return rows

@@ -6,10 +6,11 @@ from math import pi
 
 import numpy as np
 
+from robobt.learning.envs.score_on_goalkeeper.starts import keeper_traits
 from robobt.learning.envs.soccer.settings import GOALKEEPER, SoccerSettings
 from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import KINDS, TRAITS
+from robobt.learning.opponents.keepers import TRAITS
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
@@ -49,9 +50,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
         robots[:, index, 2] = rng.uniform(-pi, pi, count)
         if roles[index] == GOALKEEPER:
             own = traits[:, 3 * keeper : 3 * keeper + 3]
-            own[:, 0] = rng.choice([KINDS.index(kind) for kind in settings.keepers.kinds], count)
-            own[:, 1] = rng.uniform(*settings.keepers.speed, count)
-            own[:, 2] = rng.uniform(*settings.keepers.out, count)
+            own[:] = keeper_traits(settings.keepers, rng, count)
             robots[:, index, 0] = side * (field.half_length - own[:, 2])
             robots[:, index, 2] = 0.0 if side < 0.0 else pi
             keeper += 1
