@@ -14,6 +14,11 @@ The policy's entries are independent: each is normal about tanh of the network's
 is learned, except thresholds such as that of a kick: these are coins, tossed with the output as log-odds.
 Without noise a policy takes the middle of the normal ones, and kicks where that is likelier than not; so
 the actor alone is the network that is evaluated and exported, like DDPG's.
+
+V may be told more than the policy is, for it is needed in training alone. Of several robots that learn one
+policy a *central* V sees all of them (Yu et al., "The surprising effectiveness of PPO in cooperative
+multi-agent games", 2022): then s above is what the robot sees followed by the state, and the policy takes
+the first part alone.
 """
 
 from __future__ import annotations
@@ -42,7 +47,7 @@ class Rollout:
     """Steps of ``n`` arenas, T of each.
 
     Attributes:
-        observation: (T, n, O) what was seen.
+        observation: (T, n, O) what was seen, by the policy first and then by the value alone.
         action: (T, n, A) what was done, as drawn.
         log_probability: (T, n) of it.
         value: (T, n) V of what was seen.
@@ -100,16 +105,23 @@ class PPO(Learner):
         scale: (observation,) typical size of each entry of the observation.
         smooth: (action,) which entries are normal; the others are thresholds at 0.
         seed: of the initial weights.
+        state_scale: (state,) typical sizes of what follows the observation for the value alone.
     """
 
     def __init__(
-        self, settings: PPOSettings, scale: Sequence[float], smooth: Sequence[bool], seed: int
+        self,
+        settings: PPOSettings,
+        scale: Sequence[float],
+        smooth: Sequence[bool],
+        seed: int,
+        state_scale: Sequence[float] = (),
     ) -> None:
         super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
         self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh")
-        self.critic = Value(scale, settings.hidden, generator)
+        self.critic = Value([*scale, *state_scale], settings.hidden, generator)
+        self._own = len(scale)
         self._smooth = torch.tensor(list(smooth))
         self._spread = nn.ParameterDict(
             {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.spread))))}
@@ -124,9 +136,9 @@ class PPO(Learner):
 
     @torch.no_grad()
     def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
-        """Draw actions: (n, observation) -> (n, action), their log-probabilities (n,), values (n,)."""
+        """Draw actions: (n, observation and state) -> (n, action), log-probabilities (n,), values (n,)."""
         seen = torch.from_numpy(observation.astype(np.float32))
-        output = self.actor.body(seen * self.actor.inverse_scale)
+        output = self._decided(seen)
         noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._spread["log"])), np.float32))
         toss = torch.from_numpy(rng.random((len(seen), int((~self._smooth).sum())), np.float32))
         action = torch.empty_like(output)
@@ -138,7 +150,7 @@ class PPO(Learner):
 
     @torch.no_grad()
     def worth(self, observation: Floats) -> Floats:
-        """Return V of (n, observation), (n,)."""
+        """Return V of (n, observation and state), (n,)."""
         return _doubles(self.critic(torch.from_numpy(observation.astype(np.float32))))
 
     def update(self, rollout: Rollout, rng: np.random.Generator) -> None:
@@ -160,7 +172,7 @@ class PPO(Learner):
     def _improve(self, seen: Tensor, action: Tensor, old: Tensor, advantage: Tensor) -> None:
         """Take a step of (3), with a bonus for entropy."""
         settings = self.settings
-        output = self.actor.body(seen * self.actor.inverse_scale)
+        output = self._decided(seen)
         log_probability, entropy = self._weigh(output, action)
         advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
         ratio = (log_probability - old).exp()
@@ -178,6 +190,11 @@ class PPO(Learner):
         self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.longest_step)
         self.critic_loss += loss.detach()
         self.value += value.detach().mean()
+
+    def _decided(self, seen: Tensor) -> Tensor:
+        """Return the policy's outputs (m, action) on (m, observation and state)."""
+        output: Tensor = self.actor.body(seen[:, : self._own] * self.actor.inverse_scale)
+        return output
 
     def _weigh(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
         """Return the log-probability and the entropy of actions (m, action), both (m,), given the outputs."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -57,6 +57,11 @@ class PPOSettings(Settings):
 
     hidden: tuple[int, ...] = Field(
         (96, 96), min_length=1, max_length=6, description="hidden layers' sizes, of policy and value each"
+    )
+    critic: Literal["own", "central"] = Field(
+        "own",
+        description="what the value is estimated from: what the robot sees, or besides the true state of all "
+        "robots, as its team sees the field; for tasks of several robots",
     )
     gamma: float = Field(0.985, gt=0, lt=1, description="discount a decision")
     trace: float = Field(0.95, ge=0, le=1, description="lambda of the advantages")

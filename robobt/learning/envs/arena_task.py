@@ -158,10 +158,14 @@ class ArenaTask(ABC):
             ValueError: wrong shape, or an action that is not finite.
         """
         result = self.advance(actions)
+        self.renew(result)
+        return result
+
+    def renew(self, result: StepResult) -> None:
+        """Start anew what ended in :meth:`advance`; the first observations go into ``result``."""
         if self.ended is not None:
             which = np.flatnonzero(result.terminated | result.truncated)
             result.observation[which] = self._begin(which)
-        return result
 
     def advance(self, actions: FloatArray) -> StepResult:
         """Do and return as :meth:`step`, but leave an episode that has ended: a reset starts it anew.

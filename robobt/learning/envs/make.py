@@ -43,8 +43,10 @@ def make_task(settings: TaskSettings, n: int) -> ArenaTask:
     raise TypeError(f"{type(settings).__name__} is no environment of a task")
 
 
-def make_rows(settings: TaskSettings, n: int) -> ArenaTask | PerRobot:
+def make_rows(settings: TaskSettings, n: int, central: bool = False) -> ArenaTask | PerRobot:
     """Return arenas of the environment with these ``settings`` that have ``n`` learners together, a row each.
+
+    With ``central`` each row ends with what a central critic sees; of a task of several robots alone.
 
     Raises:
         ValueError: these are not the learners of whole arenas.
@@ -52,7 +54,7 @@ def make_rows(settings: TaskSettings, n: int) -> ArenaTask | PerRobot:
     task = make_task(settings, n // learners_of(settings))
     if n % len(task.learners):
         raise ValueError(f"{n} learners are not those of whole arenas, with {len(task.learners)} each")
-    return PerRobot(task) if isinstance(task, SoccerTask) else task
+    return PerRobot(task, central) if isinstance(task, SoccerTask) else task
 
 
 def learners_of(settings: TaskSettings) -> int:

@@ -27,7 +27,9 @@ class OnPolicyRun(Run):
         on_progress: OnProgress | None,
     ) -> None:
         super().__init__(settings, problem, folder, clock, on_progress)
-        self._agent = PPO(settings.ppo, problem.scale, problem.smoothed, self._agent_seed)
+        self._agent = PPO(
+            settings.ppo, problem.scale, problem.smoothed, self._agent_seed, problem.state_scale
+        )
 
     def _advance(self) -> None:
         rollout = self._roll_out()

@@ -23,6 +23,7 @@ from robobt.learning.envs.make import learners_of, make_rows
 from robobt.learning.envs.several_worlds import SeveralWorlds
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.evaluation import Evaluation, Policy
+from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
 from robobt.world.avoiding import PLACES
 
 Split = Literal["validation", "held_out"]
@@ -45,18 +46,27 @@ class Problem:
         evaluate: play a policy once from each of so many of a split's starts.
         scale: (observation,) typical size of each entry, in its unit.
         smoothed: (action,) whether target smoothing may change an entry; not a threshold.
+        state_scale: (state,) the same of what stands behind the observation, in ``make``'s arenas alone, for
+            a central critic; empty without one.
     """
 
     make: Callable[[int], VectorTask]
     evaluate: Callable[[Policy, Split, int], Evaluation]
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]
+    state_scale: tuple[float, ...] = ()
+
+
+def problem_for(settings: TrainSettings) -> Problem:
+    """Return the task of a run."""
+    return problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings), settings.central)
 
 
 def problem_of(
     environment: TaskSettings,
     held_out: TaskSettings | None = None,
     worlds: Sequence[TaskSettings] = (),
+    central: bool = False,
 ) -> Problem:
     """Return the task in that environment.
 
@@ -64,10 +74,12 @@ def problem_of(
         environment: what a policy of the task is told of.
         held_out: where held-out starts are played, if elsewhere.
         worlds: what training's arenas and validation's starts are shared among, if not that environment.
+        central: whether a central critic learns.
     """
     speed, turn = environment.action.max_speed, environment.action.max_turn
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]
+    state_scale: tuple[float, ...] = ()
     if isinstance(environment, GoToBallSettings):
         scale, smoothed = (1.0, 1.0, 3.0, speed, speed, turn), (True,) * 3
         if environment.to_shoot:
@@ -87,6 +99,9 @@ def problem_of(
         own = (speed, speed, turn, 3.0, 2.0, 1.0, 1.0, 2.0, 1.5, 3.0, 3.0, *(4.0, 2.0) * 3, 0.3, 0.2)
         scale = (*own, *(2.0, 2.0, speed, speed) * sum(environment.places))
         smoothed = (True, True, True, False)
+        if central:
+            each = (3.0, 2.0, 1.0, 1.0, speed, speed, turn)
+            state_scale = (*each * sum(environment.sides), 3.0, 2.0, 3.0, 3.0)
     else:
         raise TypeError(f"{type(environment).__name__} is no environment of a task")
     trained = tuple(worlds) or (environment,)
@@ -95,20 +110,21 @@ def problem_of(
         "held_out": (held_out or environment,),
     }
     return Problem(
-        lambda n: _arenas(trained, n),
+        lambda n: _arenas(trained, n, central),
         lambda policy, split, starts: _evaluate(where[split], policy, split, starts),
         scale,
         smoothed,
+        state_scale,
     )
 
 
-def _arenas(worlds: Sequence[TaskSettings], n: int) -> VectorTask:
+def _arenas(worlds: Sequence[TaskSettings], n: int, central: bool) -> VectorTask:
     """Return ``n`` arenas, shared evenly among the worlds."""
     if len(worlds) == 1:
-        return make_rows(worlds[0], n)
+        return make_rows(worlds[0], n, central)
     each = learners_of(worlds[0])
     shares = [each * share for share in _shares(n // each, len(worlds))]
-    return SeveralWorlds([make_rows(world, share) for world, share in zip(worlds, shares, strict=True)])
+    return SeveralWorlds([make_rows(*part, central) for part in zip(worlds, shares, strict=True)])
 
 
 def _shares(count: int, parts: int) -> list[int]:

@@ -66,7 +66,7 @@ class Run(ABC):
         seeds = np.random.SeedSequence(settings.seed).spawn(2)
         self._rng = np.random.default_rng(seeds[0])
         self._agent_seed = int(seeds[1].generate_state(1)[0])
-        self._observation = np.zeros((self._task.n, len(problem.scale)))
+        self._observation = np.zeros((self._task.n, self._task.observation_size))
         self._steps = 0
         self._commit = source_commit()
         self._selection = Selection(settings.evaluation)

@@ -142,6 +142,11 @@ class TrainSettings(Settings):
     tensorboard: bool = Field(True, description="write TensorBoard events beside the log")
 
     @property
+    def central(self) -> bool:
+        """Whether a central critic learns."""
+        return self.learner == "ppo" and self.ppo.critic == "central"
+
+    @property
     def algorithm(self) -> str:
         """What learns, by the name of the paper whose switches are on; "ddpg" only without any of them.
 
@@ -149,7 +154,7 @@ class TrainSettings(Settings):
         ``ddpgfd`` keeps demonstrations; ``3-step ddpg`` is DDPG with 3-step returns.
         """
         if self.learner == "ppo":
-            return "ppo"
+            return "mappo" if self.central else "ppo"
         agent, named = self.agent, []
         if agent.atoms:
             named.append("d4pg")
@@ -214,6 +219,9 @@ def load_settings(
     if settings.collection.environments % learners_of(environment):
         problem = f"must be a multiple of the {learners_of(environment)} robots that learn in an arena"
         raise SettingsError(source, problem, "collection.environments")
+    if settings.central and settings.task not in SEVERAL:
+        problem = f"a central critic is for tasks of several robots, such as {next(iter(SEVERAL))}"
+        raise SettingsError(source, problem, "ppo.critic")
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
 

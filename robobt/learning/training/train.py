@@ -9,13 +9,13 @@ from robobt.learning.agents.networks import one_thread
 from robobt.learning.training.clock import RunClock
 from robobt.learning.training.off_policy import OffPolicyRun
 from robobt.learning.training.on_policy import OnPolicyRun
-from robobt.learning.training.problems import Problem, problem_of
+from robobt.learning.training.problems import Problem, problem_for
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import TrainResult
 from robobt.learning.training.run import Run
 from robobt.learning.training.run import TrainError as TrainError
 from robobt.learning.training.run_folder import RunFolder, alone_in
-from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
+from robobt.learning.training.settings import TrainSettings
 
 RUNS: dict[str, type[Run]] = {"ddpg": OffPolicyRun, "ppo": OnPolicyRun}
 """How each learner collects and learns."""
@@ -51,7 +51,7 @@ def train(
     """
     clock = RunClock()
     if problem is None:
-        problem = problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings))
+        problem = problem_for(settings)
     with alone_in(Path(out)):
         folder = RunFolder(Path(out), settings, resume)
         if folder.result is not None:

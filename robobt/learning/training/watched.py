@@ -11,8 +11,8 @@ import numpy as np
 
 from robobt.learning.envs import ArenaTask, make_task
 from robobt.learning.training.evaluation import Evaluation, Policy
-from robobt.learning.training.problems import Problem, Split, problem_of, split_seed
-from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
+from robobt.learning.training.problems import Problem, Split, problem_for, split_seed
+from robobt.learning.training.settings import TrainSettings, environment_of
 from robobt.live.controls import Controls
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -34,7 +34,7 @@ def watched_problem(server: Server, settings: TrainSettings) -> Problem:
 
     Training waits meanwhile, as long as somebody watches; what it learns is the same.
     """
-    problem = problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings))
+    problem = problem_for(settings)
     shows = _Shows(server, settings)
 
     def evaluate(policy: Policy, split: Split, starts: int) -> Evaluation:

@@ -122,6 +122,26 @@ def test_it_learns_what_pays_from_rollouts():
     assert ((decided[:, 1] > 0) == (seen[:, 1] > 0)).mean() > 0.93
 
 
+def test_a_central_value_knows_what_the_policy_does_not():
+    # What pays is told to the value alone.
+    it, rng = (
+        PPO(PPOSettings(hidden=(16,), rate=1e-2, batch=64), (1.0,), (True,), 0, (1.0,)),
+        np.random.default_rng(8),
+    )
+    for _ in range(40):
+        rollout = Rollout.empty(1, 128, 2, 1)
+        rollout.observation[0] = rng.uniform(-1.0, 1.0, (128, 2))
+        rollout.action[0], rollout.log_probability[0], rollout.value[0] = it.act(rollout.observation[0], rng)
+        rollout.reward[0] = rollout.observation[0, :, 1]
+        rollout.terminated[:] = rollout.ended[:] = True
+        it.update(rollout, rng)
+    both = np.array([[0.3, -0.8], [0.3, 0.8]])
+    np.testing.assert_allclose(it.worth(both), [-0.8, 0.8], atol=0.15)
+    assert it.actor.build["scale"] == [1.0]
+    first, second = (it.act(both[[k]], np.random.default_rng(9))[0] for k in range(2))
+    np.testing.assert_array_equal(first, second)
+
+
 def test_its_state_is_all_there_is_to_it():
     one, other = agent(seed=1), agent(seed=2)
     rng = np.random.default_rng(6)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import run_starts
+from robobt.learning.envs.soccer.central import central_view
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import SUITE, scripted
@@ -197,6 +198,42 @@ def test_every_learner_has_a_row_of_its_own() -> None:
     np.testing.assert_allclose(result.reward.reshape(3, 3).mean(1), same.reward)
     with pytest.raises(ValueError, match=r"\(9, 4\)"):
         rows.step(actions[:4])
+
+
+def test_a_central_critic_sees_every_robot_as_each_team_does() -> None:
+    rng = np.random.default_rng(5)
+    robots, balls = rng.uniform(-2.0, 2.0, (4, 5, 6)), rng.uniform(-2.0, 2.0, (4, 4))
+    seen = central_view(robots, balls, (0, 1, 2, 3, 4), 3, 3, 3)
+    assert seen.shape == (4, 5, 7 * 6 + 4)
+    # It is told the same of each robot of a team; of whom it is asked, what that one observes tells.
+    np.testing.assert_array_equal(seen[:, 0], seen[:, 2])
+    places = seen[:, :, :-4].reshape(4, 5, 6, 7)
+    np.testing.assert_array_equal(places[:, 0, 3:5, :2], robots[:, 3:, :2])
+    np.testing.assert_array_equal(places[:, 3, 3:, :2], -robots[:, :3, :2])
+    np.testing.assert_array_equal(places[:, 3, :2, 6], robots[:, 3:, 5])
+    np.testing.assert_array_equal(seen[:, 4, -4:], -balls)
+    assert (places[:, 0, 5] == [-5.0, 0, 0, 0, 0, 0, 0]).all()
+    # In each other's place both teams are told the same.
+    turned = robots[:, [3, 4, 0, 1, 2]] * [-1, -1, 1, -1, -1, 1]
+    turned[..., 2] += np.pi
+    swapped = central_view(turned, -balls, (2, 0), 2, 3, 3)
+    np.testing.assert_allclose(swapped, seen[:, [0, 3]], atol=1e-12)
+
+
+def test_the_state_that_an_episode_ended_in_is_told_before_the_next_begins() -> None:
+    settings = SoccerSettings.model_validate({**everybody_still(2, 1), "time_limit": 2})
+    told, rows = (PerRobot(SoccerTask(settings, 3, seed=1), central) for central in (True, False))
+    own = rows.observation_size
+    np.testing.assert_array_equal(told.reset()[:, :own], rows.reset())
+    result, same = (made.step(np.zeros((9, 4))) for made in (told, rows))
+    assert result.truncated.all()
+    for field in ("observation", "final_observation"):
+        seen = getattr(result, field)
+        np.testing.assert_array_equal(seen[:, :own], getattr(same, field))
+        # Where it is on the field is told twice.
+        np.testing.assert_array_equal(seen[::3, 3:5], seen[::3, own : own + 2])
+        np.testing.assert_array_equal(seen[2::3, 3:5], seen[2::3, own : own + 2])
+    assert (result.observation != result.final_observation).any()
 
 
 @pytest.mark.parametrize(

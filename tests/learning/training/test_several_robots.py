@@ -12,7 +12,8 @@ from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.export_run import export_run
-from robobt.learning.training.problems import problem_of
+from robobt.learning.training.problems import problem_for, problem_of
+from robobt.learning.training.run_folder import load_run
 from robobt.learning.training.settings import SettingsError, environment_of, load_settings
 from robobt.learning.training.train import train
 from robobt.models.file import ModelError
@@ -34,8 +35,11 @@ TINY = {
 
 
 @pytest.mark.integration
-def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
-    settings = load_settings("small3v3", "fast", TINY)
+@pytest.mark.parametrize("critic", ["own", "central"])
+def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been(
+    tmp_path: Path, critic: str
+) -> None:
+    settings = load_settings("small3v3", "fast", TINY | {"ppo.critic": critic})
     whole = train(settings, tmp_path / "whole")
 
     class BrokenOffError(Exception):
@@ -49,6 +53,8 @@ def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been
         train(settings, tmp_path / "broken", on_progress=stop)
     resumed = train(settings, tmp_path / "broken", resume=True)
     assert resumed.figures["weights"] == whole.figures["weights"]
+    # What is kept of it is the policy, which is told what a robot sees, whatever the critic was told.
+    assert len(load_run(tmp_path / "whole").actor.build["scale"]) == 19 + 4 * 5
     with pytest.raises(ModelError, match="no skill plays a policy for small3v3"):
         export_run(tmp_path / "whole", "mine", tmp_path)
 
@@ -73,3 +79,16 @@ def test_a_problem_has_a_row_for_each_learner() -> None:
     assert (made.n, made.task.n, len(problem.scale)) == (6, 2, made.observation_size)
     with pytest.raises(SettingsError, match=r"collection\.environments: must be a multiple of the 3 robots"):
         load_settings("attack3v2", "fast", {"collection.environments": 128})
+
+
+def test_a_central_critic_needs_several_robots() -> None:
+    with pytest.raises(SettingsError, match=r"ppo\.critic: a central critic is for tasks of several robots"):
+        load_settings("score_on_goalkeeper", "fast", {"ppo.critic": "central"})
+
+
+def test_what_a_central_critic_is_told_has_a_scale_for_each_entry() -> None:
+    settings = load_settings("attack3v2", "fast", {"ppo.critic": "central", "environment.yellow": ["wall"]})
+    problem = problem_for(settings)
+    made = problem.make(6)
+    assert made.reset(0).shape == (6, len(problem.scale) + len(problem.state_scale))
+    assert settings.algorithm == "mappo"

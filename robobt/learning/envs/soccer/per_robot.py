@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.soccer.central import BALL, EACH, central_view
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray, StepResult
 from robobt.sim.arenas import Arenas
@@ -15,16 +16,21 @@ class PerRobot:
     """A :class:`~robobt.learning.envs.task.VectorTask` with a row for each learner of each arena.
 
     An arena's learners stand one after the other; their episodes end together. The reward is each one's own.
+    With ``central`` an observation is followed by what a central critic sees of the true state besides
+    (:func:`~robobt.learning.envs.soccer.central.central_view`).
     """
 
-    def __init__(self, task: SoccerTask) -> None:
+    def __init__(self, task: SoccerTask, central: bool = False) -> None:
         self.task = task
+        self._central = central
         self.settings = task.settings
         self.observation = task.observation
         self.blue = task.blue
         self.each = len(task.learners)
         self.n = task.n * self.each
         self.observation_size = task.observation.size
+        if central:
+            self.observation_size += EACH * sum(task.settings.sides) + BALL
         self.action_size = task.action.size
 
     @property
@@ -56,11 +62,16 @@ class PerRobot:
         Raises:
             ValueError: wrong shape, or an action that is not finite.
         """
-        return self._spread(self.task.step(self._of_arenas(actions)))
+        result = self.task.advance(self._of_arenas(actions))
+        final = self._rows(result.final_observation)
+        self.task.renew(result)
+        return self._spread(result, self._rows(result.observation), final)
 
     def advance(self, actions: FloatArray) -> StepResult:
         """See :meth:`robobt.learning.envs.arena_task.ArenaTask.advance`."""
-        return self._spread(self.task.advance(self._of_arenas(actions)))
+        result = self.task.advance(self._of_arenas(actions))
+        final = self._rows(result.final_observation)
+        return self._spread(result, final.copy(), final)
 
     def _of_arenas(self, actions: FloatArray) -> FloatArray:
         given = np.asarray(actions, dtype=np.float64)
@@ -68,12 +79,16 @@ class PerRobot:
             raise ValueError(f"actions must have the shape {(self.n, self.action_size)}, not {given.shape}")
         return given.reshape(self.task.n, -1)
 
-    def _spread(self, result: StepResult) -> StepResult:
+    def _spread(self, result: StepResult, seen: FloatArray, final: FloatArray) -> StepResult:
         terminated, truncated, success = (
             np.repeat(column, self.each) for column in (result.terminated, result.truncated, result.success)
         )
-        seen, final = self._rows(result.observation), self._rows(result.final_observation)
         return StepResult(seen, self.task.shares.ravel(), terminated, truncated, final, success)
 
     def _rows(self, observation: FloatArray) -> FloatArray:
-        return observation.reshape(self.n, -1)
+        own = observation.reshape(self.n, -1)
+        if not self._central:
+            return own
+        arenas, task = self.task.arenas, self.task
+        view = central_view(arenas.robots, arenas.balls, task.learners, self.blue, *task.settings.sides)
+        return np.concatenate((own, view.reshape(self.n, -1)), axis=1)

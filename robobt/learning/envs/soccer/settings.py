@@ -88,15 +88,21 @@ class SoccerSettings(TaskSettings):
         return tuple(index for index, role in enumerate(self.roles) if role == LEARNER)
 
     @property
-    def places(self) -> tuple[int, int]:
-        """How many mates and opponents each learner sees."""
-        sizes = [(len(self.blue) - 1, len(self.yellow)), (len(self.yellow) - 1, len(self.blue))]
+    def sides(self) -> tuple[int, int]:
+        """How many robots a learner's own team has and how many the other, at most."""
+        sizes = [(len(self.blue), len(self.yellow)), (len(self.yellow), len(self.blue))]
         learning = [LEARNER in self.blue, LEARNER in self.yellow]
         seen = [size for size, learns in zip(sizes, learning, strict=True) if learns] or sizes[:1]
-        mates, opponents = (max(column) for column in zip(*seen, strict=True))
+        own, others = (max(column) for column in zip(*seen, strict=True))
+        return own, others
+
+    @property
+    def places(self) -> tuple[int, int]:
+        """How many mates and opponents each learner sees."""
+        own, others = self.sides
         return (
-            mates if self.mates is None else self.mates,
-            opponents if self.opponents is None else self.opponents,
+            own - 1 if self.mates is None else self.mates,
+            others if self.opponents is None else self.opponents,
         )
 
     @model_validator(mode="after")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.soccer.central import states_of
 from robobt.learning.envs.soccer.judge import LAST, MIND, judge
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
@@ -55,15 +56,13 @@ class SoccerTask(ArenaTask):
         return team_view_rows(robots, balls, self._who, self.blue, *self.settings.places, *self._goal)
 
     def state(self) -> FloatArray:
-        """Return the arenas' true states for a central critic, (n, 7 R + 4).
+        """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
 
         For each robot x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx, vy, in
         field coordinates.
         """
-        robots, balls = self.arenas.robots, self.arenas.balls
-        turned = np.cos(robots[..., 2:3]), np.sin(robots[..., 2:3])
-        each = np.concatenate((robots[..., :2], *turned, robots[..., 3:]), axis=-1)
-        return np.concatenate((each.reshape(self.n, -1), balls), axis=1)
+        each = states_of(self.arenas.robots)
+        return np.concatenate((each.reshape(self.n, -1), self.arenas.balls), axis=1)
 
     def advance(self, actions: FloatArray) -> StepResult:
         """See :meth:`ArenaTask.advance`."""
