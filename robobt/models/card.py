@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.models.actions import ActionScaling
-from robobt.world.features import OBSERVATIONS, ObservationSpec
+from robobt.world.features import ObservationSpec, find_observation
 from robobt.world.limits import RobotLimits
 
 MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
@@ -29,7 +29,7 @@ class ModelCardError(ConfigError):
 class ObservationCard(Settings):
     """What the model's input means.
 
-    Either one of :data:`robobt.world.features.OBSERVATIONS`, with the version it
+    Either one that :func:`robobt.world.features.find_observation` knows, with the version it
     had in training, or any other vector by the names of its entries.
     """
 
@@ -48,17 +48,16 @@ class ObservationCard(Settings):
     def _sized(self) -> Self:
         if self.features and len(self.features) != self.size:
             raise ValueError(f"size is {self.size}, but features names {len(self.features)} entries")
-        if not self.features and self.name not in OBSERVATIONS:
+        if not self.features and find_observation(self.name) is None:
             raise ValueError(f"there is no observation {self.name!r}, so features has to name its entries")
         return self
 
     def problem(self) -> str | None:
         """Return why this is not the observation of that name as it is defined now; None if it is.
 
-        A name that :data:`~robobt.world.features.OBSERVATIONS` does not have is
-        somebody else's to check.
+        A name that is unknown here is somebody else's to check.
         """
-        spec = OBSERVATIONS.get(self.name)
+        spec = find_observation(self.name)
         if spec is None or self == ObservationCard.of(spec):
             return None
         if self.version != spec.version:

@@ -16,6 +16,7 @@ from robobt.skills.aim.select_shot import SelectShot as SelectShot
 from robobt.skills.aim.shot_is_open import ShotIsOpen as ShotIsOpen
 from robobt.skills.aim.shot_is_steady import ShotIsSteady as ShotIsSteady
 from robobt.skills.ball.dribble_to import DribbleTo as DribbleTo
+from robobt.skills.ball.duel import Duel as Duel
 from robobt.skills.ball.face_ball import FaceBall as FaceBall
 from robobt.skills.ball.fetch_ball import FetchBall as FetchBall
 from robobt.skills.ball.go_to_ball import GoToBall as GoToBall
@@ -54,6 +55,7 @@ from robobt.skills.defence.challenge_ball import ChallengeBall as ChallengeBall
 from robobt.skills.defence.close_down import CloseDown as CloseDown
 from robobt.skills.defence.cover_angle import CoverAngle as CoverAngle
 from robobt.skills.defence.cover_near_post import CoverNearPost as CoverNearPost
+from robobt.skills.defence.goalkeeper import Goalkeeper as Goalkeeper
 from robobt.skills.defence.mark_opponent import MarkOpponent as MarkOpponent
 from robobt.skills.defence.return_to_goal import ReturnToGoal as ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing as ShotComing

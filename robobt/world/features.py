@@ -23,6 +23,7 @@ from robobt.world.observation import ObservationSpec as ObservationSpec
 from robobt.world.observation import Row, kinematics, motion, observation_spec
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
+from robobt.world.team_view import places_of, team_view
 
 SHOT = observation_spec(
     "shot", 1, angle="rad", target_distance="m", opponent_distance="m", along="m", across="m"
@@ -89,6 +90,13 @@ OBSERVATIONS = {
         *(SHOOT, SCORE_ON_GOALKEEPER),
     )
 }
+"""By their names, but those of robots in a team, of which there are as many as sizes of teams."""
+
+
+def find_observation(name: str) -> ObservationSpec | None:
+    """Return the observation of that name, those of robots in a team included; None: there is none."""
+    places = places_of(name)
+    return OBSERVATIONS.get(name) if places is None else team_view(*places)
 
 
 @compiled

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import copysign, cos, hypot, sin
 
 import numpy as np
@@ -9,8 +10,9 @@ from numpy.typing import NDArray
 
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import ObservationSpec, observation_spec
+from robobt.world.observation import ObservationSpec, kinematics, motion, observation_spec
 from robobt.world.scoring import FAR_OFF, KICK_SPEED
+from robobt.world.state import Frame, RobotState
 
 AWAY = 5.0
 """Nobody is observed as one at rest so far behind [m]."""
@@ -19,6 +21,8 @@ BALL = 7
 """Index of the ball's place."""
 
 _OWN, _EACH = 19, 4
+_NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])")
+_ME = np.zeros(1, dtype=np.int64)
 
 
 def team_view(mates: int, opponents: int) -> ObservationSpec:
@@ -48,6 +52,30 @@ def team_view(mates: int, opponents: int) -> ObservationSpec:
                 f"{who}_{k}_vy": "m/s",
             }
     return observation_spec(f"team_view_{mates}_{opponents}", 1, **units)
+
+
+def places_of(name: str) -> tuple[int, int] | None:
+    """Return for how many mates and opponents the observation of that name has places; None: no such."""
+    found = _NAME.fullmatch(name)
+    return (int(found[1]), int(found[2])) if found else None
+
+
+def team_view_of(frame: Frame, robot: RobotState, mates: int, opponents: int) -> FloatArray:
+    """Compute the state :func:`team_view` of one robot in a frame, (size,)."""
+    team = [robot, *(mate for mate in frame.own if mate.id != robot.id)]
+    robots = np.array([kinematics(each) for each in (*team, *frame.opponents)])
+    field = frame.field
+    row: FloatArray = team_view_rows(
+        robots[None],
+        np.array([motion(frame)]),
+        _ME,
+        len(team),
+        mates,
+        opponents,
+        field.half_length,
+        field.goal_width / 2,
+    )[0]
+    return row
 
 
 @compiled

@@ -21,6 +21,7 @@ from robobt.models.file import Format, pack_archive, pack_onnx, payload_of, unpa
 from robobt.models.policy import load_policy
 from robobt.world.features import GO_TO_BALL, SHOOT
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
+from robobt.world.team_view import team_view
 
 
 def go_to_ball_card(name: str = "small", **changes: Any) -> ModelCard:
@@ -54,6 +55,11 @@ def score_card(name: str = "small_score", **changes: Any) -> ModelCard:
         "action": SCORE_ACTION,
     }
     return go_to_ball_card(name, **(fields | changes))
+
+
+def team_card(skill: str, mates: int, opponents: int, **changes: Any) -> ModelCard:
+    fields = {"skill": skill, "observation": ObservationCard.of(team_view(mates, opponents)), "period": 0.06}
+    return score_card("small_team", **(fields | changes))
 
 
 def predictor_card(name: str = "predictor") -> ModelCard:

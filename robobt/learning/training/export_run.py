@@ -32,8 +32,12 @@ _SKILLS = {
     "go_to_ball_among_robots": "GoToBall",
     "shoot": "Shoot",
     "score_on_goalkeeper": "Score",
+    "score_on_goalkeeper_and_defenders": "Score",
+    "save": "Goalkeeper",
+    "duel": "Duel",
+    "duel_with_script": "Duel",
 }
-"""Skill of each task."""
+"""Skill of each task that has one of its own; of the others a model is for LearnedSkill."""
 
 
 def export_run(
@@ -78,16 +82,15 @@ def export_run(
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
             policy_of(result.actor), "held_out", count
         )
-    if settings.task not in _SKILLS:
-        raise ModelError(
-            f"{run}: no skill plays a policy for {settings.task}; there are {', '.join(_SKILLS)}"
-        )
-    skill, observation = _SKILLS[settings.task], make_task(environment, 1).observation
+    skill, observation = _SKILLS.get(settings.task, "LearnedSkill"), make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",
         name=called,
         skill=skill,
-        description=f"{skill}, trained by robobt with the preset {settings.preset or 'of its own'!r}.",
+        description=(
+            f"{skill} of the task {settings.task}, trained by robobt with the preset "
+            f"{settings.preset or 'of its own'!r}."
+        ),
         algorithm=settings.algorithm,
         observation=ObservationCard.of(observation),
         outputs=action_outputs(environment.action),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import isnan
+from dataclasses import replace
+from functools import partial
+from math import inf, isnan
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,8 +19,8 @@ from robobt.world.command import RobotCommand
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
-    OBSERVATIONS,
     SHOOT,
+    find_observation,
     go_to_ball_of,
     go_to_ball_to_shoot_of,
     shoot_of,
@@ -27,6 +29,7 @@ from robobt.world.geometry import FloatArray
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
+from robobt.world.team_view import places_of, team_view_of
 
 OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     GO_TO_BALL.name: go_to_ball_of,
@@ -35,7 +38,7 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     SHOOT.name: shoot_of,
     SCORE_ON_GOALKEEPER.name: score_on_goalkeeper_of,
 }
-"""The function that makes each observation from a frame."""
+"""The function that makes each observation from a frame, but those of robots in a team."""
 
 P = TypeVar("P")
 
@@ -69,13 +72,15 @@ class LearnedControl:
         self.card = policy.card
         if self.card.kind != "policy" or self.card.action is None:
             raise ModelError(f"{policy.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
-        if self.card.observation.name not in OBSERVERS:
+        name = self.card.observation.name
+        observe = observer_of(name)
+        if observe is None:
             there = ", ".join(OBSERVERS)
             raise ModelError(
-                f"{policy.path}: no skill makes the observation {self.card.observation.name!r}; "
-                f"there are {there}"
+                f"{policy.path}: no skill makes the observation {name!r}; there are {there}, "
+                "and team_view_M_N with places for M mates and N opponents"
             )
-        self._observe = OBSERVERS[self.card.observation.name]
+        self._observe = observe
         self._infer: Callable[[FloatArray], list[float]] = policy.single()
         self._scaling = self.card.action
 
@@ -96,12 +101,55 @@ class LearnedControl:
         return command_of(action, self._scaling)
 
     def _draw(self, sketch: Sketch, observed: FloatArray, action: list[float]) -> None:
-        for (name, _), value in zip(
-            OBSERVATIONS[self.card.observation.name].entries, observed.tolist(), strict=True
-        ):
+        spec = find_observation(self.card.observation.name)
+        assert spec is not None
+        for (name, _), value in zip(spec.entries, observed.tolist(), strict=True):
             sketch.number(OBSERVATION, name, value)
         for place, value in enumerate(action):
             sketch.number(OBSERVATION, f"action {place}", value)
+
+
+class PacedControl:
+    """A trained policy that decides as often as it did in training; what it decided holds between.
+
+    Args:
+        model: as for :class:`LearnedControl`.
+        skill: as for :class:`LearnedControl`.
+
+    Raises:
+        ModelError: the model cannot be used.
+    """
+
+    def __init__(self, model: str | Path, skill: str | None = None) -> None:
+        self._control = LearnedControl(model, skill)
+        self._decided = -inf
+        self._command = RobotCommand()
+
+    def restart(self) -> None:
+        """Forget the last decision."""
+        self._decided = -inf
+
+    def decide(self, frame: Frame, me: RobotState, sketch: Sketch | None = None) -> RobotCommand:
+        """Decide, or return what was decided, for one tick; see :meth:`LearnedControl.decide`.
+
+        Raises:
+            PolicyError: the policy's answer is not finite or lies outside [-1, 1].
+        """
+        period = self._control.card.period or 0.0
+        # Half a tick of room: times are sums of periods.
+        if not 0.0 <= frame.time - self._decided < period - frame.period / 2:
+            self._decided = -inf
+            self._command = self._control.decide(frame, me, sketch)
+            self._decided = frame.time
+        return replace(self._command)
+
+
+def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
+    """Return the function that makes the observation of that name from a frame; None: there is none."""
+    places = places_of(name)
+    if places is None:
+        return OBSERVERS.get(name)
+    return partial(team_view_of, mates=places[0], opponents=places[1])
 
 
 def find_policy(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robobt.skills.ball.learned_control import LearnedControl, PolicyError
+from robobt.skills.ball.learned_control import PacedControl, PolicyError
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
@@ -10,9 +10,10 @@ from robobt.world.command import RobotCommand
 
 @skill
 class LearnedSkill(Skill):
-    """Drive the robot by a trained policy, tick by tick; runs for as long as it is ticked.
+    """Drive the robot by a trained policy; runs for as long as it is ticked.
 
-    When to begin and when it is done is the tree's affair: put conditions beside
+    It decides as often as in training, by its card's period, and holds its command
+    between. When to begin and when it is done is the tree's affair: put conditions beside
     it. Fails, and stops the robot, when the policy's answer is not a valid
     action.
 
@@ -29,10 +30,15 @@ class LearnedSkill(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._control = LearnedControl(self.model) if self.model else None
+        self._control = PacedControl(self.model) if self.model else None
+
+    def on_start(self) -> None:
+        """Forget the last decision."""
+        if self._control is not None:
+            self._control.restart()
 
     def on_running(self) -> Status:
-        """Decide one tick."""
+        """Decide, or do as decided, for one tick."""
         if self._control is None:
             return self.fail("it has been given no model")
         try:

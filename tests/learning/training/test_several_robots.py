@@ -16,7 +16,11 @@ from robobt.learning.training.problems import problem_for, problem_of
 from robobt.learning.training.run_folder import load_run
 from robobt.learning.training.settings import SettingsError, environment_of, load_settings
 from robobt.learning.training.train import train
-from robobt.models.file import ModelError
+from robobt.models.file import read_model_file
+from robobt.skills import Duel, Goalkeeper, LearnedSkill, Score
+from robobt.skills.ball.policy_skill import PolicySkill
+from robobt.tree import Status
+from tests.skills.fixed_world import Alone, frame, robot
 
 TINY = {
     "steps": 480,
@@ -55,8 +59,24 @@ def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been
     assert resumed.figures["weights"] == whole.figures["weights"]
     # What is kept of it is the policy, which is told what a robot sees, whatever the critic was told.
     assert len(load_run(tmp_path / "whole").actor.build["scale"]) == 19 + 4 * 5
-    with pytest.raises(ModelError, match="no skill plays a policy for small3v3"):
-        export_run(tmp_path / "whole", "mine", tmp_path)
+    (model,) = export_run(tmp_path / "whole", "mine", tmp_path, starts=2)
+    assert LearnedSkill(model=str(model)).model == str(model)
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize(
+    ("task", "leaf"), [("save", Goalkeeper), ("duel", Duel), ("score_on_goalkeeper_and_defenders", Score)]
+)
+def test_what_was_trained_is_a_leaf_by_its_name(
+    task: str, leaf: type[PolicySkill], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny = {**TINY, "steps": 240}
+    train(load_settings(task, "fast", tiny), tmp_path / "run")
+    monkeypatch.chdir(tmp_path)
+    (path,) = export_run("run", "mine", starts=2)
+    card = read_model_file(path).card
+    assert (card.skill, card.period) == (leaf.__name__, 0.06)
+    assert Alone(leaf(policy="mine")).tick(frame(robot(), (1.0, 0.0))) is Status.RUNNING
 
 
 def test_one_policy_decides_for_every_learner() -> None:

@@ -41,6 +41,15 @@ def test_it_drives_as_its_policy_says_in_the_robots_frame(tmp_path: Path) -> Non
     assert isclose(alone.command.omega, -1.395, rel_tol=1e-6)
 
 
+def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
+    alone = Alone(LearnedSkill(model=str(write_model(tmp_path, Straight(), go_to_ball_card(period=0.06)))))
+    turning = []
+    for tick in range(6):
+        alone.tick(frame(robot(), (1.0, 0.01 * tick), time=0.03 * tick, period=0.03))
+        turning.append(alone.command.omega / 1.395)
+    assert turning == pytest.approx([0.0, 0.0, 0.04, 0.04, 0.08, 0.08], abs=1e-3)
+
+
 def test_what_it_observes_can_be_looked_at(tmp_path: Path) -> None:
     alone = Alone(LearnedSkill(model=str(write_model(tmp_path, Straight()))))
     alone.store.draw.want({"observation"}, set())
@@ -68,14 +77,14 @@ def test_a_policy_for_shooting_turns_and_kicks_with_the_dribbler_on(tmp_path: Pa
     assert alone.command.omega < 0.0
     assert alone.command.dribbler
     aimed = robot(2.0, 0.0, 0.0, contact=True)
-    alone.tick(frame(aimed, ball=held(aimed)))
+    alone.tick(frame(aimed, ball=held(aimed), time=0.03))
     assert alone.command.kick_speed == 5.0
 
 
 @pytest.mark.parametrize(("wrong", "said"), [("nan", "no number"), ("range", r"outside \[-1, 1\]")])
 def test_what_is_no_action_fails_the_leaf_and_stops_the_robot(tmp_path: Path, wrong: str, said: str) -> None:
     leaf = LearnedSkill(model=str(write_model(tmp_path, Faulty(wrong))))
-    far = frame(robot(), ball=(0.0, -3000.0))
+    far = frame(robot(), ball=(0.0, -3000.0), time=0.03)
     alone = Alone(leaf)
     assert alone.tick(frame(robot(), ball=(1.0, 0.0))) is Status.RUNNING
     assert alone.command != STILL

@@ -15,6 +15,7 @@ from robobt.world.game import Team, TeamStatus
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from tests.models.made_models import Faulty, Passing, go_to_ball_card, score_card, write_model
 from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.side_by_side import the_leaf_does_what_it_does_in_training
 
 
 def score(folder: Path) -> Alone:
@@ -48,6 +49,10 @@ def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
         alone.tick(now)
         driven.append(alone.command.vx / 3.0)
     assert driven == pytest.approx([0.1, 0.1, 0.12, 0.12, 0.14, 0.14], abs=1e-4)
+
+
+def test_one_trained_against_defenders_plays_as_in_training(tmp_path: Path) -> None:
+    the_leaf_does_what_it_does_in_training("ScoreOnGoalkeeperAndDefenders", "Score", tmp_path)
 
 
 def test_without_a_policy_it_fails() -> None:
