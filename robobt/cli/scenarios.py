@@ -38,7 +38,9 @@ def scenarios(
         return
     from robobt.match import load_scenario
 
-    loaded = [load_scenario(source) for source in (bundled_scenarios() if name is None else [name])]
+    # The list needs no models; a scenario of one's own is looked at as a match would.
+    named = bundled_scenarios() if name is None else [name]
+    loaded = [load_scenario(source, build=name is not None) for source in named]
     if as_json:
         print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
         return

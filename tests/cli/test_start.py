@@ -24,7 +24,12 @@ HEAVY = {
 
 @pytest.mark.parametrize(
     ("command", "needed"),
-    [("--help", set()), ("scenarios", {"pydantic"}), ("plays", {"numpy", "pydantic", "numba"})],
+    [
+        ("--help", set()),
+        ("scenarios", {"pydantic"}),
+        ("scenarios --json", {"numpy", "pydantic", "numba"}),
+        ("plays", {"numpy", "pydantic", "numba"}),
+    ],
 )
 def test_a_list_needs_little(command: str, needed: set[str]) -> None:
     code = (
@@ -32,7 +37,9 @@ def test_a_list_needs_little(command: str, needed: set[str]) -> None:
         "try: main()\n"
         f"finally: print(*sorted({HEAVY!r} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", code, command], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code, *command.split()], capture_output=True, text=True, check=True
+    )
     assert set(done.stdout.splitlines()[-1].split()) == needed
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Self
 
-from pydantic import BaseModel, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from robobt.config.errors import FieldError, RobobtError, message_of
 from robobt.config.validation import first_problem
@@ -23,6 +23,9 @@ from robobt.tree.parameters import ParameterError, check_parameters, parameters_
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
+
+UNBUILT: Mapping[str, object] = {}
+"""The context of a validation that builds no trees, and so loads no models."""
 
 
 class RobotSetup(Part):
@@ -54,7 +57,9 @@ class RobotSetup(Part):
         return play
 
     @model_validator(mode="after")
-    def _playable(self) -> Self:
+    def _playable(self, info: ValidationInfo) -> Self:
+        if info.context is UNBUILT:
+            return self
         try:
             tree, another = self.build_tree(), self.build_tree()
             check_tree(tree, Store, GIVEN)

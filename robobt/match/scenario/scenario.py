@@ -16,7 +16,7 @@ from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_inside, check_starts
-from robobt.match.scenario.robots import Robots, RobotSetup
+from robobt.match.scenario.robots import UNBUILT, Robots, RobotSetup
 from robobt.match.scenario.starts import BallStart, Part, RobotStart
 from robobt.models.find import rename_models
 from robobt.plays.files import rename_play
@@ -229,11 +229,12 @@ class Scenario(Part):
             raise self.error(str(error), error.field) from error
 
 
-def load_scenario(source: str | Path) -> Scenario:
+def load_scenario(source: str | Path, *, build: bool = True) -> Scenario:
     """Load a scenario from a YAML file or, where there is no such file, a bundled one by its name.
 
     Args:
         source: the file, or the name; ``robobt scenarios`` lists those.
+        build: whether to see that the robots' trees can be built, for which their models are loaded.
 
     Raises:
         ScenarioError: the file cannot be read or is no scenario; it names the field or line.
@@ -252,12 +253,12 @@ def load_scenario(source: str | Path) -> Scenario:
     data = read_yaml(path, ScenarioError)
     # From here, not from the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))
-    scenario = scenario_from(data, str(path))
+    scenario = scenario_from(data, str(path), build=build)
     return scenario if scenario.name else scenario.model_copy(update={"name": path.stem})
 
 
-def scenario_from(data: object, source: str) -> Scenario:
-    """Make a scenario of plain data, as a YAML or JSON file holds it.
+def scenario_from(data: object, source: str, *, build: bool = True) -> Scenario:
+    """Make a scenario of plain data, as a YAML or JSON file holds it; with ``build`` its robots' trees too.
 
     Raises:
         ScenarioError: the data is no scenario; the message names the source and the field.
@@ -266,7 +267,9 @@ def scenario_from(data: object, source: str) -> Scenario:
         raise ScenarioError(source, "a scenario is a mapping of fields")
     try:
         # Strict JSON: lists fit tuples, integers fit floats, and nothing else is converted.
-        scenario = Scenario.model_validate_json(json.dumps(data), strict=True)
+        scenario = Scenario.model_validate_json(
+            json.dumps(data), strict=True, context=None if build else UNBUILT
+        )
     except ValidationError as error:
         field, problem = first_problem(error, Scenario, data)
         raise ScenarioError(source, problem, field) from error
