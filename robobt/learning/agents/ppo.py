@@ -153,8 +153,8 @@ class PPO(Learner):
         """Return V of (n, observation and state), (n,)."""
         return _doubles(self.critic(torch.from_numpy(observation.astype(np.float32))))
 
-    def update(self, rollout: Rollout, rng: np.random.Generator) -> None:
-        """Learn from a rollout by (3) and (4)."""
+    def update(self, rollout: Rollout, rng: np.random.Generator, value_alone: bool = False) -> None:
+        """Learn from a rollout by (3) and (4), or by (4) alone while a policy that was given is valued."""
         settings = self.settings
         advantage = advantages(rollout, settings.gamma, settings.trace)
         target = advantage + rollout.value
@@ -165,7 +165,8 @@ class PPO(Learner):
         for _ in range(settings.epochs):
             order = torch.from_numpy(rng.permutation(len(action)))
             for rows in torch.split(order, settings.batch):
-                self._improve(observation[rows], action[rows], log_probability[rows], advantage_[rows])
+                if not value_alone:
+                    self._improve(observation[rows], action[rows], log_probability[rows], advantage_[rows])
                 self._fit(observation[rows], target_[rows])
                 self.updates += 1
 

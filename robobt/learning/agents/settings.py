@@ -73,6 +73,9 @@ class PPOSettings(Settings):
     entropy: float = Field(0.002, ge=0, le=1, description="weight of the policy's entropy")
     longest_step: float = Field(0.5, gt=0, le=100, description="longest gradient")
     spread: float = Field(0.6, gt=0, le=3, description="standard deviation of actions at first")
+    critic_first: int = Field(
+        0, ge=0, description="steps in which the value alone is learned, such as that of a policy from init"
+    )
     threshold_bias: float = Field(-2.5, ge=-10, le=10, description="log-odds of kicks at first")
 
     @model_validator(mode="after")

@@ -9,10 +9,11 @@ from pathlib import Path
 
 from robobt.config.atomic import write_atomically
 from robobt.config.yaml import read_yaml
+from robobt.learning.training.preset_files import SWITCHES
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import Spread, Summary, summary_of
 from robobt.learning.training.seeds import train_seeds
-from robobt.learning.training.settings import SWITCHES, SettingsError, TrainSettings, load_settings
+from robobt.learning.training.settings import SettingsError, TrainSettings, load_settings
 
 PAPER = "paper"
 """The name of the plain Spinning Up setting in a comparison."""

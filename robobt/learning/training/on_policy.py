@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from robobt.learning.agents.past_selves import PastSelves
 from robobt.learning.agents.ppo import PPO, Rollout
+from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.clock import RunClock
 from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
-from robobt.learning.training.run import Run, TrainError
-from robobt.learning.training.run_folder import RunFolder
+from robobt.learning.training.run import Run, TrainError, part
+from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor
 from robobt.learning.training.settings import TrainSettings
 
 
@@ -31,10 +35,52 @@ class OnPolicyRun(Run):
             settings.ppo, problem.scale, problem.smoothed, self._agent_seed, problem.state_scale
         )
 
+        self._past = PastSelves(settings.pool.size)
+
+    def _begin(self) -> None:
+        init = self._settings.init
+        if init is not None:
+            self._take_over(Path(init))
+        self._remember()
+
+    def _settle(self) -> None:
+        every = self._settings.pool.every
+        if self._past.taken and self._steps // every > self._past.taken[-1] // every:
+            self._remember()
+
+    def _rebuild(self) -> None:
+        if self._problem.later is not None:
+            self._task = self._problem.later(self._steps, self._past.decide)
+        super()._rebuild()
+
+    def _kept(self) -> Arrays:
+        return {f"past/{key}": array for key, array in self._past.state().items()}
+
+    def _restore(self, arrays: Arrays, state: RunState) -> None:
+        super()._restore(arrays, state)
+        self._past.restore(part(arrays, "past/"), self._agent.actor.build)
+
+    def _remember(self) -> None:
+        """Add the policy as it is to the past selves, and to the folder, if anybody plays against them."""
+        if self._problem.later is not None:
+            self._folder.keep(self._past.add(self._agent.actor, self._steps), self._steps)
+
+    def _take_over(self, folder: Path) -> None:
+        """Begin with the best policy of a run that has ended."""
+        given, own = load_actor(folder / ACTOR), self._agent.actor
+        if given.build != own.build:
+            raise TrainError(
+                f"init: the policy of {folder} sees {len(given.build['scale'])} entries with layers of "
+                f"{given.build['hidden']}, this run's {len(own.build['scale'])} with {own.build['hidden']}, "
+                "or of other sizes"
+            )
+        own.load_state_dict(given.state_dict())
+
     def _advance(self) -> None:
         rollout = self._roll_out()
         self._agent.set_rates(1.0 - self._steps / self._settings.steps)
-        self._agent.update(rollout, self._rng)
+        value_alone = self._steps < self._settings.ppo.critic_first
+        self._agent.update(rollout, self._rng, value_alone)
         self._steps += rollout.reward.size
 
     def _roll_out(self) -> Rollout:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -19,11 +19,19 @@ from robobt.learning.envs import (
     run_starts,
 )
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.make import learners_of, make_rows
-from robobt.learning.envs.several_worlds import SeveralWorlds
+from robobt.learning.envs.soccer.one_side import Others
 from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.training.arenas import arenas_of, opposed_arenas, shares_of
 from robobt.learning.training.evaluation import Evaluation, Policy
-from robobt.learning.training.settings import TrainSettings, environment_of, evaluated_on, worlds_of
+from robobt.learning.training.settings import (
+    TrainSettings,
+    environment_of,
+    evaluated_on,
+    stage_after,
+    stages_of,
+    validated_on,
+    worlds_of,
+)
 from robobt.world.avoiding import PLACES
 
 Split = Literal["validation", "held_out"]
@@ -48,6 +56,8 @@ class Problem:
         smoothed: (action,) whether target smoothing may change an entry; not a threshold.
         state_scale: (state,) the same of what stands behind the observation, in ``make``'s arenas alone, for
             a central critic; empty without one.
+        later: the arenas after so many steps, where others play the part of a pool; None where they are
+            always ``make``'s.
     """
 
     make: Callable[[int], VectorTask]
@@ -55,11 +65,29 @@ class Problem:
     scale: tuple[float, ...]
     smoothed: tuple[bool, ...]
     state_scale: tuple[float, ...] = ()
+    later: Callable[[int, Others], VectorTask] | None = None
 
 
 def problem_for(settings: TrainSettings) -> Problem:
     """Return the task of a run."""
-    return problem_of(environment_of(settings), evaluated_on(settings), worlds_of(settings), settings.central)
+    problem = problem_of(
+        environment_of(settings),
+        evaluated_on(settings),
+        worlds_of(settings),
+        settings.central,
+        validated_on(settings),
+    )
+    if not settings.changes_on_the_way:
+        return problem
+    stages, n = stages_of(settings), settings.collection.environments
+
+    def later(steps: int, others: Others) -> VectorTask:
+        stage = stages[stage_after(settings, steps)]
+        if stage.worlds:
+            return arenas_of(worlds_of(stage), n, settings.central)
+        return opposed_arenas(environment_of(stage), stage.pool, others, n, settings.central)
+
+    return replace(problem, later=later)
 
 
 def problem_of(
@@ -67,14 +95,16 @@ def problem_of(
     held_out: TaskSettings | None = None,
     worlds: Sequence[TaskSettings] = (),
     central: bool = False,
+    validated: Sequence[TaskSettings] = (),
 ) -> Problem:
     """Return the task in that environment.
 
     Args:
         environment: what a policy of the task is told of.
         held_out: where held-out starts are played, if elsewhere.
-        worlds: what training's arenas and validation's starts are shared among, if not that environment.
+        worlds: what training's arenas are shared among, if not that environment.
         central: whether a central critic learns.
+        validated: what validation's starts are shared among, if not ``worlds``.
     """
     speed, turn = environment.action.max_speed, environment.action.max_turn
     scale: tuple[float, ...]
@@ -106,29 +136,16 @@ def problem_of(
         raise TypeError(f"{type(environment).__name__} is no environment of a task")
     trained = tuple(worlds) or (environment,)
     where: dict[Split, Sequence[TaskSettings]] = {
-        "validation": trained,
+        "validation": tuple(validated) or trained,
         "held_out": (held_out or environment,),
     }
     return Problem(
-        lambda n: _arenas(trained, n, central),
+        lambda n: arenas_of(trained, n, central),
         lambda policy, split, starts: _evaluate(where[split], policy, split, starts),
         scale,
         smoothed,
         state_scale,
     )
-
-
-def _arenas(worlds: Sequence[TaskSettings], n: int, central: bool) -> VectorTask:
-    """Return ``n`` arenas, shared evenly among the worlds."""
-    if len(worlds) == 1:
-        return make_rows(worlds[0], n, central)
-    each = learners_of(worlds[0])
-    shares = [each * share for share in _shares(n // each, len(worlds))]
-    return SeveralWorlds([make_rows(*part, central) for part in zip(worlds, shares, strict=True)])
-
-
-def _shares(count: int, parts: int) -> list[int]:
-    return [(count + parts - 1 - part) // parts for part in range(parts)]
 
 
 def training_seed(seed: int, steps: int) -> int:
@@ -145,7 +162,7 @@ def split_seed(split: Split) -> int:
 def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, starts: int) -> Evaluation:
     seed = split_seed(split)
     parts = []
-    for world, share in zip(worlds, _shares(starts, len(worlds)), strict=True):
+    for world, share in zip(worlds, shares_of(starts, len(worlds)), strict=True):
         task = make_task(world, min(_ARENAS, share))
         parts.append(run_starts(task, task.jointly(policy), task.sample_starts(seed, share), seed))
     episodes = Episodes.joined(parts)

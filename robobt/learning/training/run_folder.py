@@ -8,6 +8,7 @@
 | ``actor.pt`` | the best actor's weights, and how to build it |
 | ``result.json`` | held-out figures: :class:`~robobt.learning.training.results.Figures` |
 | ``curves.png`` | success and time over steps |
+| ``past/`` | the policy after so many steps each, where a run plays against its past selves or has stages |
 | ``tensorboard/`` | the log's figures as events |
 """
 
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 
 SETTINGS, LOG, CHECKPOINT = "settings.yaml", "log.jsonl", "checkpoint"
 ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensorboard"
+PAST = "past"
 
 
 class RunFolderError(RobobtError, ValueError):
@@ -100,7 +102,7 @@ class RunFolder:
             raise RunFolderError(f"{path}: is not a folder")
         if (path / SETTINGS).exists() and (resume or self._has_begun()):
             self._take_up(resume)
-        elif path.is_dir() and {entry.name for entry in path.iterdir()} - {SETTINGS, LOG, EVENTS}:
+        elif path.is_dir() and {entry.name for entry in path.iterdir()} - {SETTINGS, LOG, EVENTS, PAST}:
             raise RunFolderError(f"{path}: holds other files; give a new folder")
         else:
             path.mkdir(parents=True, exist_ok=True)
@@ -138,6 +140,11 @@ class RunFolder:
                 if value is not None and name != "steps":
                     self._events.add_scalar(name, value, validation.steps)
             self._events.flush()
+
+    def keep(self, actor: Actor, steps: int) -> None:
+        """Write the policy as it was after so many steps among the past selves."""
+        (self.path / PAST).mkdir(exist_ok=True)
+        save_actor(actor, self.path / PAST / f"{steps:010}.pt")
 
     def save(self, arrays: Arrays, state: RunState) -> None:
         """Write the checkpoint."""

@@ -10,7 +10,7 @@ import torch
 from robobt.learning.agents.networks import Actor, ActorBuild
 from robobt.learning.training.checkpoint import Arrays
 from robobt.learning.training.results import Validation
-from robobt.learning.training.settings import EvaluationSettings
+from robobt.learning.training.setting_groups import EvaluationSettings
 
 
 class Selection:

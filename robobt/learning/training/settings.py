@@ -1,113 +1,28 @@
-"""Settings of a training run: agent, collection, replay, exploration and evaluation."""
+"""Settings of a training run, the environments that follow from them, and where they are loaded from."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
-from robobt.config.yaml import read_yaml
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import TaskSettings
-from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of
-
-_PRESETS = Path(__file__).parent / "presets"
-SWITCHES = _PRESETS / "switches.yaml"
-"""The changes to the fast preset that comparisons are made of."""
+from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of, make_rows
+from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.training.preset_files import SettingsError as SettingsError
+from robobt.learning.training.preset_files import assign, merged, read_preset
+from robobt.learning.training.setting_groups import (
+    CollectionSettings,
+    EvaluationSettings,
+    PoolSettings,
+    ReplaySettings,
+    StageSettings,
+)
 
 _M = TypeVar("_M", bound=BaseModel)
-
-
-class SettingsError(ConfigError):
-    """Settings that cannot be used."""
-
-
-class PrioritySettings(Settings):
-    """Prioritised replay; off unless ``enabled``."""
-
-    enabled: bool = False
-    alpha: float = Field(0.3, ge=0, le=1, description="0 samples uniformly, 1 in proportion")
-    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights correct for it")
-    floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
-    dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the squared norm of dQ/da")
-
-
-class DemonstrationSettings(Settings):
-    """Demonstrations in the replay before the agent's own steps; none unless ``episodes`` > 0.
-
-    ``keep`` and a ``bonus`` make it DDPGfD; without them, in place of random
-    steps, it is the burn-in of Schwab, Zhu & Veloso (CMU).
-    """
-
-    episodes: int = Field(0, ge=0, le=100_000, description="how many to record or to take from the file")
-    file: str | None = Field(None, description="Parquet file; None records them with the scripted skill")
-    keep: bool = Field(False, description="never overwrite them")
-    bonus: float = Field(0.0, ge=0, le=100, description="added to their priorities")
-    updates: int = Field(0, ge=0, le=1_000_000, description="updates on them alone, before the first step")
-
-
-class ReplaySettings(Settings):
-    """The replay buffer and how it is sampled."""
-
-    capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
-    batch: int = Field(100, ge=1, le=100_000, description="transitions of an update")
-    priority: PrioritySettings = PrioritySettings()
-    demonstrations: DemonstrationSettings = DemonstrationSettings()
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if self.demonstrations.bonus and not self.priority.enabled:
-            raise ValueError("demonstrations get a bonus only with priority.enabled")
-        return self
-
-
-class CollectionSettings(Settings):
-    """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
-
-    environments: int = Field(1, ge=1, le=4096, description="that run side by side, each learner counted")
-    random_steps: int = Field(10_000, ge=0, description="of uniformly random actions, to begin with")
-    update_after: int = Field(1_000, ge=0, description="steps before the first update")
-    update_every: int = Field(50, ge=1, description="steps between rounds of updates")
-    updates: int = Field(50, ge=1, description="updates a round")
-    noise: float = Field(0.1, ge=0, le=2, description="standard deviation of the noise on actions")
-    last_noise: float | None = Field(
-        None,
-        ge=0,
-        le=2,
-        description="that of the last environment; those between are evenly spaced; None for the same",
-    )
-
-
-class EvaluationSettings(Settings):
-    """How progress is evaluated: by success and time, never by the return.
-
-    A slow policy near the ball collects more reward than a fast one.
-    """
-
-    every: int = Field(20_000, ge=1, description="steps between evaluations")
-    starts: int = Field(300, ge=1, le=100_000, description="fixed validation starts of each evaluation")
-    held_out: int = Field(
-        1_000, ge=1, le=100_000, description="fixed starts that the best actor is evaluated on"
-    )
-    held_out_environment: dict[str, Any] = Field(
-        default_factory=dict, description="changes to the environment for those, such as opponents never met"
-    )
-    target_actor: bool = Field(
-        False, description="evaluate and ship the slow actor instead of the online one"
-    )
-    stop_success: float | None = Field(
-        None, ge=0, le=1, description="stop once this share of the starts succeeds and ..."
-    )
-    stop_time: float | None = Field(
-        None,
-        gt=0,
-        description="... the mean time, over the optimum where there is one, else in s, is no more",
-    )
-    stop_after: int = Field(1, ge=1, le=100, description="so often running")
 
 
 class TrainSettings(Settings):
@@ -124,6 +39,17 @@ class TrainSettings(Settings):
         description="changes to the environment, such as other simulators: the arenas and the validation "
         "starts are shared evenly among these worlds; none for the environment alone",
     )
+    stages: tuple[StageSettings, ...] = Field(
+        (),
+        max_length=16,
+        description="what is learned one after the other, by learner ppo; a stage begins when the simulator "
+        "is next built anew",
+    )
+    init: str | None = Field(
+        None,
+        description="the folder of a run that has ended, whose policy training begins with, by learner ppo",
+    )
+    pool: PoolSettings = PoolSettings()
     learner: Literal["ddpg", "ppo"] = Field(
         "ddpg", description="what learns: ddpg with the settings of agent, replay and collection, or ppo"
     )
@@ -145,6 +71,11 @@ class TrainSettings(Settings):
     def central(self) -> bool:
         """Whether a central critic learns."""
         return self.learner == "ppo" and self.ppo.critic == "central"
+
+    @property
+    def changes_on_the_way(self) -> bool:
+        """Whether the arenas change as the run goes on."""
+        return bool(self.stages) or self.pool.share > 0.0 or self.pool.scripted > 0.0
 
     @property
     def algorithm(self) -> str:
@@ -177,16 +108,9 @@ class TrainSettings(Settings):
                 )
         if len(self.worlds) > min(self.collection.environments, self.evaluation.starts):
             raise ValueError("worlds: more than there are arenas or validation starts to share")
+        if self.learner != "ppo" and (self.stages or self.init is not None or self.pool != PoolSettings()):
+            raise ValueError("stages, init and pool are for learner ppo")
         return self
-
-
-def presets(task: str) -> list[str]:
-    """Return the names of the presets that ship for a task."""
-    return sorted(path.stem for path in _folder(task).glob("*.yaml"))
-
-
-def _folder(task: str) -> Path:
-    return _PRESETS / ("several_robots" if task in SEVERAL else task)
 
 
 def load_settings(
@@ -203,10 +127,10 @@ def load_settings(
     Raises:
         SettingsError: no such preset, or something wrong in the file or the changes.
     """
-    data, source = _read(task, preset, ())
+    data, source = read_preset(task, preset)
     data = {"task": task, **data, "preset": preset}
     for name, value in (changes or {}).items():
-        _assign(data, name.split("."), value, name)
+        assign(data, name.split("."), value, name)
     if changes:
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
@@ -214,14 +138,16 @@ def load_settings(
         problem = f"there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
         raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
-    evaluated_on(settings, source)
-    worlds_of(settings, source)
-    if settings.collection.environments % learners_of(environment):
-        problem = f"must be a multiple of the {learners_of(environment)} robots that learn in an arena"
-        raise SettingsError(source, problem, "collection.environments")
     if settings.central and settings.task not in SEVERAL:
         problem = f"a central critic is for tasks of several robots, such as {next(iter(SEVERAL))}"
         raise SettingsError(source, problem, "ppo.critic")
+    for index, stage in enumerate(stages_of(settings, source)):
+        place = f"environment with stages[{index}]" if settings.stages else "environment"
+        for world in worlds_of(stage, source):
+            _check_rows(settings, environment, world, source, place)
+        _check_pool(stage, environment, source)
+    for found in (*validated_on(settings, source), evaluated_on(settings, source)):
+        _check_rows(settings, environment, found, source, "evaluation")
     # Written out in full, so that a default that changes later does not change this run.
     return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
 
@@ -242,17 +168,81 @@ def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSet
 
 def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSettings:
     """Return the settings of the environment in which the held-out starts are played."""
-    data = _merged(settings.environment, settings.evaluation.held_out_environment)
+    data = merged(settings.environment, settings.evaluation.environment)
+    data = merged(data, settings.evaluation.held_out_environment)
     return _validated(
         ENVIRONMENTS[settings.task], data, source, "environment with evaluation.held_out_environment"
     )
+
+
+def validated_on(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
+    """Return the settings of each world in which validation starts are played."""
+    changes = [merged(world, settings.evaluation.environment) for world in settings.worlds or ({},)]
+    return worlds_of(settings.model_copy(update={"worlds": tuple(changes)}), source)
+
+
+def stages_of(settings: TrainSettings, source: str = "settings") -> tuple[TrainSettings, ...]:
+    """Return the settings of each stage, the run's own without stages."""
+    return tuple(
+        settings.model_copy(
+            update={
+                "environment": merged(settings.environment, stage.environment),
+                "pool": _validated(
+                    PoolSettings,
+                    merged(settings.pool.model_dump(), stage.pool),
+                    source,
+                    f"pool with stages[{index}]",
+                ),
+            }
+        )
+        for index, stage in enumerate(settings.stages)
+    ) or (settings,)
+
+
+def stage_after(settings: TrainSettings, steps: int) -> int:
+    """Return the index in :func:`stages_of` of what is learned after so many steps."""
+    shares = [stage.share for stage in settings.stages]
+    begun = [settings.steps * sum(shares[:index]) / sum(shares) for index in range(len(shares))]
+    return max(sum(steps >= begin for begin in begun) - 1, 0)
+
+
+def _check_rows(
+    settings: TrainSettings, environment: TaskSettings, other: TaskSettings, source: str, place: str
+) -> None:
+    """Raise unless a policy of the environment can learn and play in the other one."""
+    count = settings.collection.environments
+    if count % learners_of(other):
+        problem = f"must be a multiple of the {learners_of(other)} robots that learn in an arena"
+        raise SettingsError(source, problem, "collection.environments")
+    sizes = [
+        make_rows(each, learners_of(each), settings.central).observation_size for each in (environment, other)
+    ]
+    if sizes[0] != sizes[1]:
+        problem = (
+            f"a robot sees {sizes[1]} entries there and {sizes[0]} in the run's environment; "
+            "mates and opponents say for how many robots there are places"
+        )
+        raise SettingsError(source, problem, place)
+
+
+def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) -> None:
+    """Raise unless the pool of a stage, if there is one, can play in the run's ``environment``."""
+    if not stage.pool.share and not stage.pool.scripted:
+        return
+    if not isinstance(environment, SoccerSettings) or not environment.two_alike:
+        raise SettingsError(source, "is for tasks whose two teams are of equal size and learn", "pool")
+    if stage.worlds:
+        raise SettingsError(source, "there is none with several worlds", "pool")
+    if stage.pool.every % stage.rebuild_every:
+        problem = f"must be a multiple of rebuild_every ({stage.rebuild_every})"
+        raise SettingsError(source, problem, "pool.every")
 
 
 def worlds_of(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
     """Return the settings of each world that the run trains in; without others, of the environment."""
     model, data = ENVIRONMENTS[settings.task], settings.environment
     return tuple(
-        _validated(model, _merged(data, changes), source, f"environment with worlds[{index}]")
+        _validated(model, merged(data, changes), source, f"environment with worlds[{index}]")
         for index, changes in enumerate(settings.worlds or ({},))
     )
 
@@ -264,39 +254,3 @@ def _validated(model: type[_M], data: dict[str, Any], source: str, group: str) -
         field, problem = first_problem(error, model, data)
         place = ".".join([part for part in (group, field) if part])
         raise SettingsError(source, problem, place) from error
-
-
-def _read(task: str, preset: str, seen: tuple[str, ...]) -> tuple[dict[str, Any], str]:
-    bundled = _folder(task) / f"{preset}.yaml"
-    path = bundled if bundled.is_file() else Path(preset)
-    if path is not bundled and path.suffix not in (".yaml", ".yml"):
-        known = presets(task)
-        if not known:
-            raise SettingsError("", f"no task is called {task!r}; there are {', '.join(ENVIRONMENTS)}")
-        raise SettingsError("", f"no preset of {task} is called {preset!r}; there are {', '.join(known)}")
-    data = read_yaml(path, SettingsError)
-    base = data.pop("extends", None)
-    if base is None:
-        return data, str(path)
-    if not isinstance(base, str) or base in seen:
-        raise SettingsError(str(path), "must name another preset", "extends")
-    return _merged(_read(task, base, (*seen, preset, base))[0], data), str(path)
-
-
-def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    result = dict(base)
-    for key, value in changes.items():
-        old = result.get(key)
-        result[key] = _merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
-    return result
-
-
-def _assign(data: dict[str, Any], path: list[str], value: object, name: str) -> None:
-    *groups, last = path
-    for group in groups:
-        inner = data.get(group, {})
-        if not isinstance(inner, dict):
-            raise SettingsError("", f"{group} holds a value, not settings", name)
-        data[group] = inner = dict(inner)
-        data = inner
-    data[last] = value

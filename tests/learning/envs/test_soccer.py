@@ -180,6 +180,15 @@ def test_a_ball_that_comes_rolls_near_by_who_is_to_take_it() -> None:
     assert fast.min() >= 1.5
 
 
+def test_either_team_may_hold_the_ball_at_the_start() -> None:
+    starts = {"held": 1.0, "holder": "either"}
+    made = SoccerTask(SUITE["Duel"].model_validate({"starts": starts}))
+    rows = made.sample_starts(4, 200)
+    away = np.hypot(rows[:, [0, 6]] - rows[:, [12]], rows[:, [1, 7]] - rows[:, [13]])
+    assert (away.min(1) < 0.12).all()
+    assert 60 < (away[:, 0] < 0.12).sum() < 140
+
+
 def test_to_hold_out_is_a_success_and_a_truncation() -> None:
     start = [*at(0, 0), *at(-3, 2), *in_mouth(0, 0)]
     made = playing(start, yellow=["still"], aim="keep", time_limit=10)

@@ -5,13 +5,13 @@ import pytest
 from robobt.config.yaml import parse_marked, write_yaml
 from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.training.compare import variants
+from robobt.learning.training.preset_files import presets
 from robobt.learning.training.settings import (
     ENVIRONMENTS,
     SettingsError,
     TrainSettings,
     environment_of,
     load_settings,
-    presets,
 )
 
 ALL = [(task, preset) for task in ENVIRONMENTS for preset in presets(task)]

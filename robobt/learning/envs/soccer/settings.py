@@ -33,8 +33,10 @@ class SoccerStarts(OrderedSettings):
     coming: float = Field(
         0.0, ge=0, le=1, description="share in which the ball rolls at blue's first field player, from afar"
     )
-    held: float = Field(0.0, ge=0, le=1, description="share that starts with the ball in blue's mouth")
-    holder: Literal["blue", "yellow"] = Field("blue", description="whose first field player holds it then")
+    held: float = Field(0.0, ge=0, le=1, description="share that starts with the ball in a mouth")
+    holder: Literal["blue", "yellow", "either"] = Field(
+        "blue", description="whose first field player holds it then"
+    )
     apart: float = Field(0.35, ge=0.2, le=2, description="least distance of any two, and of the ball [m]")
 
 
@@ -86,6 +88,11 @@ class SoccerSettings(TaskSettings):
     def learners(self) -> tuple[int, ...]:
         """Indices of the robots that learn."""
         return tuple(index for index, role in enumerate(self.roles) if role == LEARNER)
+
+    @property
+    def two_alike(self) -> bool:
+        """Whether two teams of equal size play, both with learners."""
+        return LEARNER in self.blue and LEARNER in self.yellow and len(self.blue) == len(self.yellow)
 
     @property
     def sides(self) -> tuple[int, int]:

@@ -68,14 +68,17 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
         speed = np.hypot(ball[:, 2], ball[:, 3]) / np.hypot(*way.T)
         ball[coming, 2:] = (way * speed[:, None])[coming]
     held = rng.random(count) < starts.held
-    first, last = (0, blue) if starts.holder == "blue" else (blue, total)
-    players = [index for index in range(first, last) if roles[index] != GOALKEEPER]
-    if players:
-        holder = robots[:, players[0]]
-        ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
-        front = np.column_stack((np.cos(holder[:, 2]), np.sin(holder[:, 2])))
-        ball[held, :2] = (holder[:, :2] + ahead * front)[held]
-        ball[held, 2:] = 0.0
+    by_blue = np.full(count, starts.holder == "blue")
+    if starts.holder == "either":
+        by_blue = rng.random(count) < 0.5
+    ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
+    for chosen, first, last in ((held & by_blue, 0, blue), (held & ~by_blue, blue, total)):
+        players = [index for index in range(first, last) if roles[index] != GOALKEEPER]
+        if players:
+            holder = robots[chosen, players[0]]
+            front = np.column_stack((np.cos(holder[:, 2]), np.sin(holder[:, 2])))
+            ball[chosen, :2] = holder[:, :2] + ahead * front
+            ball[chosen, 2:] = 0.0
     return rows
 
 

@@ -185,3 +185,9 @@ def scripted(settings: SoccerSettings) -> SoccerSettings:
     blue = tuple(own if role == LEARNER else role for role in settings.blue)
     yellow = tuple("attack" if role == LEARNER else role for role in settings.yellow)
     return settings.model_copy(update={"blue": blue, "yellow": yellow})
+
+
+def against(settings: SoccerSettings, role: Role) -> SoccerSettings:
+    """Return the ``settings`` with scripted robots of that ``role`` in the place of yellow's learners."""
+    yellow = tuple(role if own == LEARNER else own for own in settings.yellow)
+    return settings.model_copy(update={"yellow": yellow})

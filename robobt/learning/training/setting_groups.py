@@ -1,0 +1,136 @@
+"""Groups of a run's settings: replay, collection, evaluation, and who opposes the learners when."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from robobt.config.validation import Settings
+
+
+class PrioritySettings(Settings):
+    """Prioritised replay; off unless ``enabled``."""
+
+    enabled: bool = False
+    alpha: float = Field(0.3, ge=0, le=1, description="0 samples uniformly, 1 in proportion")
+    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights correct for it")
+    floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
+    dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the squared norm of dQ/da")
+
+
+class DemonstrationSettings(Settings):
+    """Demonstrations in the replay before the agent's own steps; none unless ``episodes`` > 0.
+
+    ``keep`` and a ``bonus`` make it DDPGfD; without them, in place of random
+    steps, it is the burn-in of Schwab, Zhu & Veloso (CMU).
+    """
+
+    episodes: int = Field(0, ge=0, le=100_000, description="how many to record or to take from the file")
+    file: str | None = Field(None, description="Parquet file; None records them with the scripted skill")
+    keep: bool = Field(False, description="never overwrite them")
+    bonus: float = Field(0.0, ge=0, le=100, description="added to their priorities")
+    updates: int = Field(0, ge=0, le=1_000_000, description="updates on them alone, before the first step")
+
+
+class ReplaySettings(Settings):
+    """The replay buffer and how it is sampled."""
+
+    capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
+    batch: int = Field(100, ge=1, le=100_000, description="transitions of an update")
+    priority: PrioritySettings = PrioritySettings()
+    demonstrations: DemonstrationSettings = DemonstrationSettings()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.demonstrations.bonus and not self.priority.enabled:
+            raise ValueError("demonstrations get a bonus only with priority.enabled")
+        return self
+
+
+class CollectionSettings(Settings):
+    """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
+
+    environments: int = Field(1, ge=1, le=4096, description="that run side by side, each learner counted")
+    random_steps: int = Field(10_000, ge=0, description="of uniformly random actions, to begin with")
+    update_after: int = Field(1_000, ge=0, description="steps before the first update")
+    update_every: int = Field(50, ge=1, description="steps between rounds of updates")
+    updates: int = Field(50, ge=1, description="updates a round")
+    noise: float = Field(0.1, ge=0, le=2, description="standard deviation of the noise on actions")
+    last_noise: float | None = Field(
+        None,
+        ge=0,
+        le=2,
+        description="that of the last environment; those between are evenly spaced; None for the same",
+    )
+
+
+class EvaluationSettings(Settings):
+    """How progress is evaluated: by success and time, never by the return.
+
+    A slow policy near the ball collects more reward than a fast one.
+    """
+
+    every: int = Field(20_000, ge=1, description="steps between evaluations")
+    starts: int = Field(300, ge=1, le=100_000, description="fixed validation starts of each evaluation")
+    held_out: int = Field(
+        1_000, ge=1, le=100_000, description="fixed starts that the best actor is evaluated on"
+    )
+    environment: dict[str, Any] = Field(
+        default_factory=dict,
+        description="changes to the environment for all evaluations, such as an opponent who stays the same",
+    )
+    held_out_environment: dict[str, Any] = Field(
+        default_factory=dict,
+        description="further ones for the held-out starts, such as opponents never met",
+    )
+    target_actor: bool = Field(
+        False, description="evaluate and ship the slow actor instead of the online one"
+    )
+    stop_success: float | None = Field(
+        None, ge=0, le=1, description="stop once this share of the starts succeeds and ..."
+    )
+    stop_time: float | None = Field(
+        None,
+        gt=0,
+        description="... the mean time, over the optimum where there is one, else in s, is no more",
+    )
+    stop_after: int = Field(1, ge=1, le=100, description="so often running")
+
+
+Script = Literal["still", "press", "mark", "wall", "attack", "pass", "redirect"]
+"""A field player of :data:`robobt.learning.opponents.field_players.PLAYERS`."""
+
+
+class PoolSettings(Settings):
+    """Who plays yellow's learners in a share of the arenas, where blue's alone learn; elsewhere all learn.
+
+    For tasks with learners on both teams. Past selves are copies of the policy that learn no more and act
+    without noise; each of the pool plays in as many arenas as any other.
+    """
+
+    size: int = Field(8, ge=1, le=64, description="past selves, the newest")
+    every: int = Field(307_200, ge=1, description="steps between them, a multiple of rebuild_every")
+    share: float = Field(0.0, ge=0, le=1, description="of the learners that play against them")
+    scripts: tuple[Script, ...] = Field(
+        (), max_length=7, description="scripted field players in the places of yellow's learners"
+    )
+    scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.share + self.scripted > 1.0:
+            raise ValueError("share and scripted are more than 1 together")
+        if bool(self.scripts) != bool(self.scripted):
+            raise ValueError("scripts and their share, scripted, are given together")
+        return self
+
+
+class StageSettings(Settings):
+    """A part of the steps in which the policy learns something else first."""
+
+    share: float = Field(gt=0, le=1, description="of the run's steps, beside the other stages'")
+    environment: dict[str, Any] = Field(
+        default_factory=dict, description="changes to the environment; evaluations stay in the run's own"
+    )
+    pool: dict[str, Any] = Field(default_factory=dict, description="changes to the pool")
