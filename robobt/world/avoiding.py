@@ -2,102 +2,109 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
+from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compilable, compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.observation import ObservationSpec, kinematics, motion, observation_spec
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
-PLACES = 6
-"""How many other robots are observed, the nearest first."""
+SPEED = 1.5
+"""Speed of the ways that are thought of [m/s]; the slow ones are half as fast."""
 
-FAR = 3.0
-"""Robots and gaps farther than this are observed as so far [m]."""
+WAYS, SLOW_WAYS = 16, 8
+"""How many directions are thought of at full and at half speed, evenly round, the first to the ball."""
 
 AHEAD = 2.0
-"""How far ahead a closest approach is looked for [s]."""
+"""How far ahead a way is looked along [s]."""
 
-_OWN, _EACH = 6, 6
+MARGIN = 0.08
+"""Hulls nearer than this are in each other's way [m]."""
+
+LAG = 0.15
+"""What it takes to get from one velocity to another [s], half of which is driven as before."""
+
+FIRST_WAY = 6
+"""Where they begin in an observation."""
 
 GO_TO_BALL_AMONG_ROBOTS: ObservationSpec = observation_spec(
     "go_to_ball_among_robots",
-    1,
+    2,
     **dict.fromkeys(("ball_x", "ball_y"), "m"),
     ball_distance="m",
     **dict.fromkeys(("vx", "vy"), "m/s"),
     omega="rad/s",
-    **{
-        f"robot_{number}_{entry}": unit
-        for number in range(PLACES)
-        for entry, unit in (
-            ("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s"), ("closest", "m"), ("closest_in", "s")
-        )
-    },
-)  # fmt: skip
-"""The ball, the robot's velocity and the nearest other robots, in the robot's frame.
+    **{f"free_{way * 360 // WAYS}": "s" for way in range(WAYS)},
+    **{f"slow_{way * 360 // SLOW_WAYS}": "s" for way in range(SLOW_WAYS)},
+    standing="s",
+)
+"""The ball, the robot's velocity, and for how long ways round about are free.
 
-``ball_x`` and ``ball_y`` are the direction to the ball, of length 1. Another robot's velocity is that
-relative to the robot. ``closest`` is the gap between the two hulls at their closest approach within
-:data:`AHEAD` if both go on as they do, negative where they would meet; ``closest_in`` is the time until then.
-Places without a robot hold one :data:`FAR` behind.
+``ball_x`` and ``ball_y`` are the direction to the ball in the robot's frame, of length 1. ``free_A`` is for
+how long the robot can drive at :data:`SPEED` in the direction A degrees to the left of the ball's until it
+and another are nearer than :data:`MARGIN`, if the others go on as they do: at most :data:`AHEAD`, 0 where
+they are that near and get nearer. ``slow_A`` is the same at half that speed, ``standing`` at none: the
+velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
 """
+
+
+@compilable
+def _free(ox: float, oy: float, wx: float, wy: float) -> float:
+    """Return when one at (ox, oy) that drives with (wx, wy), both relative, is in the way."""
+    reach = 2.0 * ROBOT_RADIUS + MARGIN
+    closing = ox * wx + oy * wy
+    if closing >= 0.0:
+        return AHEAD
+    beyond = ox * ox + oy * oy - reach * reach
+    if beyond <= 0.0:
+        return 0.0
+    squared = wx * wx + wy * wy
+    meets = closing * closing - squared * beyond
+    return min((-closing - sqrt(meets)) / squared, AHEAD) if meets > 0.0 else AHEAD
 
 
 @compiled
 def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
-    """Compute the states :data:`GO_TO_BALL_AMONG_ROBOTS` of many arenas, (n, 42).
+    """Compute the states :data:`GO_TO_BALL_AMONG_ROBOTS` of many arenas, (n, 31).
 
     Args:
         robots: (n, R, 6) x, y, heading, vx, vy, omega in field coordinates; the first is who observes.
         balls: (n, 4) x, y, vx, vy.
     """
-    rows = np.empty((len(robots), _OWN + _EACH * PLACES))
+    rows = np.empty((len(robots), FIRST_WAY + WAYS + SLOW_WAYS + 1))
     for i in range(len(robots)):
         me, row = robots[i, 0], rows[i]
         c, s = cos(me[2]), sin(me[2])
         dx, dy = balls[i, 0] - me[0], balls[i, 1] - me[1]
         distance = hypot(dx, dy)
         # A ball at the robot's very centre counts as straight ahead. NaN has to stay NaN.
-        row[0], row[1] = 1.0, 0.0
+        ux, uy = c, s
         if distance != 0.0:
-            row[0], row[1] = (c * dx + s * dy) / distance, (c * dy - s * dx) / distance
-        row[2] = distance
+            ux, uy = dx / distance, dy / distance
+        row[0], row[1], row[2] = c * ux + s * uy, c * uy - s * ux, distance
         row[3], row[4], row[5] = c * me[3] + s * me[4], c * me[4] - s * me[3], me[5]
-        places = row[_OWN:].reshape(PLACES, _EACH)
-        for k in range(PLACES):
-            places[k, 0], places[k, 1], places[k, 2], places[k, 3] = -FAR, 0.0, 0.0, 0.0
-            places[k, 4], places[k, 5] = FAR, AHEAD
-        away = np.full(PLACES, np.inf)
-        for other in range(1, robots.shape[1]):
-            it = robots[i, other]
-            ox, oy, wx, wy = it[0] - me[0], it[1] - me[1], it[3] - me[3], it[4] - me[4]
-            far = hypot(ox, oy)
-            # Insert it behind those that are as near, and move the farther ones on.
-            place = PLACES
-            while place > 0 and far < away[place - 1]:
-                place -= 1
-                if place + 1 < PLACES:
-                    away[place + 1] = away[place]
-                    places[place + 1] = places[place]
-            if place == PLACES:
-                continue
-            away[place] = far
-            squared = wx * wx + wy * wy
-            time = min(max(-(ox * wx + oy * wy) / squared, 0.0), AHEAD) if squared > 1e-9 else 0.0
-            gap = hypot(ox + wx * time, oy + wy * time) - 2.0 * ROBOT_RADIUS
-            scale = FAR / far if far > FAR else 1.0
-            places[place, 0] = scale * (c * ox + s * oy)
-            places[place, 1] = scale * (c * oy - s * ox)
-            places[place, 2], places[place, 3] = c * wx + s * wy, c * wy - s * wx
-            places[place, 4], places[place, 5] = min(gap, FAR), time
+        for way in range(WAYS + SLOW_WAYS + 1):
+            speed, angle = 0.0, 0.0
+            if way < WAYS:
+                speed, angle = SPEED, 2.0 * pi * way / WAYS
+            elif way < WAYS + SLOW_WAYS:
+                speed, angle = 0.5 * SPEED, 2.0 * pi * (way - WAYS) / SLOW_WAYS
+            ahead, aside = speed * cos(angle), speed * sin(angle)
+            vx, vy = ux * ahead - uy * aside, uy * ahead + ux * aside
+            free = AHEAD
+            for other in range(1, robots.shape[1]):
+                it = robots[i, other]
+                ox = it[0] - me[0] + 0.5 * LAG * (vx - me[3])
+                oy = it[1] - me[1] + 0.5 * LAG * (vy - me[4])
+                free = min(free, _free(ox, oy, it[3] - vx, it[4] - vy))
+            row[FIRST_WAY + way] = free
     return rows
 
 
 def among_robots_of(frame: Frame, robot: RobotState) -> FloatArray:
-    """Compute the state :data:`GO_TO_BALL_AMONG_ROBOTS` of one robot in a frame, (42,)."""
+    """Compute the state :data:`GO_TO_BALL_AMONG_ROBOTS` of one robot in a frame, (31,)."""
     others = [*(mate for mate in frame.own if mate.id != robot.id), *frame.opponents]
     robots = np.array([kinematics(one) for one in (robot, *others)])
     row: FloatArray = among_robots_rows(robots[None], np.array([motion(frame)]))[0]

@@ -6,6 +6,7 @@ import numpy as np
 
 from robobt.learning.envs.task import FloatArray
 from robobt.models.actions import SCORE_ACTION, SHOOT_ACTION, ActionScaling
+from robobt.world.avoiding import FIRST_WAY, SLOW_WAYS, SPEED, WAYS
 from robobt.world.geometry import wrap_angles
 from robobt.world.team_view import BALL
 
@@ -40,6 +41,10 @@ _AIMED = 0.05
 """How far off it kicks [rad]."""
 
 
+_LOOK_AHEAD = 1.5
+"""For how long a way has to be free [s]."""
+
+
 def straight_drive(observation: FloatArray) -> FloatArray:
     """Drive at the ball at full speed, whatever the heading, (n, 6) -> (n, 3): the fastest Go-To-Ball."""
     actions = np.zeros((len(observation), 3))
@@ -49,8 +54,27 @@ def straight_drive(observation: FloatArray) -> FloatArray:
 
 
 def straight_drive_among(observation: FloatArray) -> FloatArray:
-    """Do the same among others, looking at none of them, (n, 42) -> (n, 3)."""
+    """Do the same among others, looking at none of them, (n, 31) -> (n, 3)."""
     return np.column_stack((observation[:, :2], np.zeros(len(observation))))
+
+
+def freest_way(observation: FloatArray) -> FloatArray:
+    """Drive the way that leads to the ball best of those that stay free until it is there, (n, 31) -> (n, 3).
+
+    A way costs what it lacks in speed to the ball, and more the sooner it is not free any more.
+    """
+    fast, slow = (2.0 * np.pi * np.arange(count) / count for count in (WAYS, SLOW_WAYS))
+    ahead = np.concatenate((np.cos(fast), 0.5 * np.cos(slow), [0.0]))
+    aside = np.concatenate((np.sin(fast), 0.5 * np.sin(slow), [0.0]))
+    needed = np.minimum(_LOOK_AHEAD, observation[:, 2] / SPEED)[:, None]
+    free = np.maximum(observation[:, FIRST_WAY:], 0.05)
+    c, s = observation[:, 0, None], observation[:, 1, None]
+    x, y = c * ahead - s * aside, s * ahead + c * aside
+    changed = np.hypot(x - observation[:, 3, None] / SPEED, y - observation[:, 4, None] / SPEED)
+    cost = -ahead + np.maximum(1.0 / free - 1.0 / needed, 0.0) / SPEED + 0.05 * changed
+    best = cost.argmin(axis=1)[:, None]
+    way = np.take_along_axis(x, best, 1), np.take_along_axis(y, best, 1)
+    return np.column_stack((*way, np.zeros(len(observation))))
 
 
 def crowd(observation: FloatArray, learners: int) -> FloatArray:

@@ -32,7 +32,7 @@ from robobt.learning.training.settings import (
     validated_on,
     worlds_of,
 )
-from robobt.world.avoiding import PLACES
+from robobt.world.avoiding import SLOW_WAYS, WAYS
 
 Split = Literal["validation", "held_out"]
 """Fixed starts of evaluations: those that choose the actor, or those that its figures come from."""
@@ -115,8 +115,7 @@ def problem_of(
         if environment.to_shoot:
             scale += (1.0, 1.0)
         if environment.others.count:
-            # What is near and about to be met counts more than the rest.
-            scale += (1.0, 1.0, speed, speed, 0.5, 1.0) * PLACES
+            scale += (1.0,) * (WAYS + SLOW_WAYS + 1)
     elif isinstance(environment, ShootSettings):
         # What matters is a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
         scale = (0.1, 0.1, 1.0, 1.0, turn, 3.0, 1.0, 1.0, 1.0, 1.0)

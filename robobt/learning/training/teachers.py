@@ -16,8 +16,8 @@ from robobt.learning.envs import ArenaTask, GoToBallSettings, GoToBallTask, Shoo
 from robobt.learning.envs.scripted import (
     AIM_GAIN,
     drive_to_shoot,
+    freest_way,
     straight_drive,
-    straight_drive_among,
     turn_and_kick,
 )
 from robobt.learning.envs.task import FloatArray, IntArray
@@ -127,7 +127,7 @@ def script(task: ArenaTask) -> Teacher:
     if isinstance(task.settings, GoToBallSettings) and task.settings.to_shoot:
         return _Script(lambda observation: drive_to_shoot(observation, task.action.max_turn))
     if task.observation is GO_TO_BALL_AMONG_ROBOTS:
-        return _Script(straight_drive_among)
+        return _Script(freest_way)
     _refuse_opponents(task)
     return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
 

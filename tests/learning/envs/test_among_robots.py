@@ -8,11 +8,21 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import GoToBallAmongRobotsSettings, GoToBallTask, run_starts
-from robobt.learning.envs.scripted import straight_drive_among
+from robobt.learning.envs.scripted import freest_way, straight_drive_among
 from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.learning.training.teachers import playing, skill
 from robobt.world import BallState, Frame, RobotState
-from robobt.world.avoiding import AHEAD, FAR, PLACES, among_robots_of, among_robots_rows
+from robobt.world.avoiding import (
+    AHEAD,
+    FIRST_WAY,
+    LAG,
+    MARGIN,
+    SLOW_WAYS,
+    SPEED,
+    WAYS,
+    among_robots_of,
+    among_robots_rows,
+)
 from robobt.world.field import DIVISION_B
 from robobt.world.limits import RobotLimits
 
@@ -109,23 +119,35 @@ def test_a_patrol_goes_to_and_fro_and_turns_round_where_it_is_held_up() -> None:
     assert ahead[-1] == pytest.approx(-1.0)
 
 
-def test_the_closest_approach_is_the_closest_of_both_going_on() -> None:
+def test_a_way_is_free_until_two_that_go_on_come_near() -> None:
     rng = np.random.default_rng(4)
-    robots = rng.uniform(-2.0, 2.0, (50, 8, 6))
-    row = among_robots_rows(robots, rng.uniform(-3, 3, (50, 4)))
-    places = row[:, 6:].reshape(50, PLACES, 6)
-    times = np.linspace(0.0, AHEAD, 4001)
-    for i in range(50):
-        away = robots[i, 1:, :2] - robots[i, 0, :2]
-        nearest = np.argsort(np.hypot(*away.T))[:PLACES]
-        for k, other in enumerate(nearest):
-            against = robots[i, 1 + other, 3:5] - robots[i, 0, 3:5]
-            gaps = np.hypot(*(away[other] + times[:, None] * against).T) - 0.18
-            assert places[i, k, 4] == pytest.approx(min(gaps.min(), FAR), abs=1e-3)
-            assert np.hypot(*places[i, k, :2]) == pytest.approx(min(np.hypot(*away[other]), FAR))
-            assert np.hypot(*places[i, k, 2:4]) == pytest.approx(np.hypot(*against))
-            if gaps.min() < FAR:
-                assert gaps[np.abs(times - places[i, k, 5]).argmin()] == pytest.approx(gaps.min(), abs=1e-3)
+    robots = rng.uniform(-2.0, 2.0, (50, 4, 6))
+    ball = rng.uniform(-3, 3, (50, 4))
+    free = among_robots_rows(robots, ball)[:, FIRST_WAY:]
+    times = np.linspace(0.0, AHEAD, 2001)
+    to_ball = np.arctan2(ball[:, 1] - robots[:, 0, 1], ball[:, 0] - robots[:, 0, 0])
+    for way in range(WAYS + SLOW_WAYS + 1):
+        speed, angle = 0.0, 0.0
+        if way < WAYS:
+            speed, angle = SPEED, 2 * np.pi * way / WAYS
+        elif way < WAYS + SLOW_WAYS:
+            speed, angle = SPEED / 2, 2 * np.pi * (way - WAYS) / SLOW_WAYS
+        velocity = speed * np.column_stack((np.cos(to_ball + angle), np.sin(to_ball + angle)))
+        # Half the lag is driven as before.
+        begins = robots[:, 0, :2] + LAG / 2 * (robots[:, 0, 3:5] - velocity)
+        away = robots[:, 1:, :2] - begins[:, None]
+        against = robots[:, 1:, 3:5] - velocity[:, None]
+        gaps = np.linalg.norm(away[:, :, None] + times[:, None] * against[:, :, None], axis=-1) - 0.18
+        closing = (away * against).sum(-1) < 0.0
+        near = (gaps < MARGIN) & closing[..., None]
+        expected = np.where(near.any(-1), times[near.argmax(-1)], AHEAD).min(-1)
+        np.testing.assert_allclose(free[:, way], expected, atol=2e-3)
+
+
+def test_the_freest_way_touches_hardly_anybody() -> None:
+    made = task(30)
+    episodes = run_starts(made, freest_way, made.sample_starts(6, 60))
+    assert episodes.success.sum() >= 58
 
 
 def test_it_is_seen_likewise_in_a_match() -> None:
@@ -138,8 +160,8 @@ def test_it_is_seen_likewise_in_a_match() -> None:
     np.testing.assert_array_equal(
         among_robots_of(frame, own[1]), among_robots_rows(order[None], ball[None])[0]
     )
-    # What nobody fills is a robot far behind.
-    np.testing.assert_array_equal(among_robots_of(frame, own[1])[-6:], [-FAR, 0, 0, 0, FAR, AHEAD])
+    alone = Frame(0.0, DIVISION_B, BallState(*ball.tolist()), own[1:], ())
+    np.testing.assert_array_equal(among_robots_of(alone, own[1])[FIRST_WAY:], AHEAD)
 
 
 @pytest.mark.integration

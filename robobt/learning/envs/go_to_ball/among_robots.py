@@ -34,12 +34,11 @@ class GoToBallAmongRobotsEnv(SingleEnv):
     | 0, 1 | direction to the ball, of length 1 | 1 | [-1, 1] |
     | 2 | distance of the centres of robot and ball | m | [0, diagonal inside the walls] |
     | 3, 4, 5 | the robot's velocity and turning rate | m/s, rad/s | as for Go-To-Ball |
-    | 6 + 6 k, 7 + 6 k | position of the other robot that is k-th nearest, k = 0 to 5, at most 3 m away | m | [-3, 3] |
-    | 8 + 6 k, 9 + 6 k | its velocity relative to the robot | m/s | both top speeds, either way |
-    | 10 + 6 k | gap of the hulls at their closest approach in the next 2 s, if both go on so | m | [-0.18, 3] |
-    | 11 + 6 k | time until then | s | [0, 2] |
+    | 6 to 21 | for how long 16 ways at 1.5 m/s stay free of others, evenly round, the first to the ball | s | [0, 2] |
+    | 22 to 29 | the same for 8 ways at 0.75 m/s | s | [0, 2] |
+    | 30 | the same for standing | s | [0, 2] |
 
-    A place without a robot holds (-3, 0, 0, 0, 3, 2).
+    A way is free until the robot and another, if that goes on as it does, are nearer than 0.08 m hull to hull.
 
     **Action**: as for Go-To-Ball, at most 1.5 m/s and 1.395 rad/s.
 

@@ -9,7 +9,7 @@ from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, see
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask
 from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
-from robobt.world.avoiding import AHEAD, FAR, PLACES
+from robobt.world.avoiding import AHEAD, SLOW_WAYS, WAYS
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -25,16 +25,12 @@ def go_to_ball_space(settings: GoToBallSettings) -> Box[np.float32]:
     # Sliding along a wall turns a robot, at most until it rolls along it.
     turn += speed / ROBOT_RADIUS
     seen = seen_speed(settings, speed, settings.noise.robot_position)
-    if settings.others.count:
-        theirs = seen_speed(
-            settings, settings.simulator.limits.max_speed + BUMP, settings.noise.robot_position
-        )
-        each = [FAR, FAR, seen + theirs, seen + theirs, FAR, AHEAD]
-        own = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
-        return bounded([*own, *each * PLACES], distances=(2,))
     high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
     if settings.to_shoot:
         high += [1.0, 1.0]
+    if settings.others.count:
+        ways = [AHEAD] * (WAYS + SLOW_WAYS + 1)
+        return bounded([*high, *ways], distances=(2, *range(len(high), len(high) + len(ways))))
     return bounded(high, distances=(2,))
 
 
