@@ -33,7 +33,16 @@ from robobt.tournament.entrants import EntrantFile, read_entrant
 from robobt.tournament.plan import Plan
 from robobt.tree import Selector, Status, TreeRunner
 from robobt.tree.devtools.substitution import substitutions
-from tests.models.made_models import Passing, Straight, score_card, write_model
+from tests.models.made_models import (
+    Onward,
+    Passing,
+    Straight,
+    among_robots_card,
+    network,
+    score_card,
+    team_card,
+    write_model,
+)
 from tests.registries import temporarily
 from tests.shots.made_up import made_up_table
 
@@ -100,6 +109,9 @@ def a_runner() -> Mapping[str, object]:
 
 def models() -> Mapping[str, object]:
     write_model(Path("models"), Passing(), score_card("score"))
+    for skill, name in (("Duel", "duel"), ("Goalkeeper", "save")):
+        write_model(Path("models"), network(23, 4), team_card(skill, 0, 1, name=name))
+    write_model(Path("models"), Onward(), among_robots_card(name="way"))
     return {"module": Straight()}
 
 

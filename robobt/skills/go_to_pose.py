@@ -7,9 +7,12 @@ from math import hypot, radians
 
 from robobt.motion.path_planner import BALL_GAP, allowed_target, travel
 from robobt.motion.pilot import roughly
+from robobt.skills.ball.learned_control import PolicyError
 from robobt.skills.base import KICKER_GAP, skill
 from robobt.skills.driving import DrivingSkill
+from robobt.skills.learned_way import LearnedWay
 from robobt.tree import Status
+from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, direction, wrap_angle
 
 _SLACK = 0.9
@@ -26,6 +29,10 @@ class GoToPose(DrivingSkill):
     the walls, in a defence area, too near the ball during a stop) is replaced by
     the nearest point where it may. Fails without a target.
 
+    With a policy it is a trained one that drives while the ball is in play, as fast and with the heading that
+    it likes; the last half metre, and the way round defence areas, is the planner's. When its answer is not a
+    valid action, the skill fails and the robot stops.
+
     Args:
         target: where to [m]; None takes ``store.target``.
         heading: where the mouth is to point [rad]; None keeps the present heading.
@@ -36,6 +43,11 @@ class GoToPose(DrivingSkill):
         speed: factor on the top speed.
         avoid_robots, avoid_ball: what must not be touched on the way.
         goalkeeper: may enter the own defence area.
+        policy: name or file of a model for GoToBall that sees the robots in its way
+            (``robobt train go_to_ball_among_robots``); empty for the planner alone.
+
+    Raises:
+        ModelError: the model cannot be used; the message names the file and the reason.
     """
 
     reads = ("target",)
@@ -48,11 +60,18 @@ class GoToPose(DrivingSkill):
     avoid_robots: bool = True
     avoid_ball: bool = False
     goalkeeper: bool = False
+    policy: str = ""
     _kept_heading: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._learned = LearnedWay(self.policy) if self.policy else None
 
     def on_start(self) -> None:
         """Remember the heading to keep."""
         self._kept_heading = self.me.heading
+        if self._learned is not None:
+            self._learned.restart()
 
     def on_running(self) -> Status:
         """Drive one tick."""
@@ -60,6 +79,24 @@ class GoToPose(DrivingSkill):
         if target is None:
             return self.fail("no target")
         me, frame = self.me, self.frame
+        if self._learned is not None and self.avoid_robots:
+            try:
+                command = self._learned.command(
+                    frame,
+                    me,
+                    target,
+                    self.drive_limits,
+                    self.draw,
+                    avoid_ball=self.avoid_ball or self.has_kicked,
+                    ball_gap=KICKER_GAP if self.has_kicked else BALL_GAP,
+                    goalkeeper=self.goalkeeper,
+                )
+            except PolicyError as error:
+                self.store.command = RobotCommand()
+                return self.fail(str(error))
+            if command is not None:
+                self.store.command = command
+                return self.run("driving as learned")
         heading = self._heading()
         self.store.command = travel(
             frame,

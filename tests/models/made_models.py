@@ -19,6 +19,7 @@ from robobt.models.card import ModelCard, ObservationCard, OutputEntry, action_o
 from robobt.models.export import export_model
 from robobt.models.file import Format, pack_archive, pack_onnx, payload_of, unpack_archive
 from robobt.models.policy import load_policy
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.features import GO_TO_BALL, SHOOT
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.team_view import team_view
@@ -59,7 +60,12 @@ def score_card(name: str = "small_score", **changes: Any) -> ModelCard:
 
 def team_card(skill: str, mates: int, opponents: int, **changes: Any) -> ModelCard:
     fields = {"skill": skill, "observation": ObservationCard.of(team_view(mates, opponents)), "period": 0.06}
-    return score_card("small_team", **(fields | changes))
+    return score_card(**({"name": "small_team"} | fields | changes))
+
+
+def among_robots_card(**changes: Any) -> ModelCard:
+    fields = {"observation": ObservationCard.of(GO_TO_BALL_AMONG_ROBOTS), "period": 0.06}
+    return go_to_ball_card(**({"name": "small_way"} | fields | changes))
 
 
 def predictor_card(name: str = "predictor") -> ModelCard:
@@ -88,6 +94,13 @@ class Straight(nn.Module):
     def forward(self, observation: Tensor) -> Tensor:
         sine, cosine = observation[:, 0:1], observation[:, 1:2]
         return torch.clamp(torch.cat([cosine, sine, 2.0 * sine], 1), -1.0, 1.0)
+
+
+class Onward(nn.Module):
+    """Drives at the ball, whoever is in the way, and turns the other way round."""
+
+    def forward(self, observation: Tensor) -> Tensor:
+        return torch.clamp(torch.cat([observation[:, :2], -observation[:, 1:2]], 1), -1.0, 1.0)
 
 
 class Aimed(nn.Module):

@@ -1,14 +1,33 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot, pi
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings
+from robobt.learning.envs.go_to_ball.task import GoToBallTask
+from robobt.models.file import ModelError
+from robobt.models.policy import load_policy
 from robobt.skills import GoToPose
 from robobt.tree import Status
-from robobt.world import Frame, GameState, RefereeCommand, RobotLimits
-from robobt.world.rules import in_their_defense_area
+from robobt.world import (
+    DIVISION_B,
+    BallState,
+    Frame,
+    GameState,
+    RefereeCommand,
+    RobotCommand,
+    RobotLimits,
+    RobotState,
+)
+from robobt.world.avoiding import among_robots_of
+from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from tests.models.made_models import Faulty, Onward, among_robots_card, network, write_model
 from tests.simulation import Trial, always, blue, eventually, inside_the_field, never, yellow
 from tests.skills.fixed_world import Alone, frame, moved, robot
 
@@ -118,3 +137,67 @@ def test_who_took_a_restart_goes_round_its_ball(kicker: int) -> None:
         gaps.append(hypot(me.x, me.y) - ROBOT_RADIUS - BALL_RADIUS)
     assert me.x > 0.9
     assert (min(gaps) > 0.05) is (kicker == 1)
+
+
+def learned(folder: Path, **given: Any) -> GoToPose:
+    return GoToPose(policy=str(write_model(folder, Onward(), among_robots_card())), **given)
+
+
+def test_a_policy_drives_to_the_place_as_it_does_to_the_ball_in_training(tmp_path: Path) -> None:
+    inside = {"robot_x": (-2, 2), "robot_y": (-2, 2), "ball_x": (-2, 2), "ball_y": (-2, 2)}
+    task = GoToBallTask(GoToBallAmongRobotsSettings(starts={"distance": (2.5, 9.0), **inside}), 1, seed=2)
+    model = write_model(tmp_path, network(42, 3), among_robots_card())
+    policy, alone = load_policy(model), Alone(GoToPose(policy=str(model)))
+    seen = task.reset()
+    for decision in range(8):
+        me, *others = (RobotState(k, *row) for k, row in enumerate(task.arenas.robots[0].tolist()))
+        ball = task.arenas.balls[0].tolist()
+        alone.store.target = (ball[0], ball[1])
+        elsewhere = Frame(
+            0.06 * decision, DIVISION_B, BallState(-3.0, 2.5), (me,), tuple(others), period=0.03
+        )
+        alone.tick(elsewhere)
+        assert alone.tree.feedback_message == "driving as learned"
+        at_place = replace(elsewhere, ball=BallState(*ball[:2]))
+        np.testing.assert_array_equal(among_robots_of(at_place, me), seen[0])
+        seen = task.advance(policy(seen)).observation
+        told = alone.command
+        assert (told.vx, told.vy, told.omega) == pytest.approx(task._commands[0, 0, :3].tolist(), abs=1e-5)
+
+
+def test_where_a_policy_drives_the_robot_stands_as_it_is_to_in_the_end(tmp_path: Path) -> None:
+    go = learned(tmp_path, target=(1.5, 1.0), heading=2.0)
+    trial = Trial({blue(0): go}, {blue(0): (-2.0, 0.0, 0.0)}, ball=(3.0, -2.0), period=0.03)
+    trial.run(6.0, eventually("it is there", lambda _: go.status is Status.SUCCESS))
+
+
+def test_a_policy_is_led_round_the_defence_area(tmp_path: Path) -> None:
+    go = learned(tmp_path, target=(-4.2, -1.8))
+    trial = Trial({blue(0): go}, {blue(0): (-4.2, 1.8, 0.0)}, ball=(3.0, -2.0), period=0.03)
+    trial.run(
+        9.0,
+        eventually("it is there", lambda _: go.status is Status.SUCCESS),
+        never("in the area", lambda seen: in_own_defense_area(seen.field, *seen.own[0].position)),
+    )
+
+
+def test_a_policy_drives_only_while_the_ball_is_in_play(tmp_path: Path) -> None:
+    stopped = frame(robot(), ball=(0.0, 2.0), game=GameState(RefereeCommand.STOP))
+    alone, by_hand = Alone(learned(tmp_path, target=(3.0, 0.0))), Alone(GoToPose(target=(3.0, 0.0)))
+    alone.tick(stopped)
+    by_hand.tick(stopped)
+    assert alone.command == by_hand.command
+    alone.tick(frame(robot(), ball=(0.0, 2.0)))
+    assert alone.tree.feedback_message == "driving as learned"
+
+
+def test_a_policy_that_answers_nonsense_fails_it_and_stops_the_robot(tmp_path: Path) -> None:
+    model = write_model(tmp_path, Faulty("nan", far=3.0), among_robots_card(), probed=False)
+    alone = Alone(GoToPose(policy=str(model)), target=(4.0, 0.0))
+    assert alone.tick(frame(robot())) is Status.FAILURE
+    assert alone.command == RobotCommand()
+
+
+def test_a_policy_has_to_see_robots(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="takes the observation 'go_to_ball', not 'go_to_ball_among_robots'"):
+        GoToPose(policy=str(write_model(tmp_path, network())))

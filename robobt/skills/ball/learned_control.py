@@ -20,6 +20,7 @@ from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
     SHOOT,
+    ObservationSpec,
     find_observation,
     go_to_ball_of,
     go_to_ball_to_shoot_of,
@@ -59,6 +60,7 @@ class LearnedControl:
     Args:
         model: name of a shipped model, or the path of a model file.
         skill: the skill the model has to be made for; None for any.
+        observation: the observation it has to take; None for any.
 
     Attributes:
         card: the model's own description.
@@ -67,8 +69,10 @@ class LearnedControl:
         ModelError: the model cannot be used.
     """
 
-    def __init__(self, model: str | Path, skill: str | None = None) -> None:
-        policy = load_policy(model, skill=skill)
+    def __init__(
+        self, model: str | Path, skill: str | None = None, observation: ObservationSpec | None = None
+    ) -> None:
+        policy = load_policy(model, skill=skill, observation=observation)
         self.card = policy.card
         if self.card.kind != "policy" or self.card.action is None:
             raise ModelError(f"{policy.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
@@ -115,13 +119,16 @@ class PacedControl:
     Args:
         model: as for :class:`LearnedControl`.
         skill: as for :class:`LearnedControl`.
+        observation: as for :class:`LearnedControl`.
 
     Raises:
         ModelError: the model cannot be used.
     """
 
-    def __init__(self, model: str | Path, skill: str | None = None) -> None:
-        self._control = LearnedControl(model, skill)
+    def __init__(
+        self, model: str | Path, skill: str | None = None, observation: ObservationSpec | None = None
+    ) -> None:
+        self._control = LearnedControl(model, skill, observation)
         self._decided = -inf
         self._command = RobotCommand()
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from robobt.skills.ball.learned_control import PolicyError
 from robobt.skills.base import Skill, skill
+from robobt.skills.learned_way import LearnedWay
 from robobt.skills.tactics.agree import agree
 from robobt.tree import Status
+from robobt.world.command import RobotCommand
 
 _FACING = 0.5
 """How far off the ball it looks at most: a pass takes longer than to turn by that [rad]."""
@@ -12,10 +15,31 @@ _FACING = 0.5
 
 @skill
 class TakePlace(Skill):
-    """Drive to the place in the team's plan, facing the ball. FAILURE without one; never ends by itself."""
+    """Drive to the place in the team's plan, facing the ball. FAILURE without one; never ends by itself.
+
+    With a policy it is a trained one that drives while the ball is in play, as in :class:`GoToPose`.
+
+    Args:
+        policy: name or file of a model for GoToBall that sees the robots in its way
+            (``robobt train go_to_ball_among_robots``); empty for the planner alone.
+
+    Raises:
+        ModelError: the model cannot be used; the message names the file and the reason.
+    """
 
     reads = ("team",)
     writes = ("team",)
+
+    policy: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._learned = LearnedWay(self.policy) if self.policy else None
+
+    def on_start(self) -> None:
+        """Forget what was decided last."""
+        if self._learned is not None:
+            self._learned.restart()
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
@@ -23,6 +47,17 @@ class TakePlace(Skill):
         place = agree(frame, self.store.team).places.get(self.me.id)
         if place is None:
             return self.fail("no place")
+        if self._learned is not None:
+            try:
+                command = self._learned.command(
+                    frame, self.me, place, self.drive_limits, self.draw, avoid_ball=True
+                )
+            except PolicyError as error:
+                self.store.command = RobotCommand()
+                return self.fail(str(error))
+            if command is not None:
+                self.store.command = command
+                return self.run("to its place as learned")
         self.drive_to(
             place, frame.ball.position, avoid_ball=True, thereabouts=True, slack=_FACING, spare_mates=True
         )
