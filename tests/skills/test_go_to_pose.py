@@ -24,7 +24,7 @@ from robobt.world import (
     RobotLimits,
     RobotState,
 )
-from robobt.world.avoiding import among_robots_of
+from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 from tests.models.made_models import Faulty, Onward, among_robots_card, network, write_model
@@ -146,7 +146,7 @@ def learned(folder: Path, **given: Any) -> GoToPose:
 def test_a_policy_drives_to_the_place_as_it_does_to_the_ball_in_training(tmp_path: Path) -> None:
     inside = {"robot_x": (-2, 2), "robot_y": (-2, 2), "ball_x": (-2, 2), "ball_y": (-2, 2)}
     task = GoToBallTask(GoToBallAmongRobotsSettings(starts={"distance": (2.5, 9.0), **inside}), 1, seed=2)
-    model = write_model(tmp_path, network(42, 3), among_robots_card())
+    model = write_model(tmp_path, network(GO_TO_BALL_AMONG_ROBOTS.size, 3), among_robots_card())
     policy, alone = load_policy(model), Alone(GoToPose(policy=str(model)))
     seen = task.reset()
     for decision in range(8):
