@@ -24,6 +24,7 @@ from robobt.config.yaml import parse_marked
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.training.settings import settings_of
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import load_scenario, scenario_from
 from robobt.plays import PLAYS
@@ -171,10 +172,16 @@ def scenario(data: dict[str, Any]) -> object:
     return changed(robobt.load_scenario("six_v_six"), data)
 
 
+def training(data: dict[str, Any]) -> object:
+    if "stages" in data:
+        return settings_of({"task": "duel", "steps": 1, "learner": "ppo", **data}, "page")
+    return SoccerSettings.model_validate(data)
+
+
 CHECKED: dict[str, Callable[[Any], object]] = {
     "environments": environment,
     "referee": scenario,
-    "several_robots": SoccerSettings.model_validate,
+    "several_robots": training,
     "scenarios": lambda data: scenario({"robots": {"blue": data}} if isinstance(data, list) else data),
     "simulator": scenario,
     "tournament": EntrantFile.model_validate,

@@ -35,6 +35,7 @@ _COMMANDS = {
     "tree": "tree:tree",
     "train": "train:train",
     "demonstrations": "train:demonstrations",
+    "rate": "rate:rate",
     "export": "export:export",
     "models": "export:models",
     "serve": "league:serve",

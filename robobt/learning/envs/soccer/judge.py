@@ -17,10 +17,10 @@ from robobt.world.field import FieldGeometry
 from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
 
-LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS = range(7)
+LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS, GOAL = range(8)
 """What is kept of an episode: who held the ball last, -1 for nobody; where it came into that mouth and where
-it was last in it [m]; for how many ticks in a row each team has held it."""
-MIND = 7
+it was last in it [m]; for how many ticks in a row each team has held it; the goal, 1 blue's, -1 yellow's."""
+MIND = 8
 
 _SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
 _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
@@ -91,6 +91,7 @@ def judge(
             fired = fired or kicked[i, index]
         begin_tick(episode, fired)
         side = goal_of(episode, ball, half_length, half_width, post)
+        mind[GOAL] = side
         out = is_out(ball[0], ball[1], half_length, half_width) and side == 0
         holder, passed, too_far = _possession(rules, contact[i], kicked[i], ball, blue, mind)
         # Who ended it: 1 blue by a fault, -1 yellow, 0 nobody.

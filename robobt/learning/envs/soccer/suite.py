@@ -182,12 +182,16 @@ SCRIPTS: dict[str, Role] = {
 def scripted(settings: SoccerSettings) -> SoccerSettings:
     """Return the ``settings`` with the script in the place of blue's learners, and attackers in yellow's."""
     own: Role = "redirect" if settings.rules.longest_hold else SCRIPTS[settings.aim]
-    blue = tuple(own if role == LEARNER else role for role in settings.blue)
-    yellow = tuple("attack" if role == LEARNER else role for role in settings.yellow)
-    return settings.model_copy(update={"blue": blue, "yellow": yellow})
+    return against(instead(settings, own), "attack")
 
 
 def against(settings: SoccerSettings, role: Role) -> SoccerSettings:
     """Return the ``settings`` with scripted robots of that ``role`` in the place of yellow's learners."""
     yellow = tuple(role if own == LEARNER else own for own in settings.yellow)
     return settings.model_copy(update={"yellow": yellow})
+
+
+def instead(settings: SoccerSettings, role: Role) -> SoccerSettings:
+    """Return the ``settings`` with scripted robots of that ``role`` in the place of blue's learners."""
+    blue = tuple(role if own == LEARNER else own for own in settings.blue)
+    return settings.model_copy(update={"blue": blue})

@@ -6,7 +6,7 @@ import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.soccer.central import states_of
-from robobt.learning.envs.soccer.judge import LAST, MIND, judge
+from robobt.learning.envs.soccer.judge import GOAL, LAST, MIND, judge
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
@@ -63,6 +63,11 @@ class SoccerTask(ArenaTask):
         """
         each = states_of(self.arenas.robots)
         return np.concatenate((each.reshape(self.n, -1), self.arenas.balls), axis=1)
+
+    @property
+    def goals(self) -> FloatArray:
+        """Who has scored in each arena, (n,): 1 blue, -1 yellow, 0 nobody; until the next episode starts."""
+        return self._minds[:, GOAL]
 
     def advance(self, actions: FloatArray) -> StepResult:
         """See :meth:`ArenaTask.advance`."""

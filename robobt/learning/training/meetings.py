@@ -1,0 +1,154 @@
+"""Policies and scripts against each other in a task in which both teams learn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.config.errors import RobobtError
+from robobt.learning.agents.networks import Actor, policy_of
+from robobt.learning.envs.soccer.settings import Role, SoccerSettings
+from robobt.learning.envs.soccer.suite import against, instead
+from robobt.learning.envs.soccer.task import SoccerTask
+from robobt.learning.envs.task import FloatArray
+from robobt.learning.training.run_folder import ACTOR, PAST, load_actor, read_settings
+from robobt.learning.training.setting_groups import Script
+from robobt.learning.training.settings import environment_of
+
+_ARENAS = 128
+"""Side by side in a meeting."""
+
+
+class MeetingError(RobobtError, ValueError):
+    """Who is to meet cannot; the message is one line."""
+
+
+@dataclass(frozen=True)
+class Contender:
+    """Who plays in the places of a team's learners: a policy, or scripted robots of a role."""
+
+    name: str
+    plays: Actor | Role
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Two against each other: from each of ``starts`` starts both on either side, goals the first one's."""
+
+    first: str
+    second: str
+    starts: int
+    won: int
+    drawn: int
+    lost: int
+
+    @property
+    def scores(self) -> list[float]:
+        """The first one's, of each episode: 1 for its goal, 0 for one against it, 0.5 without one."""
+        return [1.0] * self.won + [0.5] * self.drawn + [0.0] * self.lost
+
+
+def script(role: str) -> Contender:
+    """Return scripted field players as a contender.
+
+    Raises:
+        MeetingError: there are none of that role.
+    """
+    for known in get_args(Script):
+        if known == role:
+            return Contender(role, known)
+    raise MeetingError(f"there is no script {role!r}; there are {', '.join(get_args(Script))}")
+
+
+def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettings, list[Contender]]:
+    """Return the environment of a run and its policies: up to ``past`` of its past selves, and the best.
+
+    Past selves are spread evenly over the run, with the first and the newest; the best is there once the run
+    has ended.
+
+    Raises:
+        RunFolderError: there is no run, or a policy is damaged.
+        MeetingError: it is no run of two teams that learn, or has no policies yet.
+    """
+    settings = read_settings(folder)
+    environment = environment_of(settings, str(folder))
+    if not isinstance(environment, SoccerSettings) or not environment.two_alike:
+        raise MeetingError(f"{folder}: {settings.task} is not a task whose two teams learn")
+    files = sorted((folder / PAST).glob("*.pt"))
+    chosen = np.unique(np.linspace(0, len(files) - 1, min(past, len(files))).round().astype(int))
+    before = f"{name} " if name else ""
+    found = [
+        Contender(f"{before}after {int(files[index].stem):,}", load_actor(files[index])) for index in chosen
+    ]
+    if (folder / ACTOR).exists():
+        found.append(Contender(f"{before}best", load_actor(folder / ACTOR)))
+    if not found:
+        raise MeetingError(f"{folder}: has no policies yet")
+    return environment, found
+
+
+def encounters(
+    settings: SoccerSettings, contenders: Sequence[Contender], starts: int, seed: int
+) -> list[Encounter]:
+    """Let everybody meet everybody, each two from starts of their own; ``seed`` decides on these.
+
+    Raises:
+        MeetingError: a policy sees something else than the robots of the environment do.
+    """
+    size = SoccerTask(settings, 1).observation.size
+    for one in contenders:
+        if isinstance(one.plays, Actor) and len(one.plays.build["scale"]) != size:
+            seen = len(one.plays.build["scale"])
+            raise MeetingError(f"{one.name}: sees {seen} entries, the robots of the first run {size}")
+    found = []
+    for number, (first, second) in enumerate(combinations(contenders, 2)):
+        drawn = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+        home = _goals(settings, first, second, starts, drawn)
+        away = -_goals(settings, second, first, starts, drawn)
+        goals = np.concatenate((home, away))
+        won, lost = int((goals > 0).sum()), int((goals < 0).sum())
+        found.append(Encounter(first.name, second.name, starts, won, len(goals) - won - lost, lost))
+    return found
+
+
+def _goals(
+    settings: SoccerSettings, blue: Contender, yellow: Contender, starts: int, seed: int
+) -> NDArray[np.int64]:
+    """Return from each start 1 where blue scores, -1 where yellow does, 0 else."""
+    made = settings
+    if not isinstance(yellow.plays, Actor):
+        made = against(made, yellow.plays)
+    if not isinstance(blue.plays, Actor):
+        made = instead(made, blue.plays)
+    task = SoccerTask(made, min(_ARENAS, starts))
+    sides = [
+        (np.flatnonzero(np.array(task.learners, dtype=np.int64) < task.blue), blue.plays),
+        (np.flatnonzero(np.array(task.learners, dtype=np.int64) >= task.blue), yellow.plays),
+    ]
+    deciding = [(rows, policy_of(plays)) for rows, plays in sides if isinstance(plays, Actor)]
+
+    def decide(observation: FloatArray) -> FloatArray:
+        seen = observation.reshape(task.n, len(task.learners), task.observation.size)
+        actions = np.zeros((task.n, len(task.learners), task.action.size))
+        for rows, policy in deciding:
+            actions[:, rows] = policy(seen[:, rows])
+        return actions.reshape(task.n, -1)
+
+    observation = task.reset_to(task.sample_starts(seed, starts), seed)
+    goals, open_ = np.zeros(starts, dtype=np.int64), starts
+    while open_ > 0:
+        result = task.advance(decide(observation))
+        if task.ended is not None:
+            scored = task.goals[result.terminated | result.truncated]
+            counts = task.ended.start >= 0
+            goals[task.ended.start[counts]] = scored[counts]
+            open_ -= int(counts.sum())
+            task.renew(result)
+        observation = result.observation
+    return goals

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+import json
+
+import torch
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.config.yaml import write_yaml
+from robobt.learning.agents.networks import Actor
+from robobt.learning.training.run_folder import ACTOR, PAST, SETTINGS, save_actor
+from robobt.learning.training.settings import load_settings
+
+
+def rate(*arguments):
+    return CliRunner().invoke(app, ["rate", *map(str, arguments)])
+
+
+def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
+    settings = load_settings("duel", "fast", {"environment.time_limit": 20})
+    (tmp_path / PAST).mkdir()
+    (tmp_path / SETTINGS).write_text(write_yaml(settings.model_dump(mode="json")))
+    for seed in range(4):
+        policy = Actor([1.0] * 23, 4, [4], generator=torch.Generator().manual_seed(seed))
+        save_actor(policy, tmp_path / ACTOR if seed == 3 else tmp_path / PAST / f"{seed:010}.pt")
+    told = rate(tmp_path, "--past", 2, "--script", "attack", "--starts", 3, "--json")
+    assert told.exit_code == 0, told.output
+    found = json.loads(told.stdout)
+    assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack"}
+    assert len(found["encounters"]) == 6
+    assert found["task"] == "duel"
+    for one in found["ratings"].values():
+        assert one["low"] < one["elo"] < one["high"]
+        assert one["won"] + one["drawn"] + one["lost"] == 3 * 6
+    for arguments, said in (
+        ((tmp_path, "--script", "dance"), "no script 'dance'"),
+        ((tmp_path / "none",), "none"),
+    ):
+        refused = rate(*arguments)
+        assert refused.exit_code == 1
+        assert said in refused.output
