@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from robobt.models.fitting import read_fitting_model
 from robobt.plays.base import PLAYS
+from robobt.skills.ball.duel import Duel
+from robobt.skills.ball.learned_skill import LearnedSkill
 from robobt.skills.ball.score import Score
 from robobt.tree import Behaviour
 
 
 @PLAYS.register("attack_learned")
 def attack_learned(*, policy: str = "") -> Behaviour:
-    """Get the ball and score on the goalkeeper by one learned policy, from first touch to goal.
+    """Get the ball and score by one learned policy, from first touch to goal.
 
-    It learned in the attacked half, alone with a goalkeeper: it sees no other robot, and carries the ball
-    as far as it likes, so that it is for scenarios of one attacker without a referee. No model for it
-    ships: see what they can do in docs/learning.md, and train your own.
+    It knows of other robots what it was trained to see, and of rules nothing: it carries the ball as far as
+    it likes, so that it is for scenarios without a referee. No model for it ships: see what they can do in
+    docs/learning.md, and train your own.
 
     Args:
-        policy: name or file of a model for Score; without one the robot stands still.
+        policy: name or file of a model for Score or Duel, or of another task of several robots; without one
+            the robot stands still.
     """
-    return Score(policy=policy)
+    if not policy:
+        return Score()
+    skill = read_fitting_model(policy, kind="policy").card.skill
+    if skill == "Duel":
+        return Duel(policy=policy)
+    return Score(policy=policy) if skill == "Score" else LearnedSkill(model=policy)

@@ -52,17 +52,21 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
     )
 
 
-def keep_goal(speed: float, clear: Behaviour) -> Behaviour:
-    """Do what ``goalkeeper`` does in its default style; ``clear`` is for a ball that rests in the area."""
-    return first_of(
-        "goalkeeper",
+def keep_goal(speed: float, clear: Behaviour, learned: Behaviour | None = None) -> Behaviour:
+    """Do what ``goalkeeper`` does in its default style.
+
+    Args:
+        speed: factor on the top speed.
+        clear: what to do with a ball that rests in the area.
+        learned: what to try first with one that does not.
+    """
+    block = (
         when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
         when("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
-        when("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)),
-        clear,
-        CoverAngle(speed=speed),
-        ReturnToGoal(speed=speed),
     )
+    take = (when("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)), clear)
+    first = (*block, *take) if learned is None else (*take, learned, *block)
+    return first_of("goalkeeper", *first, CoverAngle(speed=speed), ReturnToGoal(speed=speed))
 
 
 @PLAYS.register("fitted_goalkeeper")

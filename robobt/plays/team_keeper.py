@@ -8,12 +8,14 @@ from robobt.plays.team import keep_by_the_rules
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_clearance import SelectClearance
 from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
 from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
+from robobt.skills.defence.goalkeeper import Goalkeeper
 from robobt.tree import Behaviour
 
 
 @PLAYS.register("team_keeper")
-def team_keeper(*, speed: float = 1.0, chips: bool = True) -> Behaviour:
+def team_keeper(*, speed: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
     """Keep goal as ``keeper`` does, and chip the ball out of the area where there is no way along the ground.
 
     A ball that rests in the area goes to the foremost team-mate that can be reached, else upfield, over
@@ -22,6 +24,8 @@ def team_keeper(*, speed: float = 1.0, chips: bool = True) -> Behaviour:
     Args:
         speed: factor on its top speed.
         chips: whether it may chip.
+        policy: name or file of a model for Goalkeeper, which keeps goal while the ball is in play in the own
+            half and not the goalkeeper's to clear; empty for the written goalkeeper alone.
     """
 
     def kick(*, chip: bool = False) -> KickToTarget:
@@ -32,4 +36,6 @@ def team_keeper(*, speed: float = 1.0, chips: bool = True) -> Behaviour:
         when("clearance", SelectClearance(), kick()),
         when("upfield", AimUpfield(), kick(chip=chips)),
     )
-    return keep_by_the_rules(speed, keep_goal(speed, when("ball in the area", BallRestsInDefense(), clear)))
+    has_to_clear = when("ball in the area", BallRestsInDefense(), clear)
+    learned = when("threat", BallInOwnHalf(), Goalkeeper(policy=policy)) if policy else None
+    return keep_by_the_rules(speed, keep_goal(speed, has_to_clear, learned))

@@ -14,7 +14,9 @@ from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
+from robobt.skills.ball.score import Score
 from robobt.skills.ball.settle_ball import SettleBall
+from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
@@ -48,6 +50,8 @@ def team_player(
     pass_at: float = 0.35,
     patience: float = 1.5,
     chips: bool = True,
+    score: str = "",
+    go: str = "",
     without: Omitted = "nothing",
 ) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
@@ -61,6 +65,10 @@ def team_player(
         pass_at: worth for which a pass is played at once, 0 to 1.
         patience: time in which what is demanded of both falls to its floor [s].
         chips: whether passes may fly over opponents.
+        score: name or file of a model for Score, which plays on in the opponents' half while the robot has
+            the ball and neither shot nor pass is worth it; empty for none.
+        go: name or file of a model that drives to places among moving robots
+            (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
         without: a part of the game to do without, the same for every robot of the team, so that a tournament
             shows what it is worth.
     """
@@ -86,22 +94,23 @@ def team_player(
                 when("ours", MayTouchBall(), TakePlace()),
                 when("keep away", KeepDistance(), TakePlace()),
             ),
-            "attack": attack(choose, without),
+            "attack": attack(choose, without, score),
         },
-        otherwise=TakePlace(),
+        otherwise=TakePlace(policy=go),
         without=without,
     )
     return StayOut("team player", player if without == "avoid_crash" else AvoidCrash("no crash", player))
 
 
-def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing") -> Behaviour:
-    """Get the ball, and shoot, pass or carry it."""
+def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score: str = "") -> Behaviour:
+    """Get the ball, and shoot, pass or carry it; ``score`` is a model for Score, or empty."""
     options = {
         "let_go": when("let go", CarriedFar(limit=0.9), Stop()),
         "kick_loose": KickLoose(),
         "receive": ReceivePass(),
         "settle": SettleBall(),
         "kick": when("kick", choose(), kick()),
+        "score": when("score", HasBall(), Inverter("ahead", BallInOwnHalf()), Score(policy=score)),
         "draw": when(
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),
@@ -110,7 +119,8 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing") -> Be
         ),
         "get": when("get the ball", GoToBall(), PickUpBall()),
     }
-    return first_of("attack", *(option for name, option in options.items() if name != without))
+    left_out = {without} if score else {without, "score"}
+    return first_of("attack", *(option for name, option in options.items() if name not in left_out))
 
 
 def kick() -> KickToTarget:

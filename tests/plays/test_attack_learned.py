@@ -1,10 +1,17 @@
+from pathlib import Path
+
 import pytest
 
 from robobt.experiments.deployed import Situation, deployed_scenario
 from robobt.match import run_trials, summarise
 from robobt.match.scenario.scenario import Scenario
+from robobt.plays import attack_learned
+from robobt.skills import Duel, LearnedSkill, Score, Skill
+from robobt.tree import Status
 from robobt.worlds import sim_world
+from tests.models.made_models import network, team_card, write_model
 from tests.simulation import Trial, blue, eventually, goal_for_us
+from tests.skills.fixed_world import Alone, frame, robot
 
 
 def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
@@ -35,3 +42,10 @@ def test_without_patience_it_takes_what_there_is():
     )
     results = run_trials(impatient, sim_world, 3, seed=4).results
     assert all(result.robots["blue 0"].kicks for result in results)
+
+
+@pytest.mark.parametrize("leaf", [Score, Duel, LearnedSkill])
+def test_any_policy_attacks_as_the_leaf_that_it_is_for(leaf: type[Skill], tmp_path: Path):
+    model = write_model(tmp_path, network(27, 4), team_card(leaf.__name__, 0, 2))
+    assert type(attack_learned(policy=str(model))) is leaf
+    assert Alone(attack_learned()).tick(frame(robot())) is Status.FAILURE

@@ -1,11 +1,15 @@
 from __future__ import annotations
 
 from math import pi
+from pathlib import Path
 
 import pytest
 
 from robobt.plays import team_keeper
+from robobt.skills import Goalkeeper
+from tests.models.made_models import network, team_card, write_model
 from tests.simulation import Trial, blue, eventually, goal_for_them, never, yellow
+from tests.skills.fixed_world import Alone, frame, robot
 
 HOME, BALL = (-4.35, 0.0, 0.0), (-3.9, 0.4)
 
@@ -27,3 +31,19 @@ def test_without_a_mate_it_gets_the_ball_away_over_those_who_wait(chips: bool) -
     highest = max(frame.ball.z for frame in trial.frames)
     assert (highest > 0.15) is chips
     assert trial.frames[-1].ball.x > -3.3
+
+
+def test_a_policy_keeps_goal_while_the_ball_is_near_and_somebody_elses(tmp_path: Path) -> None:
+    model = write_model(tmp_path, network(23, 4), team_card("Goalkeeper", 0, 1))
+    alone = Alone(team_keeper(policy=str(model)))
+
+    def playing(*ball: float) -> str:
+        alone.tick(frame(robot(-4.3, 0.0), ball, opponents=(robot(0.5, 0.0, pi, number=1),)))
+        tip = alone.tree.tip()
+        assert tip is not None
+        return tip.name
+
+    assert playing(-2.0, 0.5) == playing(-2.0, 0.5, -3.0, 0.0) == "Goalkeeper"
+    assert playing(1.0, 0.5) == "CoverAngle"
+    assert playing(-4.0, 0.5) not in ("Goalkeeper", "CoverAngle")
+    assert not any(isinstance(node, Goalkeeper) for node in team_keeper().iterate())

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
 from robobt.match import load_scenario
 from robobt.match.loop import Match
 from robobt.plays import team_player
+from robobt.skills import Score
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.plan import Omitted, Task
+from robobt.skills.tactics.take_place import TakePlace
 from robobt.tree import Behaviour
 from robobt.world import Team
 from robobt.worlds import sim_world
+from tests.models.made_models import Onward, Passing, among_robots_card, score_card, write_model
 
 SECONDS = 40.0
 
@@ -48,6 +52,32 @@ def test_it_can_do_without_a_part(without: Omitted, node: type[Behaviour]) -> No
         return sum(isinstance(each, node) for each in tree.iterate())
 
     assert count(team_player(without=without)) == count(team_player()) - 1
+
+
+def test_learned_skills_are_parts_of_it_only_where_a_model_is_named(tmp_path: Path) -> None:
+    score = str(write_model(tmp_path, Passing(), score_card()))
+    go = str(write_model(tmp_path, Onward(), among_robots_card()))
+    learned = [
+        [node.policy for node in tree.iterate() if isinstance(node, Score | TakePlace) and node.policy]
+        for tree in (team_player(), team_player(score=score, go=go))
+    ]
+    assert learned == [[], [score, go]]
+
+
+@pytest.mark.integration
+def test_with_them_it_plays_on_and_they_are_used(tmp_path: Path) -> None:
+    score = str(write_model(tmp_path, Passing(), score_card()))
+    go = str(write_model(tmp_path, Onward(), among_robots_card()))
+    scenario = load_scenario("team_v_baseline").lasting(8.0)
+    for number in range(1, 6):
+        scenario = scenario.with_robot(f"blue {number}", score=score, go=go)
+    used: Counter[str] = Counter()
+    with Match(scenario, 4, sim_world) as match:
+        mine = [player for player in match.players if player.robot.team is Team.BLUE]
+        while match.tick():
+            assert not any(player.problem for player in mine)
+            used.update(tip.feedback_message for player in mine if (tip := player.runner.root.tip()))
+    assert used["to its place as learned"] > 0
 
 
 @pytest.fixture(scope="module")

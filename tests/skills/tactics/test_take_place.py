@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from robobt.skills.tactics.take_place import TakePlace
 from robobt.tree import Status
 from robobt.world.geometry import distance
+from tests.models.made_models import Onward, among_robots_card, write_model
 from tests.skills.fixed_world import Alone, frame, moved, robot
 from tests.skills.refereed import OPEN
 
@@ -36,3 +39,19 @@ def test_it_looks_only_roughly_at_the_ball(heading: float, turns: bool) -> None:
 def test_a_robot_without_a_place_fails() -> None:
     alone = Alone(TakePlace())
     assert alone.tick(frame(robot(number=1), (1.0, 0.5), game=OPEN), 1) is Status.FAILURE
+
+
+def test_a_policy_drives_it_there_among_robots(tmp_path: Path) -> None:
+    policy = write_model(tmp_path, Onward(), among_robots_card())
+    alone, by_hand = Alone(TakePlace(policy=str(policy))), Alone(TakePlace())
+    me, mate = robot(-2.0, 0.0, number=1), robot(0.5, 0.5, number=2)
+    for each in (alone, by_hand):
+        each.store.team.plan.players.update((1, 2))
+        each.tick(frame(me, (1.0, 0.5), (mate,), game=OPEN), 1)
+    assert alone.tree.feedback_message == "to its place as learned"
+    place = alone.store.team.plan.places[1]
+    # The way is free: straight on at the speed of a full action, where the planner is as fast as it can.
+    way = distance(me.position, place)
+    told = alone.command.vx / 1.5, alone.command.vy / 1.5
+    assert told == pytest.approx(((place[0] - me.x) / way, (place[1] - me.y) / way), abs=1e-4)
+    assert abs(by_hand.command.vx) > 1.9 * abs(alone.command.vx)
