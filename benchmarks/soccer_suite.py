@@ -42,7 +42,7 @@ def main() -> None:
             reached = int(episodes.success.sum())
             low, high = wilson_interval(reached, given.starts)
             length = episodes.time.mean()
-            print(f"{name:30}{label:8}{reached:5} ({low:.1%} to {high:.1%}) {length:6.2f} s", flush=True)
+            print(f"{name:33}{label:8}{reached:5} ({low:.1%} to {high:.1%}) {length:6.2f} s", flush=True)
 
 
 class _Chance:

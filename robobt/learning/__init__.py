@@ -20,6 +20,7 @@ _ROOMS = {
 }
 TEAMS = (
     "ScoreOnGoalkeeperAndDefenders",
+    "ScoreOnGoalkeeperAndTwoDefenders",
     "Save",
     "Duel",
     "DuelWithScript",

@@ -33,6 +33,7 @@ _SKILLS = {
     "shoot": "Shoot",
     "score_on_goalkeeper": "Score",
     "score_on_goalkeeper_and_defenders": "Score",
+    "score_on_goalkeeper_and_two_defenders": "Score",
     "save": "Goalkeeper",
     "duel": "Duel",
     "duel_with_script": "Duel",

@@ -36,6 +36,12 @@ class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
     starts: SoccerStarts = _ATTACKED
 
 
+class ScoreOnGoalkeeperAndTwoDefendersSettings(ScoreOnGoalkeeperAndDefendersSettings):
+    """The same with a second defender, which goes for the ball at up to 2 m/s."""
+
+    yellow: tuple[Role, ...] = (GOALKEEPER, "wall", "press")
+
+
 class SaveSettings(SoccerSettings):
     """Keep goal against one who gets the ball and shoots.
 
@@ -157,6 +163,7 @@ class Small3v3Settings(SoccerSettings):
 
 SUITE: dict[str, type[SoccerSettings]] = {
     "ScoreOnGoalkeeperAndDefenders": ScoreOnGoalkeeperAndDefendersSettings,
+    "ScoreOnGoalkeeperAndTwoDefenders": ScoreOnGoalkeeperAndTwoDefendersSettings,
     "Save": SaveSettings,
     "Duel": DuelSettings,
     "DuelWithScript": DuelWithScriptSettings,
