@@ -123,6 +123,7 @@ class PPO(Learner):
         self.critic = Value([*scale, *state_scale], settings.hidden, generator)
         self._own = len(scale)
         self._smooth = torch.tensor(list(smooth))
+        self._gamma = settings.gamma
         self._spread = nn.ParameterDict(
             {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.spread))))}
         )
@@ -153,10 +154,16 @@ class PPO(Learner):
         """Return V of (n, observation and state), (n,)."""
         return _doubles(self.critic(torch.from_numpy(observation.astype(np.float32))))
 
+    def look_ahead(self, share: float) -> None:
+        """Discount as after a ``share`` of the steps: patience is learned after what pays at once."""
+        first, last = self.settings.gamma, self.settings.final_gamma
+        if last is not None:
+            self._gamma = 1.0 - 1.0 / ((1.0 - share) / (1.0 - first) + share / (1.0 - last))
+
     def update(self, rollout: Rollout, rng: np.random.Generator, value_alone: bool = False) -> None:
         """Learn from a rollout by (3) and (4), or by (4) alone while a policy that was given is valued."""
         settings = self.settings
-        advantage = advantages(rollout, settings.gamma, settings.trace)
+        advantage = advantages(rollout, self._gamma, settings.trace)
         target = advantage + rollout.value
         observation, action, log_probability, advantage_, target_ = (
             torch.from_numpy(array.reshape(-1, *array.shape[2:]).astype(np.float32))

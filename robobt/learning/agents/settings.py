@@ -63,7 +63,10 @@ class PPOSettings(Settings):
         description="what the value is estimated from: what the robot sees, or besides the true state of all "
         "robots, as its team sees the field; for tasks of several robots",
     )
-    gamma: float = Field(0.985, gt=0, lt=1, description="discount a decision")
+    gamma: float = Field(0.985, gt=0, lt=1, description="discount a decision, at first")
+    final_gamma: float | None = Field(
+        None, gt=0, lt=1, description="discount at the last step, towards which 1 / (1 - gamma) moves evenly"
+    )
     trace: float = Field(0.95, ge=0, le=1, description="lambda of the advantages")
     clip: float = Field(0.2, gt=0, le=1, description="how far probabilities may move in an update")
     rollout: int = Field(40, ge=1, le=10_000, description="decisions of each arena between updates")

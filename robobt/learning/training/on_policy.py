@@ -78,7 +78,9 @@ class OnPolicyRun(Run):
 
     def _advance(self) -> None:
         rollout = self._roll_out()
-        self._agent.set_rates(1.0 - self._steps / self._settings.steps)
+        share = self._steps / self._settings.steps
+        self._agent.set_rates(1.0 - share)
+        self._agent.look_ahead(share)
         value_alone = self._steps < self._settings.ppo.critic_first
         self._agent.update(rollout, self._rng, value_alone)
         self._steps += rollout.reward.size

@@ -142,6 +142,16 @@ def test_a_central_value_knows_what_the_policy_does_not():
     np.testing.assert_array_equal(first, second)
 
 
+@pytest.mark.parametrize(("share", "horizon"), [(0.0, 10.0), (0.5, 30.0), (1.0, 50.0)])
+def test_it_looks_farther_ahead_the_longer_it_has_learned(monkeypatch, share, horizon):
+    rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, trace=1.0), []
+    monkeypatch.setattr(patient, "_fit", lambda _, target: valued.extend(target.tolist()))
+    patient.look_ahead(share)
+    patient.update(rollout, np.random.default_rng(0), value_alone=True)
+    expected = advantages(rollout, 1.0 - 1.0 / horizon, 1.0) + rollout.value
+    np.testing.assert_allclose(sorted(set(valued)), sorted(expected.ravel()), rtol=1e-6)
+
+
 def test_its_state_is_all_there_is_to_it():
     one, other = agent(seed=1), agent(seed=2)
     rng = np.random.default_rng(6)
