@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from robobt.models.file import ModelError
+from tests.models.made_models import Passing, go_to_ball_card, network, score_card, team_card, write_model
+
+SCRIPT = Path(__file__).parents[2] / "benchmarks" / "transfer.py"
+
+
+@pytest.fixture(scope="module")
+def transfer() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("transfer", SCRIPT)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_model_for_score_plays_in_each_world_beside_the_play(
+    transfer: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = str(write_model(tmp_path, Passing(), score_card()))
+    transfer.main([model, "--trials", "1", "--only", "default", "--only", "grsim"])
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert "of 1" in head
+    players = [line.split()[:2] for line in lines]
+    assert players == [
+        [world, player] for world in ("default", "grsim") for player in ("attack_expected", "Score")
+    ]
+    # A policy that drives at the ball alone scores nowhere; the play does.
+    assert [int(line.split()[2]) > 0 for line in lines] == [True, False, True, False]
+
+
+def test_a_model_for_goalkeeper_keeps_goal_beside_the_play(transfer: ModuleType, tmp_path: Path) -> None:
+    model = str(write_model(tmp_path, network(23, 4), team_card("Goalkeeper", 0, 1)))
+    assert transfer.variants(model) == {
+        "team_keeper": ("", "team_keeper"), "Goalkeeper": ("", f"team_keeper:policy={model}"),
+    }  # fmt: skip
+
+
+def test_another_model_is_an_error(transfer: ModuleType, tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="is a model for GoToBall, not for Score"):
+        transfer.variants(str(write_model(tmp_path, network(), go_to_ball_card())))
