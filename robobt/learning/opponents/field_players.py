@@ -8,6 +8,9 @@ from math import atan2, cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.skills.defence.mark_opponent import MarkOpponent
+from robobt.skills.defence.wall import GAP, wall_place
+from robobt.skills.team.teamwork import MARK_FROM
 from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
@@ -16,12 +19,12 @@ from robobt.world.limits import RobotLimits
 PLAYERS = ("still", "press", "mark", "wall", "attack", "pass", "redirect")
 """What a field player does.
 
-``still`` stands; ``press`` drives at the ball; ``mark`` stands between one of the others and its own goal,
-the first marker at the nearest to the ball; ``wall`` stands on the ball's line to its own goal, outside the
-defence area, several of them side by side. ``attack`` and ``pass``: whoever of them is nearest fetches the
-ball and carries it to a shot at the corner farther from the goalkeeper, or turns to the mate with the freest
-way and passes; the others wait, those who attack before the goal. ``redirect`` waits on the ball's way,
-turned to the goal, and kicks it as it comes.
+``still`` stands; ``press`` drives at the ball. ``wall`` stands where the skill ``Wall`` does, at the edge of
+its own defence area on the ball's line to its goal, several of them side by side; ``mark`` where
+``MarkOpponent`` does, but that whom it marks already is not preferred. ``attack`` and ``pass``: whoever of
+them is nearest fetches the ball and carries it to a shot at the corner farther from the goalkeeper, or turns
+to the mate with the freest way and passes; the others wait, those who attack before the goal. ``redirect``
+waits on the ball's way, turned to the goal, and kicks it as it comes.
 """
 
 _STILL, _PRESS, _MARK, _WALL, _ATTACK, _PASS, _REDIRECT = range(7)
@@ -46,12 +49,7 @@ _KEPT, _ROLLING = 0.66, 0.3
 """What is left of a kick's speed once the ball rolls, and how it slows down then [m/s^2]."""
 _MOUTH = 0.09
 """How far before a robot's centre the ball lies in its mouth [m]."""
-_GUARD = 0.35
-"""How far from whom it marks a marker stands [m]."""
-_BESIDE = 0.2
-"""How far apart those of a wall stand [m]."""
-_OUTSIDE = 0.25
-"""How far outside the defence area a wall stands [m]."""
+_BESIDE = MarkOpponent.gap
 _FREE = 0.35
 """A way to a mate that passes nobody nearer is free [m]."""
 
@@ -118,9 +116,9 @@ def _decide(
             if role == _PRESS:
                 x, y = ball[0], ball[1]
             elif role == _MARK:
-                x, y = _marked(all_, ball, roles, r, first, last, sign * field.length / 2)
+                x, y = _marked(all_, ball, contact[i], roles, r, first, last, sign, field.length / 2)
             elif role == _WALL:
-                x, y = _walled(field, ball, roles, r, first, last, -sign * field.length / 2)
+                x, y = _walled(field, ball, roles, r, first, last, sign)
             elif role == _REDIRECT:
                 x, y = _coming(me, ball)
                 # There its mouth is to be, not its middle.
@@ -194,33 +192,46 @@ def _coming(me: FloatArray, ball: FloatArray) -> tuple[float, float]:
 def _marked(
     robots: FloatArray,
     ball: FloatArray,
+    contact: NDArray[np.bool_],
     roles: NDArray[np.int64],
     me: int,
     first: int,
     last: int,
-    attacked: float,
+    sign: float,
+    goal_x: float,
 ) -> tuple[float, float]:
-    """Return where a marker stands: by the one of the others who is as near to the ball as its rank says."""
-    rank = 0
-    for r in range(first, me):
-        if roles[r] == _MARK:
-            rank += 1
+    """Return where a marker stands: beside the one of the others who is its to mark, towards the ball.
+
+    Those in the marker's own half, the nearest to its goal first, are each the nearest free marker's, but for
+    who has the ball; a marker that is left over stays where it is. Its team attacks ``sign`` times x, and its
+    goal is at ``-goal_x`` times that.
+    """
+    holder, near = -1, inf
+    for r in range(len(robots)):
+        far = hypot(robots[r, 0] - ball[0], robots[r, 1] - ball[1])
+        if contact[r] and far < near:
+            holder, near = r, far
     taken: NDArray[np.bool_] = np.zeros(len(robots), dtype=np.bool_)
-    who = -1
-    for _ in range(rank + 1):
-        best, found = inf, -1
+    while True:
+        best, threat = inf, -1
         for r in range(len(robots)):
-            far = hypot(robots[r, 0] - ball[0], robots[r, 1] - ball[1])
-            if not first <= r < last and not taken[r] and far < best:
-                best, found = far, r
-        if found >= 0:
-            who = found
-            taken[found] = True
-    if who < 0:
-        return robots[me, 0], robots[me, 1]
-    dx, dy = -attacked - robots[who, 0], -robots[who, 1]
-    far = max(hypot(dx, dy), 1e-6)
-    return robots[who, 0] + _GUARD * dx / far, robots[who, 1] + _GUARD * dy / far
+            far = hypot(sign * robots[r, 0] + goal_x, robots[r, 1])
+            there = not first <= r < last and not taken[r] and r != holder
+            if there and sign * robots[r, 0] < MARK_FROM and far < best:
+                best, threat = far, r
+        best, marker = inf, -1
+        for r in range(first, last):
+            if threat >= 0 and roles[r] == _MARK and not taken[r]:
+                far = hypot(robots[r, 0] - robots[threat, 0], robots[r, 1] - robots[threat, 1])
+                if far < best:
+                    best, marker = far, r
+        if marker < 0:
+            return robots[me, 0], robots[me, 1]
+        if marker == me:
+            dx, dy = ball[0] - robots[threat, 0], ball[1] - robots[threat, 1]
+            share = _BESIDE / max(_BESIDE, hypot(dx, dy))
+            return robots[threat, 0] + share * dx, robots[threat, 1] + share * dy
+        taken[threat] = taken[marker] = True
 
 
 @compiled
@@ -231,23 +242,18 @@ def _walled(
     me: int,
     first: int,
     last: int,
-    own: float,
+    sign: float,
 ) -> tuple[float, float]:
-    """Return where one of a wall stands, round the own goal at x = ``own``."""
+    """Return where one of a wall stands, round its own goal; its team attacks ``sign`` times x."""
     size = rank = 0
     for r in range(first, last):
         if roles[r] == _WALL:
             rank += r < me
             size += 1
-    dx, dy = ball[0] - own, ball[1]
-    far = max(hypot(dx, dy), 1e-6)
-    ux, uy = dx / far, dy / far
-    # Where the line leaves the defence area, and a bit farther.
-    deep = (field.defense_depth + _OUTSIDE) / max(abs(ux), 1e-6)
-    wide = (field.defense_width / 2 + _OUTSIDE) / max(abs(uy), 1e-6)
-    out = min(deep, wide)
-    aside = (rank - 0.5 * (size - 1)) * _BESIDE
-    return own + out * ux - aside * uy, out * uy + aside * ux
+    depth = field.defense_depth + GAP
+    half = min(field.defense_width / 2 + GAP, field.width / 2)
+    x, y = wall_place(-field.length / 2, depth, half, sign * ball[0], sign * ball[1], rank, size)
+    return sign * x, sign * y
 
 
 @compiled

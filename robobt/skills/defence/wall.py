@@ -6,12 +6,16 @@ from math import inf
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point
 from robobt.world.state import ROBOT_RADIUS
 
-_AREA_GAP = 0.03
-_MATE_GAP = 0.02
+GAP = ROBOT_RADIUS + 0.03
+"""From the defence area to the middle of a robot in the wall [m]."""
+
+WIDTH = 2.0 * ROBOT_RADIUS + 0.02
+"""From one robot of a wall to the next [m]."""
 
 
 @skill
@@ -39,13 +43,8 @@ class Wall(Skill):
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
         frame = self.frame
-        edge = DefenseEdge(frame.field, ROBOT_RADIUS + _AREA_GAP)
-        width = 2.0 * ROBOT_RADIUS + _MATE_GAP
-        offset = (self.place - 0.5 * (self.size - 1)) * width
-        spread = 0.5 * (self.size - 1) * width
-        middle = edge.towards(frame.ball.position)
-        middle = min(edge.length - spread, max(spread, middle))
-        target = edge.point(middle + offset)
+        edge = DefenseEdge(frame.field, GAP)
+        target = edge.wall_place(frame.ball.position, self.place, self.size)
         self.drive_to(target, frame.ball.position, avoid_ball=True, thereabouts=True)
         return self.run("in the wall")
 
@@ -60,24 +59,42 @@ class DefenseEdge:
         self.line = -field.half_length
         self.depth = field.defense_depth + gap
         self.half = min(field.defense_width / 2 + gap, field.half_width)
-        self.length = 2.0 * self.depth + 2.0 * self.half
 
-    def point(self, way: float) -> Point:
-        """Return the point ``way`` metres along the edge."""
-        if way < self.depth:
-            return (self.line + way, self.half)
-        if way < self.depth + 2.0 * self.half:
-            return (self.line + self.depth, self.half - (way - self.depth))
-        return (self.line + self.length - way, -self.half)
+    def wall_place(self, ball: Point, place: int, size: int) -> Point:
+        """Return where one of a wall of ``size`` stands; places count from the left as they look out."""
+        return wall_place(self.line, self.depth, self.half, *ball, place, size)
 
-    def towards(self, ball: Point) -> float:
-        """Return how far along the edge the line from the goal's centre to the ball leaves the area [m]."""
-        dx, dy = ball[0] - self.line, ball[1]
-        to_front = self.depth / dx if dx > 0.0 else inf
-        to_side = self.half / abs(dy) if dy != 0.0 else inf
-        if to_front <= to_side:
-            if to_front == inf:
-                return 0.5 * self.length
-            return self.depth + self.half - to_front * dy
-        x = max(0.0, to_side * dx)
-        return x if dy > 0.0 else self.length - x
+
+@compilable
+def edge_point(line: float, depth: float, half: float, way: float) -> Point:
+    """Return the point ``way`` metres along a :class:`DefenseEdge`, of which the first three are."""
+    if way < depth:
+        return (line + way, half)
+    if way < depth + 2.0 * half:
+        return (line + depth, half - (way - depth))
+    return (line + (2.0 * depth + 2.0 * half) - way, -half)
+
+
+@compilable
+def edge_towards(line: float, depth: float, half: float, ball_x: float, ball_y: float) -> float:
+    """Return how far along the edge the line from the goal's centre to the ball leaves the area [m]."""
+    dx, dy = ball_x - line, ball_y
+    to_front = depth / dx if dx > 0.0 else inf
+    to_side = half / abs(dy) if dy != 0.0 else inf
+    if to_front <= to_side:
+        if to_front == inf:
+            return 0.5 * (2.0 * depth + 2.0 * half)
+        return depth + half - to_front * dy
+    x = max(0.0, to_side * dx)
+    return x if dy > 0.0 else 2.0 * depth + 2.0 * half - x
+
+
+@compilable
+def wall_place(
+    line: float, depth: float, half: float, ball_x: float, ball_y: float, place: int, size: int
+) -> Point:
+    """See :meth:`DefenseEdge.wall_place`, for compiled code."""
+    spread = 0.5 * (size - 1) * WIDTH
+    middle = edge_towards(line, depth, half, ball_x, ball_y)
+    middle = min(2.0 * depth + 2.0 * half - spread, max(spread, middle))
+    return edge_point(line, depth, half, middle + (place - 0.5 * (size - 1)) * WIDTH)

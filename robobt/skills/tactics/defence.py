@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from math import hypot
 
-from robobt.skills.defence.wall import DefenseEdge
+from robobt.skills.defence.wall import GAP, DefenseEdge
 from robobt.world.geometry import Point
 from robobt.world.rules import owner
-from robobt.world.state import ROBOT_RADIUS, Frame, RobotId, RobotState
+from robobt.world.state import Frame, RobotId, RobotState
 
 MARK_GAP = 0.3
 """From the marked opponent's centre to the marker's [m]."""
@@ -19,8 +19,6 @@ MARK_FROM = 0.8
 MARK_STAYS = 0.5
 """An opponent that is marked counts so much nearer to the goal [m]."""
 
-_AREA_GAP = 0.03
-_MATE_GAP = 0.02
 _LEAD = 0.15
 """The wall looks so far ahead of a rolling ball [s]."""
 
@@ -30,12 +28,8 @@ def wall_places(frame: Frame, size: int) -> list[Point]:
     if size <= 0:
         return []
     ball = frame.ball
-    edge = DefenseEdge(frame.field, ROBOT_RADIUS + _AREA_GAP)
-    width = 2.0 * ROBOT_RADIUS + _MATE_GAP
-    spread = 0.5 * (size - 1) * width
-    middle = edge.towards((ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy))
-    middle = min(edge.length - spread, max(spread, middle))
-    return [edge.point(middle + (place - 0.5 * (size - 1)) * width) for place in range(size)]
+    edge, ahead = DefenseEdge(frame.field, GAP), (ball.x + _LEAD * ball.vx, ball.y + _LEAD * ball.vy)
+    return [edge.wall_place(ahead, place, size) for place in range(size)]
 
 
 def threats(frame: Frame, marked: Collection[int] = ()) -> list[RobotState]:

@@ -36,7 +36,7 @@ _MARK_GAIN = 0.3
 _REACH = 0.06
 """Nobody but a goalkeeper goes for a ball in a defence area or this near to one [m]."""
 
-_MARK_FROM = 0.5
+MARK_FROM = 0.5
 """Opponents are marked up to this x: the own half and a little more [m]."""
 
 
@@ -133,7 +133,7 @@ def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
     threats = [
         (hypot(robot.x - goal_x, robot.y - goal_y), robot)
         for robot in frame.opponents
-        if robot.x < _MARK_FROM and (holder is None or holder != RobotId(frame.team.other, robot.id))
+        if robot.x < MARK_FROM and (holder is None or holder != RobotId(frame.team.other, robot.id))
     ]
     threats.sort(key=lambda threat: threat[0])
     marks: dict[int, int] = {}
