@@ -11,7 +11,7 @@ PLAYING := .venv/.playing
 # Without bytecode, every process that a test starts compiles robobt anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: match test test-fast install lint docs pictures clean
+.PHONY: match test test-fast install lint docs notebooks pictures clean
 
 match: $(PLAYING)
 	@mkdir -p out
@@ -37,6 +37,10 @@ lint: $(INSTALLED)
 docs: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	$(BIN)/python -m mkdocs build --strict
+
+# The notebooks of the tutorials with what they print and show, from examples/*.py; some four minutes.
+notebooks: $(INSTALLED)
+	$(BIN)/python -m tests.notebooks
 
 # The animations in README and docs, and with Chromium the pictures of the live page.
 pictures: $(INSTALLED)

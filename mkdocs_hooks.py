@@ -1,4 +1,4 @@
-"""Pages of the site that are made: tutorials from the examples, the reference from the package."""
+"""Pages of the site that are made: tutorials from their notebooks, the reference from the package."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import ast
 import inspect
 import json
 import re
+from base64 import b64encode
 from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
@@ -15,14 +16,14 @@ if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.files import Files
 
-EXAMPLES = Path(__file__).parent / "examples"
+TUTORIALS = Path(__file__).parent / "docs" / "tutorials"
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the tutorials and the pages of the reference."""
     from mkdocs.structure.files import File
 
-    pages = {f"tutorials/{path.stem}.md": tutorial(path.read_text()) for path in EXAMPLES.glob("*.py")}
+    pages = {f"tutorials/{path.stem}.md": tutorial(path) for path in TUTORIALS.glob("*.ipynb")}
     for name, make in (
         ("commands", commands),
         ("files", file_formats),
@@ -37,15 +38,22 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-def tutorial(script: str) -> str:
-    """Return a script in percent format as a page: prose from its Markdown cells, code from the others."""
+def tutorial(path: Path) -> str:
+    """Return a notebook as a page: prose, code, and below each cell what it printed and showed."""
     parts = []
-    for cell in re.split(r"(?m)^# %%", script)[1:]:
-        kind, _, text = cell.partition("\n")
-        if "[markdown]" in kind:
-            parts.append(re.sub(r"(?m)^# ?", "", text).strip())
-        else:
-            parts.append(f"```python\n{text.strip()}\n```")
+    for cell in json.loads(path.read_text())["cells"]:
+        code = cell["cell_type"] == "code"
+        parts.append(f"```python\n{cell['source']}\n```" if code else cell["source"])
+        for output in cell.get("outputs", ()):
+            data = output.get("data", {"text/plain": output.get("text")})
+            if "image/svg+xml" in data:
+                picture = b64encode(data["image/svg+xml"].encode()).decode()
+                parts.append(f"![What the cell shows](data:image/svg+xml;base64,{picture})")
+            elif "text/html" in data:
+                parts.append(data["text/html"])
+            else:
+                parts.append(f"``` {{ .text .output .no-copy }}\n{data['text/plain'].rstrip()}\n```")
+    parts.append(f"[This page as a notebook]({path.name})")
     return "\n\n".join(parts) + "\n"
 
 
