@@ -24,6 +24,7 @@ from robobt.cli.common import (
 from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
+from robobt.config.extras import need
 
 if TYPE_CHECKING:
     from robobt.live.server import Server
@@ -94,12 +95,9 @@ def live(
 @contextmanager
 def page_server(host: str, port: int, open_page: bool | None) -> Iterator[Server]:
     """Serve the live page, say where, and open it where that is wanted."""
-    try:
-        from robobt.live.server import Server
-    except ModuleNotFoundError as error:
-        if error.name != "websockets":
-            raise
-        raise typer.BadParameter("the live page needs websockets: pip install 'robobt[live]'") from error
+    need("live", "pyarrow", "websockets")
+    from robobt.live.server import Server
+
     own = host in ("127.0.0.1", "localhost", "::1")
     names = () if own else tuple(_names_of(host))
     with Server(host, port, names) as server:

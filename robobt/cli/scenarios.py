@@ -38,9 +38,9 @@ def scenarios(
         return
     from robobt.match import load_scenario
 
-    # The list needs no models; a scenario of one's own is looked at as a match would.
-    named = bundled_scenarios() if name is None else [name]
-    loaded = [load_scenario(source, build=name is not None) for source in named]
+    bundled = bundled_scenarios()
+    # A scenario of one's own is looked at as a match would, and its models are loaded.
+    loaded = [load_scenario(source, build=source not in bundled) for source in ([name] if name else bundled)]
     if as_json:
         print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
         return

@@ -16,16 +16,20 @@ from contextlib import suppress
 from http import HTTPStatus
 from typing import Any
 
-from websockets.asyncio.server import Server as SocketServer
-from websockets.asyncio.server import ServerConnection, serve
-from websockets.http11 import Request, Response
-
 from robobt.config.errors import RobobtError
+from robobt.config.extras import MissingExtraError
 from robobt.live.access import LOOPBACK, Access
 from robobt.live.audience import MOST_VIEWERS, Audience
 from robobt.live.http import RECORDING_TYPE, file_response, response
 from robobt.live.messages import MOST_BYTES
 from robobt.live.stream import Stream
+
+try:
+    from websockets.asyncio.server import Server as SocketServer
+    from websockets.asyncio.server import ServerConnection, serve
+    from websockets.http11 import Request, Response
+except ModuleNotFoundError as error:
+    raise MissingExtraError("websockets", "live") from error
 
 _BEAT = 1.0 / 60.0
 """How often new ticks are looked for at least while somebody watches [s]."""

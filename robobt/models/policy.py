@@ -133,7 +133,7 @@ class _TorchScript:
     """A frozen TorchScript module."""
 
     def __init__(self, file: ModelFile) -> None:
-        with _telling("needs torch to run"):
+        with _telling("needs torch to run (pip install torch)"):
             import torch
 
         from robobt.models.checks.bounds import Bounds
@@ -197,7 +197,7 @@ class _Onnx:
 
     def __init__(self, file: ModelFile) -> None:
         check_onnx(file.content, _PROBES, file.card.observation.size)
-        with _telling("needs onnxruntime to run"):
+        with _telling('needs onnxruntime to run (pip install "robobt[onnx]")'):
             import onnxruntime  # type: ignore[import-untyped]
 
         options = onnxruntime.SessionOptions()

@@ -102,7 +102,7 @@ class TestBothFormats:
         package = {"torchscript": "torch", "onnx": "onnxruntime"}[format_]
         monkeypatch.setattr(policy, "_LOADED", {})
         monkeypatch.setitem(sys.modules, package, None)
-        with pytest.raises(ModelError, match=rf"{files[format_]}: needs {package} to run"):
+        with pytest.raises(ModelError, match=rf"{files[format_]}: needs {package} to run \(pip install"):
             load_policy(files[format_])
 
     def test_it_is_refused_for_another_skill_or_observation(

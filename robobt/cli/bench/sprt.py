@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, console, print_json, say, table
+from robobt.config.extras import need
 
 
 def bench_sprt(
@@ -40,6 +41,7 @@ def bench_sprt(
     """
     import numpy as np
 
+    need("tournament", "scipy")
     from robobt.tournament.sequential import SequentialTest
     from robobt.tournament.simulated import simulate
 

@@ -44,6 +44,7 @@ from robobt.cli.tournament.asked import (
     tell_waiting,
 )
 from robobt.cli.tournament.tables import print_standings
+from robobt.config.extras import need
 
 if TYPE_CHECKING:
     from robobt.tournament.fixtures import Fixture
@@ -142,6 +143,7 @@ def tournament(
     being played, by match; interrupted; sprt, null without: elo0, elo1, alpha, beta, verdict, rounds,
     ratio (log-likelihood), bounds.
     """
+    need("tournament", "google.protobuf", "pyarrow", "scipy")
     from robobt.tournament.plan import Plan
     from robobt.tournament.play import play
     from robobt.tournament.sequential import RunningTest
