@@ -11,14 +11,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import compress, count
-from operator import is_not
+from operator import eq, is_not
 from types import CodeType, FunctionType
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from robobt.tree.engine import ticked_children
+from robobt.tree.engine import Marks, ticked_children
 from robobt.tree.runner import TreeRunner, text_of
 
 _LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R", "INVALID": "-"}
@@ -68,13 +68,69 @@ class TreeChange:
     error: str | None
 
 
-class TreeWatch:
-    """Looks at a runner's tree for what may have changed, quickly enough to be done at every tick.
+class TreeWatches:
+    """Looks at the trees of some runners for what may have changed, quickly enough to be done at every tick.
 
-    A runner has one at a time.
+    Even to ask every tree would take long, for what it answers from is in no cache any more: those
+    of which there is something new say so.
+
+    Attributes:
+        each: what looks at each tree. A runner has one at a time.
     """
 
-    def __init__(self, runner: TreeRunner) -> None:
+    def __init__(self, runners: Sequence[TreeRunner]) -> None:
+        self._news: list[Marks] = []
+        self.each = [TreeWatch(runner, self._news) for runner in runners]
+        self._begin()
+
+    def replace(self, place: int, runner: TreeRunner) -> None:
+        """Look at another tree, of the same nodes, in place of one."""
+        self.each[place] = TreeWatch(runner, self._news)
+        self._begin()
+
+    def _begin(self) -> None:
+        self._places = {watch.marks: place for place, watch in enumerate(self.each)}
+        runners = [watch.runner for watch in self.each]
+        self._read = make_reader(
+            "(" + "".join([f"'{place}'.ticks," for place in range(len(runners))]) + ")", runners
+        )
+        # As of the last look: how often each was ticked, and whether all of them were since the look before.
+        self._ticks: tuple[int, ...] = self._read()
+        self._usual = False
+
+    def look(self) -> list[tuple[int, TreeState]]:
+        """Return the trees' states that may be others than at the last look, by their places."""
+        before, self._ticks = self._ticks, self._read()
+        usual, self._usual = self._usual, not any(map(eq, before, self._ticks))
+        places: Iterable[int]
+        if not (usual and self._usual):
+            places = range(len(self.each))
+        elif self._news:
+            places = sorted({self._places[marks] for marks in self._news if marks in self._places})
+        else:
+            return []
+        self._news.clear()
+        states = [(place, self.each[place].look(before[place] != self._ticks[place])) for place in places]
+        return [(place, state) for place, state in states if state is not None]
+
+    def look_again(self) -> None:
+        """Look at every node next time, for what one may have done to another one unseen."""
+        for watch in self.each:
+            watch.marks.change()
+
+
+class TreeWatch:
+    """Looks at one runner's tree for what may have changed.
+
+    Attributes:
+        runner: ticks it.
+        marks: what is noted of its ticks.
+        places: of each node, by its id().
+        parents: of each node the place of its parent.
+        reach: of each node which children its tick reaches.
+    """
+
+    def __init__(self, runner: TreeRunner, news: list[Marks]) -> None:
         nodes = runner.nodes
         places = {id(node): place for place, node in enumerate(nodes)}
         self.runner = runner
@@ -82,20 +138,21 @@ class TreeWatch:
         self.parents = [-1 if node is runner.root else places[id(node.parent)] for node in nodes]
         self.reach = [ticked_children(node) for node in nodes]
         doubtful = [node for i, node in enumerate(nodes[1:], 1) if self.reach[self.parents[i]] == "some"]
-        self._marks = runner.mark(doubtful)
+        self.marks = runner.mark(doubtful, news)
         self._speakers = [place for place, node in enumerate(nodes) if type(node) not in _SILENT]
         self._statuses = _reader(range(len(nodes)), "status", nodes)
         self._feedback = _reader(self._speakers, "feedback_message", nodes)
         # As of the last look.
-        self._ticks = runner.ticks
         self._ticked = False
 
-    def look(self) -> TreeState | None:
-        """Return the tree's state if it may be another one than at the last look."""
-        runner, marks = self.runner, self._marks
-        usual = self._ticked
-        self._ticked = ticked = runner.ticks != self._ticks
-        self._ticks = runner.ticks
+    def look(self, ticked: bool) -> TreeState | None:
+        """Return the tree's state if it may be another one than at the last look.
+
+        ``ticked`` is whether it was ticked since then. Where that is as it was, and there is nothing new
+        in the marks, it need not be asked.
+        """
+        runner, marks = self.runner, self.marks
+        usual, self._ticked = self._ticked, ticked
         if ticked and usual and not marks.changed:
             if not marks.feedback:
                 return None
@@ -105,16 +162,14 @@ class TreeWatch:
             return TreeState(None, places, [node.feedback_message for node in known], watch=self)
         if not (ticked or usual or marks.changed):
             return None
-        # What becomes of a tree that was brought to rest is not what its leaves did before.
-        marks.changed = runner.error is not None or runner.root.status is Status.INVALID
+        marks.changed = False
+        if runner.error is not None or runner.root.status is Status.INVALID:
+            # What becomes of a tree that was brought to rest is not what its leaves did before.
+            marks.change()
         marks.feedback.clear()
-        reached = marks.seen.copy() if ticked else ()
+        reached = marks.seen if ticked else ()
         speakers, feedback = self._speakers, self._feedback()
         return TreeState(self._statuses(), speakers, feedback, ticked, reached, runner.error, self)
-
-    def look_again(self) -> None:
-        """Look at every node next time, for what one may have done to another one unseen."""
-        self._marks.changed = True
 
 
 class TreeChanges:

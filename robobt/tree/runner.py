@@ -103,6 +103,8 @@ class TreeRunner:
         abandon(self.root)
         node.status, node.feedback_message = Status.FAILURE, said
         self._failed = node
+        if self._marks is not None:
+            self._marks.change()
 
     def tick_by_py_trees(self) -> None:
         """Tick by py_trees' own generators from now on: the same, slower, for comparison."""
@@ -114,12 +116,12 @@ class TreeRunner:
         self._visitor = visitor
         self._renew()
 
-    def mark(self, nodes: Iterable[Behaviour]) -> Marks:
+    def mark(self, nodes: Iterable[Behaviour], news: list[Marks]) -> Marks:
         """Note what changes in the tree from now on, in what is returned.
 
-        Of all nodes at least ``nodes`` are noted when they are ticked; the notes are those of the last tick.
+        Of all nodes at least ``nodes`` are noted when they are ticked. For ``news`` see :class:`Marks`.
         """
-        self._marks = Marks(nodes)
+        self._marks = Marks(nodes, lambda: self.ticks, news)
         self._renew()
         return self._marks
 
@@ -138,15 +140,13 @@ class TreeRunner:
             visit = visit_both
         inner = self._by_py_trees(visit) if self._stock else compile_tree(self.root, visit)
         blind = self._stock or visit is not marks
-        if visitor is None and (marks is None or not (blind or marks.nodes)):
+        if visitor is None and (marks is None or not blind):
             self._tick = inner
             return
 
         def tick() -> Status:
-            if marks is not None:
-                marks.seen.clear()
-                if blind:
-                    marks.changed = True
+            if marks is not None and blind:
+                marks.change()
             if visitor is None:
                 return inner()
             visitor.initialise()
@@ -182,7 +182,7 @@ class TreeRunner:
             _log.warning("%s: %s", node_path(node), said)
             abandon(self.root)
         if self._marks is not None:
-            self._marks.changed = True
+            self._marks.change()
 
     def _raiser(self, error: BaseException) -> tuple[Behaviour, str]:
         """Return the node that raised, and what it is, with the line of the skill's file."""

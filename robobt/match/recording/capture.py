@@ -16,7 +16,7 @@ from robobt.match.recording.stores import Written, stores_of
 from robobt.skills.store import Store
 from robobt.tree import TreeRunner
 from robobt.tree.drawing import describe
-from robobt.tree.recording import TreeState, TreeWatch, node_ids
+from robobt.tree.recording import TreeState, TreeWatches, node_ids
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, Team
 from robobt.world.sketch import Shape, Sketch
@@ -62,7 +62,8 @@ class Capture:
 
     Attributes:
         header: the same with the trees.
-        trees: of each captured tree the robot and what looks at it.
+        robots: those whose trees are captured.
+        trees: what looks at their trees.
         stores: what looks at the stores.
         takers: are called with each tick.
         field: what the world itself draws.
@@ -78,7 +79,8 @@ class Capture:
         runners = runners or {}
         robots = tuple([_with_tree(robot, runners.get(robot.id)) for robot in header.robots])
         self.header = header.model_copy(update={"robots": robots})
-        self.trees = [(robot.id, TreeWatch(runners[robot.id])) for robot in robots if robot.id in runners]
+        self.robots = [robot.id for robot in robots if robot.id in runners]
+        self.trees = TreeWatches([runners[robot] for robot in self.robots])
         self.stores = stores_of(runners, stores or {})
         self.takers: list[Callable[[CapturedTick], None]] = []
         self.field = Sketch()
@@ -96,11 +98,11 @@ class Capture:
 
     def change_tree(self, before: TreeRunner, after: TreeRunner) -> bool:
         """Look at another tree in place of one; False where it has other nodes, which nobody expects."""
-        for place, (robot, watch) in enumerate(self.trees):
+        for place, watch in enumerate(self.trees.each):
             if watch.runner is before:
                 if _shape(before) != _shape(after):
                     return False
-                self.trees[place] = robot, TreeWatch(after)
+                self.trees.replace(place, after)
                 return True
         return False
 
@@ -123,15 +125,9 @@ class Capture:
         """
         if self._ticks == self._round:
             self._ticks = 0
-            for _, watch in self.trees:
-                watch.look_again()
+            self.trees.look_again()
         self._ticks += 1
         truth = frame.seen_by(Team.BLUE).packed() if packed is None else packed
-        states = []
-        for place, (_, watch) in enumerate(self.trees):
-            state = watch.look()
-            if state is not None:
-                states.append((place, state))
         changes: dict[str, Any] = {}
         game = frame.game if frame.team is Team.BLUE else frame.game.mirrored()
         if game is not self._game:
@@ -152,7 +148,7 @@ class Capture:
             truth if observed is None else observed.seen_by(Team.BLUE).packed(),
             # They are made anew every tick, so it is enough to keep them.
             commands or {},
-            states,
+            self.trees.look(),
             self.stores.look(),
             changes,
         )

@@ -64,7 +64,10 @@ class TickEncoder:
     def __init__(self, capture: Capture, layers: Container[str] | None = None) -> None:
         self._layers = layers
         self._drawn: dict[str, list[Shape]] = {}
-        self._trees = [(robot, str(robot), TreeChanges(watch)) for robot, watch in capture.trees]
+        self._trees = [
+            (robot, str(robot), TreeChanges(watch))
+            for robot, watch in zip(capture.robots, capture.trees.each, strict=True)
+        ]
         self._stores = StoreChanges(capture.stores)
         self._numbers = TickNumbers([robot.id for robot in capture.header.robots])
 

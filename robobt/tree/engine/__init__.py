@@ -15,6 +15,8 @@ What differs: the attribute ``iterator`` of a node is not renewed, and nothing
 is logged at debug level.
 """
 
+# Makes the closures of py_trees' own composites known.
+from robobt.tree.engine import composites as composites
 from robobt.tree.engine.closures import FAILURE as FAILURE
 from robobt.tree.engine.closures import INVALID as INVALID
 from robobt.tree.engine.closures import RUNNING as RUNNING

@@ -41,37 +41,62 @@ class Marks:
     leaf returned what it did when it was ticked last has left the tree as it was, but for
     what nodes say.
 
-    Attributes:
+    Args:
         nodes: those.
-        seen: nodes that have been ticked, in py_trees' order, every one of ``nodes`` among
-            them; for its owner to clear.
+        tick: tells the number of the tick that goes on, or of the last one.
+        news: marks are appended to this when there is something new in them, so that whoever looks at many
+            trees finds those few of which there is; for its owner to clear.
+
+    Attributes:
+        nodes: see above.
         changed: whether statuses, feedback or the nodes that are ticked may be others than before;
             for its owner to set to False.
         feedback: unless ``changed``, the nodes that gave other feedback than before, which is all
             that is new; for its owner to clear.
     """
 
-    def __init__(self, nodes: Iterable[Behaviour]) -> None:
+    def __init__(self, nodes: Iterable[Behaviour], tick: Callable[[], int], news: list[Marks]) -> None:
         self.nodes = list(nodes)
         self._asked = {id(node) for node in self.nodes}
-        self.seen: list[Behaviour] = []
-        self._note = self.seen.append
-        self.changed = True
+        self._tick, self._news = tick, news
+        self._seen: list[Behaviour] = []
+        self._seen_at = -1
+        self.changed = False
         self.feedback: list[Behaviour] = []
+        self.change()
 
     def __call__(self, node: Behaviour) -> None:
         """Note that ``node`` has been ticked."""
-        self._note(node)
+        now = self._tick()
+        if now != self._seen_at:
+            self._seen, self._seen_at = [], now
+        self._seen.append(node)
+
+    @property
+    def seen(self) -> list[Behaviour]:
+        """Nodes that the last tick has reached, in py_trees' order, every one of ``nodes`` among them."""
+        return self._seen if self._seen_at == self._tick() else []
 
     def of(self, node: Behaviour) -> Visit | None:
         """Return what to call with this node; None when it is not asked for."""
-        return self._note if id(node) in self._asked else None
+        return self if id(node) in self._asked else None
+
+    def change(self) -> None:
+        """Note that the tree may be another than before."""
+        if not self.changed:
+            self.changed = True
+            self._news.append(self)
+
+    def say(self, node: Behaviour) -> None:
+        """Note that a node gives other feedback than before."""
+        self.feedback.append(node)
+        self._news.append(self)
 
     def whenever(self, tick: Tick) -> Tick:
         """Return a tick that marks the tree as changed, for nodes that are not followed."""
 
         def changing() -> Status:
-            self.changed = True
+            self.change()
             return tick()
 
         return changing

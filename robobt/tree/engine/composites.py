@@ -53,7 +53,7 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
         if start != began:
             began = start
             if marks is not None:
-                marks.changed = True
+                marks.change()
         status = SUCCESS
         for step in plan[start:] if start else plan:
             node.current_child = child = step.child
@@ -68,11 +68,11 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
                 if marks is not None:
                     said = child.feedback_message
                     if status is not step.status:
-                        marks.changed = True
+                        marks.change()
                         step.status, step.said = status, said if said.__class__ is str else None
                     elif said is not step.said and (said.__class__ is not str or said != step.said):
                         # A text made anew is often the same; of anything else nobody knows what != does.
-                        marks.feedback.append(child)
+                        marks.say(child)
                         step.said = said if said.__class__ is str else None
             if status is not SUCCESS:
                 if not node.memory and child is not children[-1]:
@@ -122,7 +122,7 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
         if start != began:
             began = start
             if marks is not None:
-                marks.changed = True
+                marks.change()
         previous = node.current_child
         for step in plan[start:] if start else plan:
             child = step.child
@@ -137,11 +137,11 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
                 if marks is not None:
                     said = child.feedback_message
                     if status is not step.status:
-                        marks.changed = True
+                        marks.change()
                         step.status, step.said = status, said if said.__class__ is str else None
                     elif said is not step.said and (said.__class__ is not str or said != step.said):
                         # A text made anew is often the same; of anything else nobody knows what != does.
-                        marks.feedback.append(child)
+                        marks.say(child)
                         step.said = said if said.__class__ is str else None
             if status is RUNNING or status is SUCCESS:
                 node.current_child = child
@@ -243,6 +243,6 @@ def _without_hooks(node: Behaviour) -> bool:
     return own_method(node, "initialise") is own_method(node, "terminate") is None
 
 
-register(Sequence, sequence_closures, _without_hooks)
-register(Selector, selector_closures, _without_hooks)
+register(Sequence, sequence_closures, _without_hooks, lambda node: "some" if node.memory else "all")
+register(Selector, selector_closures, _without_hooks, lambda node: "some" if node.memory else "first")
 register(Parallel, _parallel)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias, TypeVar, cast
+from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar, cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -11,6 +11,8 @@ from py_trees.common import Status
 from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit, has_method_of
 
 Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
+Reach: TypeAlias = Literal["all", "first", "some"]
+"""Which children a tick of a node reaches, see :func:`~robobt.tree.engine.reach.ticked_children`."""
 
 
 _N = TypeVar("_N", bound=Behaviour)
@@ -25,12 +27,14 @@ class Known(NamedTuple):
         make: makes a node's closures.
         followed: whether the closures of a node tell :class:`Marks` whatever else than its
             children decides about it.
+        reach: which children of a node its tick reaches.
     """
 
     tick: object
     stop: object
     make: Make
-    followed: Callable[[Behaviour], bool]
+    followed: Callable[[Behaviour], bool] = lambda _: False
+    reach: Callable[[Any], Reach] = lambda _: "some"
 
 
 def compile_tree(root: Behaviour, visit: Visit | None = None) -> Tick:
@@ -57,12 +61,13 @@ def register(
     cls: type[_N],
     make: Callable[[_N, Visit | None], tuple[Tick, Stop]],
     followed: Callable[[Behaviour], bool] = lambda _: False,
+    reach: Callable[[_N], Reach] = lambda _: "some",
 ) -> None:
     """Tick nodes that inherit ``tick`` and ``stop`` of a class by closures.
 
-    ``make`` makes the closures of such a node; for ``followed`` see :class:`Known`.
+    ``make`` makes the closures of such a node; for ``followed`` and ``reach`` see :class:`Known`.
     """
-    _KNOWN.append(Known(cls.tick, cls.stop, make, followed))
+    _KNOWN.append(Known(cls.tick, cls.stop, make, followed, reach))
 
 
 def known_as(node: Behaviour) -> Known:
@@ -100,7 +105,5 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 _KNOWN: list[Known] = []
-AS_IT_IS = Known(None, None, _as_it_is, lambda _: False)
-_AS_IT_BRINGS = Known(
-    None, None, lambda node, visit: cast(BringsClosures, node).closures(visit), lambda _: False
-)
+AS_IT_IS = Known(None, None, _as_it_is)
+_AS_IT_BRINGS = Known(None, None, lambda node, visit: cast(BringsClosures, node).closures(visit))

@@ -44,10 +44,10 @@ def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         if marks is not None:
             now = node.feedback_message
             if status is not last:
-                marks.changed = True
+                marks.change()
                 last, said = status, now if now.__class__ is str else None
             elif now is not said and (now.__class__ is not str or now != said):
-                marks.feedback.append(node)
+                marks.say(node)
                 said = now if now.__class__ is str else None
         if visit is not None:
             visit(node)
@@ -97,7 +97,7 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
         decorated = node.decorated
         tick_child, stop_child = compile_node(decorated, visit)
         if marks is not None:
-            marks.changed = True
+            marks.change()
 
     def tick() -> Status:
         nonlocal last, said
@@ -115,10 +115,10 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
         if marks is not None:
             now = node.feedback_message
             if status is not last:
-                marks.changed = True
+                marks.change()
                 last, said = status, now if now.__class__ is str else None
             elif now is not said and (now.__class__ is not str or now != said):
-                marks.feedback.append(node)
+                marks.say(node)
                 said = now if now.__class__ is str else None
         if show is not None:
             show(node)
@@ -182,6 +182,6 @@ def _one_shot(node: OneShot, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 register(Behaviour, leaf_closures, followed=lambda _: True)  # type: ignore[type-abstract]
-register(Decorator, decorator_closures, followed=lambda _: True)  # type: ignore[type-abstract]
+register(Decorator, decorator_closures, followed=lambda _: True, reach=lambda _: "all")  # type: ignore[type-abstract]
 register(EternalGuard, _eternal_guard)
 register(OneShot, _one_shot)

@@ -103,6 +103,6 @@ def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan
     """Bring a composite's closures up to its children; in place, for the closures share them."""
     known = {step.child.id: step for step in plan}
     if isinstance(visit, Marks):
-        visit.changed = True
+        visit.change()
     children[:] = node.children
     plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]

@@ -101,18 +101,21 @@ class Switch(Composite):
         children: list[Behaviour] = []
         plan: Plan = []
         stop = composite_stop(self, visit, children, plan)
-        before: tuple[int | None, object] | None = None
+        before: int | None = None
+        said: object = None
 
         def tick() -> Status:
-            nonlocal before
+            nonlocal before, said
             if self.children != children:
                 replan(self, visit, children, plan)
             if initialise is not None and self.status is not RUNNING:
                 initialise()
             chosen = self._choose()
-            if marks is not None and (chosen, self.feedback_message) != before:
-                before = (chosen, self.feedback_message)
-                marks.changed = True
+            if marks is not None:
+                now = self.feedback_message
+                if chosen != before or (now is not said and now != said):
+                    before, said = chosen, now
+                    marks.change()
             for place, step in enumerate(plan):
                 if place != chosen and step.child.status is not INVALID:
                     step.stop(INVALID)
@@ -149,4 +152,5 @@ def _without_hooks(switch: Behaviour) -> bool:
     return own_method(switch, "initialise") is own_method(switch, "terminate") is None
 
 
-register(Switch, _closures, _without_hooks)
+# Only the child that is ticked keeps a status.
+register(Switch, _closures, _without_hooks, lambda _: "all")

@@ -45,7 +45,14 @@ class Wait(Leaf[None]):
 
 
 class Raises(Leaf[None]):
+    def __init__(self, name: str, after: int = 0) -> None:
+        super().__init__(name)
+        self.left = after
+
     def on_running(self) -> Status:
+        if self.left:
+            self.left -= 1
+            return Status.RUNNING
         raise RuntimeError("broken on purpose")
 
 

@@ -269,15 +269,16 @@ def test_a_position_that_is_no_number_does_not_stop_the_recording(path: Path) ->
     assert len(recording.frame(2).own) == 2
 
 
-def test_a_tree_that_raises_leaves_one_event_a_fault(path: Path) -> None:
-    trees = {BLUE_1: TreeRunner(Selector("play", memory=False, children=[Raises("bad")]), None)}
+@pytest.mark.parametrize("after", [0, 3])
+def test_a_tree_that_raises_leaves_one_event_a_fault(path: Path, after: int) -> None:
+    trees = {BLUE_1: TreeRunner(Selector("play", memory=False, children=[Raises("bad", after)]), None)}
     with Recorder(path, header(), trees) as recorder:
         for tick in range(5):
             trees[BLUE_1].tick()
             recorder.tick(frame(tick))
         recorder.close({})
     (event,) = load_recording(path).events
-    assert (event.kind, event.robot, event.time) == ("error", BLUE_1, 0.0)
+    assert (event.kind, event.robot, event.time) == ("error", BLUE_1, frame(after).time)
     assert event.text.startswith("play/bad: RuntimeError: broken on purpose (made_recording.py:")
 
 
