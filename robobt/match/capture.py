@@ -52,7 +52,7 @@ class MatchCapture:
         layers: Container[str] = (),
     ) -> None:
         self._scenario, self._trial, self._seed = scenario, trial, seed
-        self._world, self._players = world, players
+        self._world, self._players, self._shows_truth = world, players, world.shows_truth
         self._plays = {robot: setup.play for robot, setup in scenario.robots}
         self._record, self._layers, self._parts = record, layers, 0
         self._capture: Capture | None = None
@@ -97,7 +97,7 @@ class MatchCapture:
                 self._capture.event(kind, truth.time, team=team)
             self._world.draw(self._capture.field)
             # What a world shows that may differ from the truth is compared when it is written.
-            self._capture.tick(truth, commands, None if self._world.shows_truth else observed, packed)
+            self._capture.tick(truth, commands, None if self._shows_truth else observed, packed)
 
     def note(self, event: ReportedEvent) -> None:
         """Capture an event."""

@@ -25,9 +25,8 @@ _DEEPEST = 6
 _CHANGEABLE = frozenset((list, set, dict))
 
 
-Values: TypeAlias = tuple[object, ...]
-Written: TypeAlias = tuple[int, Values]
-"""A store by its place, and what its entries hold."""
+Written: TypeAlias = tuple[int, object]
+"""An entry by its place, and what it holds."""
 
 
 class StoreWatch:
@@ -39,61 +38,61 @@ class StoreWatch:
     Args:
         stores: by a name each the store and the names of its entries to look at; an entry that
             is missing counts as None.
+
+    Attributes:
+        entries: the names of store and entry at each place.
     """
 
     def __init__(self, stores: Mapping[str, tuple[object, Sequence[str]]]) -> None:
-        self.watched = [(name, store, entries) for name, (store, entries) in stores.items() if entries]
-        items = [
-            "(" + "".join([f"'{place}'.{entry}," for entry in entries]) + ")"
-            for place, (_, _, entries) in enumerate(self.watched)
-        ]
-        self._read = make_reader(f"[{','.join(items)}]", [store for _, store, _ in self.watched])
-        self._values: list[Values] = [(None,) * len(entries) for _, _, entries in self.watched]
+        self.entries = [(name, entry) for name, (_, entries) in stores.items() for entry in entries]
+        self._stores = [stores[name][0] for name, _ in self.entries]
+        items = [f"'{place}'.{entry}," for place, (_, entry) in enumerate(self.entries)]
+        self._read = make_reader(f"[{''.join(items)}]", self._stores)
+        # As of the last look; of what may be changed in place a copy.
+        self._before: list[object] = [None] * len(self.entries)
 
     def look(self) -> list[Written]:
-        """Return the stores of which a value is not what it was at the last look."""
+        """Return the entries that are not what they were at the last look."""
+        before = self._before
         try:
+            # All of them at once, which is what they usually are.
             values = self._read()
-            if values == self._values:
+            if values == before:
                 return []
-            places = [*compress(count(), map(ne, values, self._values))]
+            places = [*compress(count(), map(ne, values, before))]
         except Exception:
             # An entry that is not there, or values that do not compare to a truth, as arrays.
-            values = [
-                tuple([getattr(store, entry, None) for entry in entries])
-                for _, store, entries in self.watched
-            ]
-            places = [*range(len(values))]
+            pairs = zip(self._stores, self.entries, strict=True)
+            values = [getattr(store, entry, None) for store, (_, entry) in pairs]
+            places = [place for place in range(len(values)) if _differ(values[place], before[place])]
         for place in places:
-            now = values[place]
-            if not _CHANGEABLE.isdisjoint(map(type, now)):
-                # What may be changed in place is kept as a copy.
-                now = tuple([value.copy() if type(value) in _CHANGEABLE else value for value in now])
-            self._values[place] = now
-        return [(place, self._values[place]) for place in places]
+            value = values[place]
+            before[place] = value.copy() if type(value) in _CHANGEABLE else value
+        return [(place, before[place]) for place in places]
+
+
+def _differ(now: object, before: object) -> bool:
+    try:
+        return bool(now != before)
+    except Exception:
+        return True
 
 
 class StoreChanges:
     """Makes plain data of what a :class:`StoreWatch` finds, at any later time but in the same order."""
 
     def __init__(self, watch: StoreWatch) -> None:
-        self._entries = [(name, entries) for name, _, entries in watch.watched]
-        # As of the last values that were made plain.
-        self._before: list[Values] = [(None,) * len(entries) for _, entries in self._entries]
-        self._plain: list[dict[str, JsonValue]] = [dict.fromkeys(entries) for _, entries in self._entries]
+        self._entries = watch.entries
+        self._plain: list[JsonValue] = [None] * len(self._entries)
 
     def plain(self, written: list[Written]) -> dict[str, dict[str, JsonValue]]:
         """Return by store and entry what is new in ``written``."""
         changed: dict[str, dict[str, JsonValue]] = {}
-        for place, values in written:
-            name, entries = self._entries[place]
-            for entry, value, before in zip(entries, values, self._before[place], strict=True):
-                if value is before:
-                    continue
-                now = plain(value)
-                if now != self._plain[place][entry]:
-                    self._plain[place][entry] = changed.setdefault(name, {})[entry] = now
-            self._before[place] = values
+        for place, value in written:
+            now = plain(value)
+            if now != self._plain[place]:
+                name, entry = self._entries[place]
+                self._plain[place] = changed.setdefault(name, {})[entry] = now
         return changed
 
 
