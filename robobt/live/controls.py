@@ -11,16 +11,17 @@ class Controls:
 
     Attributes:
         speed: times real time.
+        paused: whether only single ticks are played.
     """
 
     def __init__(self, server: Server, speed: float = 1.0, paused: bool = False) -> None:
         self._server = server
-        self.speed, self._paused, self._steps = speed, paused, 0
+        self.speed, self.paused, self._steps = speed, paused, 0
 
     @property
     def wait(self) -> bool:
         """Whether the next tick waits for a viewer."""
-        return self._paused and not self._steps
+        return self.paused and not self._steps
 
     def ticked(self) -> None:
         """Count a tick that was played."""
@@ -31,13 +32,13 @@ class Controls:
         """Do what is asked for, as far as it is about time."""
         match act:
             case Pause(on=on):
-                self._paused, self._steps = on, 0
+                self.paused, self._steps = on, 0
             case Step(ticks=ticks):
-                self._paused, self._steps = True, self._steps + ticks
+                self.paused, self._steps = True, self._steps + ticks
             case Speed(factor=factor):
                 self.speed = factor
         self.tell()
 
     def tell(self, **more: object) -> None:
         """Tell the viewers how it goes."""
-        self._server.tell(paused=self._paused, speed=self.speed, **more)
+        self._server.tell(paused=self.paused, speed=self.speed, **more)

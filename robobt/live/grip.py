@@ -26,6 +26,11 @@ class Grip:
         """Hold this robot, or "ball", no longer."""
         self._held.pop(name, None)
 
+    @property
+    def holding(self) -> bool:
+        """Whether anything is held."""
+        return bool(self._held)
+
     def moves(self, now: float) -> list[MoveBall | MoveRobot]:
         """Return what keeps everything in its place that is still held."""
         if not self._held:

@@ -77,6 +77,11 @@ class Hands:
                 self._grip.follow(move.model_copy(update={"held": False}), now)
                 self._server.say(str(error))
 
+    @property
+    def holding(self) -> bool:
+        """Whether anything is held where it is."""
+        return self._grip.holding
+
     def _do(self, act: Act, now: float) -> None:
         steering = self._steering
         match act:

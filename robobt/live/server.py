@@ -8,6 +8,7 @@ as well: they need no framework beside it.
 from __future__ import annotations
 
 import asyncio
+import gc
 import socket
 import sys
 import threading
@@ -100,6 +101,7 @@ class Server:
             with suppress(RuntimeError):
                 self._loop.call_soon_threadsafe(self._end.set)
         self._thread.join(timeout=5.0)
+        gc.unfreeze()
         sys.setswitchinterval(self._usual_switch)
 
     def show(self, stream: Stream) -> None:

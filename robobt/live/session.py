@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -63,8 +64,12 @@ class Live:
         self._capture: Capture | None = None
         self._stream: Stream | None = None
         self._hands: Hands | None = None
+        # What viewers look at, and the names of all layers and how many of those they are told.
         self._layers: frozenset[str] | None = None
+        self._named: set[str] = set()
         self._known = 0
+        # Whether every tick is to be attended to, and from one to the next [s].
+        self._attentive, self._period = True, 0.0
         self.ticks = self.late = 0
 
     def play_on(self, make: Callable[[int], Match]) -> None:
@@ -118,29 +123,29 @@ class Live:
     def begin(self, match: Match) -> Hands:
         """Show a match, before its first tick, and return what viewers do to it."""
         match.be_ready()
+        if self._capture is not None:
+            # What the match before has left.
+            gc.unfreeze()
+            gc.collect()
+        # Looking for garbage among all that is there already would take tenths of a second in the middle of
+        # the match. The server gives it back to the collector when it ends.
+        gc.freeze()
         self._hands = hands = Hands(match, self._server, self._clock)
         self._show(match)
         self._reset = None
+        self._attentive, self._paced = True, match.world.paced
         self._controls.tell(over=None, countdown=None)
         self._due = self._clock()
         return hands
 
     def tick(self, match: Match) -> bool:
         """Play one tick when it is due and viewers want it; False when it is over or not wanted."""
-        assert self._hands is not None
-        self._obey(match)
-        self._paced = match.world.paced
-        while self._controls.wait and not self._paced and self._reset is None and not self._ended:
-            self._idle(match)
-        if self._reset is not None or self._ended:
+        if self._wanted() and not self._attend(match):
             return False
-        self._hands.hold(self._clock())
-        self._draw()
         if not match.tick():
             self._controls.tell(over=match.outcome and match.outcome.value)
             return False
-        self._controls.ticked()
-        self._pace(match.scenario.period)
+        self._pace()
         return True
 
     def count_down(self, match: Match, seconds: float) -> None:
@@ -184,6 +189,35 @@ class Live:
         while self._reset is None and not self._ended:
             self._idle(match)
 
+    def _wanted(self) -> bool:
+        """Return whether anybody wants anything of the next tick but that it is played, which is rare.
+
+        It is asked at every tick, so it looks at no more than it must.
+        """
+        return (
+            self._attentive
+            or not self._server.inbox.empty()
+            or self._server.audience.layers is not self._layers
+            or len(self._named) != self._known
+            or self._ended
+        )
+
+    def _attend(self, match: Match) -> bool:
+        """Do what viewers want before the next tick; False where they want none of this match."""
+        assert self._hands is not None
+        while not self._server.inbox.empty():
+            self._do(*self._server.inbox.get_nowait(), match)
+        while self._controls.wait and not self._paced and self._reset is None and not self._ended:
+            self._idle(match)
+        if self._reset is not None or self._ended:
+            return False
+        self._hands.hold(self._clock())
+        self._draw()
+        self._controls.ticked()
+        self._period = match.scenario.period / self._controls.speed
+        self._attentive = self._controls.paused or self._hands.holding
+        return True
+
     def _idle(self, match: Match) -> None:
         """Wait a moment for what viewers ask for."""
         check()
@@ -191,17 +225,12 @@ class Live:
             self._do(*self._server.inbox.get(timeout=_LOOK), match)
         self._due = self._clock()
 
-    def _obey(self, match: Match) -> None:
-        """Do what viewers have asked for by now."""
-        while not self._server.inbox.empty():
-            self._do(*self._server.inbox.get_nowait(), match)
-
     def _show(self, match: Match) -> None:
         """Show the match as it is captured now."""
         capture = match.capture()
         if capture is not self._capture:
             self._capture, self._stream = capture, Stream(capture)
-            self._layers, self._known = None, 0
+            self._layers, self._named, self._known = None, capture.layers, 0
             self._server.show(self._stream)
 
     def _draw(self) -> None:
@@ -210,11 +239,12 @@ class Live:
         if self._layers is not self._server.layers:
             self._layers = self._server.layers
             self._capture.look(self._server, self._layers)
-        if len(self._capture.layers) != self._known:
-            self._known = len(self._capture.layers)
-            self._server.tell(layers=sorted(self._capture.layers))
+        if len(self._named) != self._known:
+            self._known = len(self._named)
+            self._server.tell(layers=sorted(self._named))
 
     def _do(self, act: Act, arrived: float, match: Match) -> None:
+        self._attentive = True
         if match.world.paced and isinstance(act, Pause | Step | Speed):
             self._server.say(
                 "A field waits for nobody: here the match cannot be paused, stepped or slowed down."
@@ -230,12 +260,12 @@ class Live:
                 # Another tree may have begun another capture.
                 self._show(match)
 
-    def _pace(self, period: float) -> None:
+    def _pace(self) -> None:
         """Wait for the time of the next tick."""
         if self._paced:
             # The world waits by itself.
             return
-        self._due += period / self._controls.speed
+        self._due += self._period
         now = self._clock()
         if now < self._due:
             self._sleep(self._due - now)
