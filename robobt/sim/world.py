@@ -129,15 +129,7 @@ class SimWorld(World):
             i = self._index[robot]
             if not command.finite():
                 raise ValueError(f"the command for {robot} is not finite: {command}")
-            sent[i] = (
-                command.vx,
-                command.vy,
-                command.omega,
-                command.kick_speed,
-                command.kick_trigger == KickTrigger.ON_CONTACT,
-                bool(command.dribbler),
-                command.kick_angle,
-            )
+            sent[i] = command_row(command)
         if lost is None:
             rows[:] = np.array(sent).reshape(rows.shape)
         elif lost.size:
@@ -230,8 +222,8 @@ class SimWorld(World):
         contact = self._arenas.contact[0].tolist()
         blue = len(self._blue)
         touch = int(self._arenas.touch[0])
-        own = _states(self._blue, robots[:blue], contact[:blue])
-        opponents = _states(self._yellow, robots[blue:], contact[blue:])
+        own = robot_states(self._blue, robots[:blue], contact[:blue])
+        opponents = robot_states(self._yellow, robots[blue:], contact[blue:])
         if self._taken:
             own = tuple([it for it in own if RobotId(Team.BLUE, it.id) not in self._taken])
             opponents = tuple([it for it in opponents if RobotId(Team.YELLOW, it.id) not in self._taken])
@@ -251,9 +243,23 @@ class SimWorld(World):
 _NOTHING = (0.0,) * COMMAND
 
 
-def _states(
+def command_row(command: RobotCommand) -> tuple[float, ...]:
+    """Return a command as :meth:`robobt.sim.arenas.Arenas.step` takes it."""
+    return (
+        command.vx,
+        command.vy,
+        command.omega,
+        command.kick_speed,
+        command.kick_trigger == KickTrigger.ON_CONTACT,
+        bool(command.dribbler),
+        command.kick_angle,
+    )
+
+
+def robot_states(
     known: list[tuple[int, RobotLimits]], rows: list[list[float]], contact: list[bool]
 ) -> tuple[RobotState, ...]:
+    """Return robots by their numbers and limits, rows of x, y, heading, vx, vy, omega and mouths."""
     return tuple(
         [
             RobotState(number, row[0], row[1], row[2], row[3], row[4], row[5], touching, limits)

@@ -11,12 +11,16 @@ from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings
 from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
 from robobt.learning.envs.soccer.rewards import SoccerReward
 from robobt.models.actions import SCORE_ACTION, ActionScaling
+from robobt.plays import PLAYS
 
-Role = Literal["learner", "goalkeeper", "still", "press", "mark", "wall", "attack", "pass", "redirect"]
+Role = Literal[
+    "learner", "goalkeeper", "play", "still", "press", "mark", "wall", "attack", "pass", "redirect"
+]
 Aim = Literal["score", "save", "keep", "pass", "hold"]
 AIMS = ("score", "save", "keep", "pass", "hold")
 LEARNER: Role = "learner"
 GOALKEEPER: Role = "goalkeeper"
+PLAY: Role = "play"
 
 
 class SoccerStarts(OrderedSettings):
@@ -67,6 +71,9 @@ class SoccerSettings(TaskSettings):
     decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
     blue: tuple[Role, ...] = Field(("learner",), min_length=1, max_length=11, description="who plays")
     yellow: tuple[Role, ...] = Field((), max_length=11, description="who plays against them")
+    plays: tuple[str, ...] = Field(
+        (), description="what those with the role play are moved by, in order, blue's first: names of plays"
+    )
     aim: Aim = Field(
         "score",
         description="success: blue's goal, none against it, the ball kept, a pass of blue's, the ball held",
@@ -116,6 +123,12 @@ class SoccerSettings(TaskSettings):
     def _sensible(self) -> Self:
         if self.action.kind != "drive_and_kick":
             raise ValueError("action: tasks of several robots need drive_and_kick actions")
+        played = self.roles.count(PLAY)
+        if len(self.plays) != played:
+            raise ValueError(f"plays: names {len(self.plays)}, for {played} robots with the role play")
+        unknown = [name for name in self.plays if name not in PLAYS]
+        if unknown:
+            raise ValueError(f"plays: no play is called {unknown[0]!r}; there are {', '.join(PLAYS)}")
         if not self.learners:
             raise ValueError("blue, yellow: nobody is a learner")
         if self.blue.count(GOALKEEPER) > 1 or self.yellow.count(GOALKEEPER) > 1:

@@ -7,11 +7,12 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.soccer.central import states_of
 from robobt.learning.envs.soccer.judge import GOAL, LAST, MIND, judge
-from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, SoccerSettings
+from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import TRAITS
+from robobt.learning.opponents.plays import PlayedRobots
 from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.world.compiled import numbers_of
 from robobt.world.limits import RobotLimits
@@ -90,6 +91,13 @@ class SoccerTask(ArenaTask):
             for index, role in enumerate(settings.roles)
             if role == GOALKEEPER
         ]
+        played = [index for index, role in enumerate(settings.roles) if role == PLAY]
+        self._played = PlayedRobots(
+            dict(zip(played, settings.plays, strict=True)),
+            self.blue,
+            [own or limits for own in self._robot_limits],
+            n,
+        )
         self._minds = np.zeros((n, MIND))
         self._before = np.zeros((n, len(self.learners), 2))
         super()._build()
@@ -101,12 +109,14 @@ class SoccerTask(ArenaTask):
         traits = starts[:, 6 * self.robots + 4 :]
         for k, keeper in enumerate(self._keepers):
             keeper.restart(which, traits[:, len(TRAITS) * k : len(TRAITS) * (k + 1)])
+        self._played.restart(self.arenas, which)
 
     def _oppose(self) -> None:
         arenas = self.arenas
         self._players.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
         for keeper in self._keepers:
             keeper.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
+        self._played.decide(arenas, self._commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
         arenas = self.arenas

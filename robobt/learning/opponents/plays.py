@@ -1,0 +1,85 @@
+"""Robots of arenas that any play moves, at its own speed: trees are ticked one by one, as in a match."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.match.players import Player
+from robobt.plays import PLAYS
+from robobt.sim.arenas import Arenas
+from robobt.sim.world import command_row, robot_states
+from robobt.skills.store import Store, TeamStore
+from robobt.tree import TreeRunner
+from robobt.world.game import Team
+from robobt.world.geometry import FloatArray
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BallState, Frame, RobotId, RobotState
+
+
+class PlayedRobots:
+    """Robots with trees of their own in each arena; those of a team share what a team shares.
+
+    They see the arena's true state in open play, as in a match without a referee, noise and delay. One whose
+    tree fails stands still for that tick.
+
+    Args:
+        plays: by a robot's index the name of what it plays.
+        blue: how many of an arena's robots, the first, are blue.
+        limits: what each robot can do.
+        n: number of arenas.
+    """
+
+    def __init__(self, plays: Mapping[int, str], blue: int, limits: Sequence[RobotLimits], n: int) -> None:
+        self._plays = dict(plays)
+        self._blue = list(enumerate(limits[:blue]))
+        self._yellow = list(enumerate(limits[blue:]))
+        self._players: list[dict[int, Player]] = [{} for _ in range(n)]
+        self._ticks = [0] * n
+
+    def restart(self, arenas: Arenas, which: NDArray[np.int64]) -> None:
+        """Begin anew in those of the ``arenas``."""
+        if not self._plays:
+            return
+        for arena in which.tolist():
+            self._ticks[arena] = 0
+            frame, teams = self._frame(arenas, arena), {team: TeamStore() for team in Team}
+            self._players[arena] = {}
+            for index, play in self._plays.items():
+                blue = len(self._blue)
+                robot = RobotId(Team.BLUE, index) if index < blue else RobotId(Team.YELLOW, index - blue)
+                store = Store(frame, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
+                self._players[arena][index] = Player(robot, TreeRunner(PLAYS[play](), store), store)
+
+    def decide(self, arenas: Arenas, commands: FloatArray) -> None:
+        """Decide one control tick: fill these robots' commands (n, R, COMMAND)."""
+        if not self._plays:
+            return
+        for arena, players in enumerate(self._players):
+            frame = self._frame(arenas, arena)
+            views = {team: frame.seen_by(team) for team in Team}
+            for index, player in players.items():
+                view = views[player.robot.team]
+                told = player.decide(view, view.own[player.robot.number])
+                commands[arena, index] = 0.0 if told is None else command_row(told)
+            self._ticks[arena] += 1
+
+    def _frame(self, arenas: Arenas, arena: int) -> Frame:
+        """Return what blue sees of an arena."""
+        robots, contact = arenas.robots[arena].tolist(), arenas.contact[arena].tolist()
+        (x, y, vx, vy), (z, vz, _) = arenas.balls[arena].tolist(), arenas.flight[arena].tolist()
+        touch, blue = int(arenas.touch[arena]), len(self._blue)
+        touched = RobotId(Team.BLUE, touch) if touch < blue else RobotId(Team.YELLOW, touch - blue)
+        return Frame(
+            self._ticks[arena] * arenas.period,
+            arenas.field,
+            BallState(x, y, vx, vy, z, vz),
+            robot_states(self._blue, robots[:blue], contact[:blue]),
+            robot_states(self._yellow, robots[blue:], contact[blue:]),
+            Team.BLUE,
+            arenas.period,
+            last_touch=touched if touch >= 0 else None,
+            ball_model=arenas.settings.ball.model,
+        )
