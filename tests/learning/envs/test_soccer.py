@@ -11,7 +11,7 @@ from robobt.learning.envs import run_starts
 from robobt.learning.envs.soccer.central import central_view
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.envs.soccer.suite import SUITE, scripted
+from robobt.learning.envs.soccer.suite import SUITE, played, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
 
 HELD = 0.0968
@@ -128,6 +128,18 @@ def test_the_script_can_do_what_the_task_asks_but_not_always(name: str) -> None:
     made = SoccerTask(scripted(SUITE[name]()), 60)
     episodes = run_starts(made, lambda seen: np.zeros((len(seen), 0)), made.sample_starts(9, 60))
     assert 0.0 < episodes.success.mean() < 0.6
+
+
+def test_a_play_in_the_learners_places_starts_where_they_do_and_meets_who_they_meet() -> None:
+    settings = SoccerSettings(
+        blue=("learner", "play"), yellow=("play", "goalkeeper"), plays=("stand_still", "attack_main")
+    )
+    mine = played(settings, "attack_expected")
+    assert (mine.blue, mine.yellow) == (("play", "play"), ("play", "goalkeeper"))
+    assert mine.plays == ("attack_expected", "stand_still", "attack_main")
+    task, theirs = SUITE["Save"](), played(SUITE["Save"](), "team_keeper")
+    starts = [SoccerTask(each).sample_starts(5, 10) for each in (task, theirs)]
+    np.testing.assert_array_equal(*starts)
 
 
 def test_a_pass_counts_when_it_comes_to_a_mate() -> None:

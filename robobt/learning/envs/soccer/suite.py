@@ -10,6 +10,7 @@ from robobt.learning.envs.soccer.rewards import SoccerReward
 from robobt.learning.envs.soccer.settings import (
     GOALKEEPER,
     LEARNER,
+    PLAY,
     Aim,
     Role,
     SoccerRules,
@@ -190,6 +191,17 @@ def scripted(settings: SoccerSettings) -> SoccerSettings:
     """Return the ``settings`` with the script in the place of blue's learners, and attackers in yellow's."""
     own: Role = "redirect" if settings.rules.longest_hold else SCRIPTS[settings.aim]
     return against(instead(settings, own), "attack")
+
+
+def played(settings: SoccerSettings, play: str) -> SoccerSettings:
+    """Return the ``settings`` with robots that a play moves in the place of blue's learners."""
+    named, plays = iter(settings.plays), []
+    for index, role in enumerate(settings.roles):
+        if role == PLAY:
+            plays.append(next(named))
+        elif role == LEARNER and index < len(settings.blue):
+            plays.append(play)
+    return instead(settings, PLAY).model_copy(update={"plays": tuple(plays)})
 
 
 def against(settings: SoccerSettings, role: Role) -> SoccerSettings:
