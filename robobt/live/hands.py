@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from robobt.config.errors import RobobtError
@@ -29,6 +29,7 @@ from robobt.live.messages import (
 from robobt.live.server import Server
 from robobt.match.loop import Match
 from robobt.match.steering import Steering, SteeringError
+from robobt.models.find import paths_in
 from robobt.plays import PLAYS
 from robobt.tree.parameters import Parameter
 from robobt.world.state import RobotId
@@ -42,7 +43,8 @@ class Hands:
         self._steering = Steering(match)
         self._grip = Grip()
         self._situations = 0
-        # No page may have a file of this machine loaded as a play.
+        # No page may have a file of this machine loaded, as a play or as a model, but those.
+        self._files = paths_in(match.scenario.model_dump(mode="json"))
         self._plays = [*dict.fromkeys([*PLAYS, *[setup.play for _, setup in match.scenario.robots]])]
         server.tell(
             movable=self._steering.movable,
@@ -98,10 +100,12 @@ class Hands:
             case Play(play=play) if play not in self._plays:
                 raise SteeringError(f"no play of this match is called {play!r}")
             case Play(robot=robot, play=play, params=params):
+                self._check_files(robot_of(robot), "", params)
                 for each in self._meant(act):
                     steering.play(each, play, params)
                 self._tell_form(robot_of(robot), "")
             case Skill(robot=robot, path=path, params=params):
+                self._check_files(robot_of(robot), path, params)
                 steering.change_skill(robot_of(robot), path, params)
                 self._tell_form(robot_of(robot), path)
             case Situation():
@@ -148,6 +152,14 @@ class Hands:
             self._steering.move_ball(move.x, move.y, move.vx, move.vy, move.held)
         else:
             self._steering.move_robot(robot_of(move.robot), move.x, move.y, move.heading, move.held)
+
+    def _check_files(self, robot: RobotId, path: str, params: Mapping[str, object]) -> None:
+        """Refuse parameters that name a file which neither the scenario names nor what they are now."""
+        for file in paths_in(dict(params)) - self._files:
+            if file not in paths_in([value for _, value in self._steering.parameters(robot, path)]):
+                raise SteeringError(
+                    f"{file!r} is a file: a page names models that are installed, by their names"
+                )
 
     def _meant(self, act: Play) -> list[RobotId]:
         robot = robot_of(act.robot)

@@ -24,7 +24,7 @@ def find_model(name_or_path: str | Path) -> Path:
         ModelError: there are several, and they are not the same.
     """
     text = str(name_or_path)
-    if isinstance(name_or_path, Path) or "/" in text or "\\" in text or text.endswith(_ENDINGS):
+    if isinstance(name_or_path, Path) or is_path(text):
         return Path(name_or_path)
     folders = model_folders()
     found: dict[Path, Path] = {}
@@ -40,6 +40,19 @@ def find_model(name_or_path: str | Path) -> Path:
         return path
     there = ", ".join(sorted({path.stem for folder in folders for path in list_models(folder)})) or "none"
     raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+
+
+def is_path(text: str) -> bool:
+    """Return whether a text names a model by the path of its file, not by its name."""
+    return "/" in text or "\\" in text or text.endswith(_ENDINGS)
+
+
+def paths_in(value: object) -> set[str]:
+    """Return the texts in plain data that name a model by the path of its file."""
+    if isinstance(value, str):
+        return {value} if is_path(value) else set()
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list | tuple) else ()
+    return {path for part in parts for path in paths_in(part)}
 
 
 def rename_models(value: object, rename: Callable[[str], str]) -> object:

@@ -1,5 +1,6 @@
 """What a page asks for is done to the match, or it is told why not."""
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from time import perf_counter
@@ -7,9 +8,11 @@ from time import perf_counter
 import pytest
 
 from robobt.live.hands import Hands
-from robobt.live.messages import Act, GiveOrder, MoveBall, Play
+from robobt.live.messages import Act, GiveOrder, MoveBall, Play, Skill
 from robobt.live.server import Server
 from robobt.match import Match, load_scenario
+from robobt.models.find import find_model
+from robobt.tree.recording import node_ids
 from robobt.world.game import RefereeCommand
 from robobt.worlds import sim_world
 
@@ -45,6 +48,40 @@ def test_a_page_lets_no_file_of_this_machine_be_played(asked: Asked, tmp_path: P
     assert player.runner is before
     assert asked.told(Play(do="play", robot="blue 1", play="stand_still")) == ""
     assert player.runner is not before
+
+
+def test_a_page_lets_no_model_file_of_this_machine_be_loaded(asked: Asked, tmp_path: Path) -> None:
+    player = asked.match.players[1]
+    before = player.runner
+    shipped = find_model("go_to_ball_ddpg")
+    (path,) = (
+        path for _, path in node_ids(before.nodes) if path.endswith("pressed/kick away/shoot/SelectShot")
+    )
+    for name in (str(shipped), f"../{shipped.name}", "theirs.onnx", "sub\\theirs"):
+        for act in (
+            Play(do="play", robot="blue 1", play="go_to_ball_and_shoot", params={"policy": name}),
+            Play(do="play", robot="blue 1", play="go_to_ball_and_shoot", params={"policy": {"in": [name]}}),
+            Skill(do="skill", robot="blue 1", path=path, params={"rater": name}),
+        ):
+            assert (
+                asked.told(act)
+                == f"{name!r} is a file: a page names models that are installed, by their names"
+            )
+    assert player.runner is before
+    by_name = Play(
+        do="play", robot="blue 1", play="go_to_ball_and_shoot", params={"policy": "go_to_ball_ddpg"}
+    )
+    assert asked.told(by_name) == ""
+    assert player.runner is not before
+
+
+def test_a_model_file_that_the_scenario_names_may_be_kept(tmp_path: Path) -> None:
+    model = str(shutil.copy(find_model("go_to_ball_ddpg"), tmp_path / "mine.pt"))
+    setup = {"play": "go_to_ball_and_shoot", "params": {"policy": model}}
+    with Match(load_scenario("three_v_three").with_robot("blue 1", **setup), 3, sim_world) as match:
+        asked = Asked(match)
+        for robot in ("blue 1", "blue 2"):
+            assert asked.told(Play(do="play", robot=robot, **setup)) == ""
 
 
 def test_the_referee_takes_orders_from_the_first_tick_on(asked: Asked) -> None:
