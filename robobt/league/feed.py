@@ -193,7 +193,8 @@ class Feed:
         apart = self._camera_clocks.shift(frame.camera, came, frame.sent)
         frame.captured += apart
         frame.sent += apart
-        if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame)):
+        there = known.clock.at(arrived)
+        if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame), there):
             return
         self.frames += 1
         self.heard = came

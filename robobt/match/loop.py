@@ -86,6 +86,9 @@ class Match:
             )
         placement_seed, world_seed = np.random.SeedSequence(seed).spawn(2)
         placement = scenario.place(np.random.default_rng(placement_seed))
+        if self.world.paced:
+            # A field goes on meanwhile.
+            self.be_ready()
         self.world.reset(placement, int(world_seed.generate_state(1)[0]))
         self.players = make_players(scenario, self.world.observe())
         self.measures = Measures({player.robot: None for player in self.players})
@@ -107,8 +110,6 @@ class Match:
         self._time = 0.0
         path = None if record is None else Path(record)
         self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
-        if self.world.paced:
-            self.be_ready()
 
     def __repr__(self) -> str:
         standing = "playing" if self.outcome is None else self.outcome.value

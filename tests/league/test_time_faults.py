@@ -107,3 +107,17 @@ def test_halves_of_the_field_under_clocks_that_differ_are_both_seen(
     x = 89 * PERIOD
     assert frame_now.own[0].x == pytest.approx(-2.0 + x, abs=0.02)
     assert frame_now.opponents[0].x == pytest.approx(2.0 - x, abs=0.02)
+
+
+@pytest.mark.parametrize(("gone_on", "restarts"), [(30.0, 0), (0.0, 1)])
+def test_a_field_that_went_on_while_nobody_listened_was_not_restarted(
+    ticking: tuple[LeagueWorld, Callable[[float], None]], gone_on: float, restarts: int
+) -> None:
+    world, set_clock = ticking
+    for i in range(120):
+        now = 50.0 + i * PERIOD
+        away = 0.0 if i < 90 else 1.0
+        set_clock(now + away * gone_on)
+        world._feed.add(frame(now + away * 30.0, x=-2.0), now + away * gone_on)
+    assert world._feed.filter.restarts == restarts
+    assert list(world._feed.frame_at(world._feed.vision_now()).robots()) == [LEFT]

@@ -129,15 +129,19 @@ class VisionFilter:
             self._flights.clear()
             self._outliers.forget(None)
 
-    def add(self, frame: CameraFrame) -> bool:
-        """Use a camera's frame; return False for a duplicate, a late frame or an unconfirmed time."""
+    def add(self, frame: CameraFrame, now: float | None = None) -> bool:
+        """Use a camera's frame; return False for a duplicate, a late frame or an unconfirmed time.
+
+        ``now`` is the time of the source's clock as far as it is known [s]: frames of about then are those of
+        a source that went on while nobody listened.
+        """
         time = frame.captured
         if self.captured is not None and not -_JUMP_BACK < time - self.captured < _GAP:
             if not self._confirmed_time(time):
                 return False
             if not -_JUMP_BACK < time - self.captured < _JUMP_AHEAD:
+                self.restarts += now is None or not self.captured - _JUMP_BACK < time < now + _JUMP_AHEAD
                 self.clear()
-                self.restarts += 1
         self._odd_time = None
         last = self._cameras.get(frame.camera)
         if last is not None and time <= last:

@@ -160,7 +160,6 @@ const drawShape = ([layer, kind, x, y, u, v], side) => {
 };
 const shapesOf = (changes, frame) => { const text = valueAt(changes, frame, ""); return text && text !== "[]" ? JSON.parse(text).filter(([layer]) => state.layers.has(layer)) : []; };
 const drawDrawn = (frame, places) => {
-  for (const shape of shapesOf(match.drawn, frame)) drawShape(shape, 1);
   match.robots.forEach((robot, slot) => {
     if (!places[slot]) return;
     for (const shape of shapesOf(robot.drawn, frame)) drawShape(shape, robot.view);
@@ -251,6 +250,8 @@ export const drawMatch = () => {
     pen.beginPath(); pen.arc(px(there.x), py(there.y) - .5 * height * view.scale, radius * (1 + height), 0, 7);
     pen.fillStyle = colours.ball; pen.fill(); pen.strokeStyle = "rgba(60,20,0,.6)"; pen.lineWidth = 1; pen.stroke();
   }
+  /* What cameras reported lies over what was made of it. */
+  for (const shape of shapesOf(match.drawn, frame)) drawShape(shape, 1);
   /* The chosen robot's first: it is the one that is sure of its place. */
   const wide = .2 * view.scale, taken = places.filter(Boolean).map(place => ({ x: px(place.x), y: py(place.y), width: wide, height: wide, label: false }));
   if (state.robot) { const place = places[robots.indexOf(state.robot)]; if (place) drawLabel(doing(state.robot, frame), place, taken); }
