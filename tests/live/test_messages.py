@@ -1,0 +1,146 @@
+"""Whatever a page sends: it is read or refused, and the match goes on."""
+
+import json
+import random
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import suppress
+from math import nan
+from time import perf_counter
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from robobt.live.hands import Hands
+from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Message, read
+from robobt.live.server import Server
+from robobt.match import Match, load_scenario
+from robobt.plays import PLAYS
+from robobt.worlds import sim_world
+from tests.live.playing import Client, playing, wait_for
+
+FORMS: list[dict[str, Any]] = [
+    {"do": "pause", "on": True},
+    {"do": "step", "ticks": 3},
+    {"do": "speed", "factor": 0.5},
+    {"do": "reset", "next": False},
+    {"do": "seek", "time": 3.0},
+    {"do": "steer"},
+    {"do": "past"},
+    {"do": "layers", "shown": ["paths", "targets"]},
+    {"do": "ball", "x": 1.0, "y": -0.5, "vx": 2.0, "vy": 0.0, "held": False},
+    {"do": "robot", "robot": "blue 1", "x": 1.0, "y": 0.5, "heading": 1.0, "held": True},
+    {"do": "off", "robot": "yellow 1"},
+    {"do": "order", "order": "stop", "team": None},
+    {"do": "order", "order": "free kick", "team": "yellow"},
+    {"do": "form", "robot": "blue 1", "path": "field player/by the rules"},
+    {
+        "do": "play",
+        "robot": "blue 1",
+        "play": "field_player",
+        "params": {"rater": "open_angle"},
+        "team": True,
+    },
+    {"do": "skill", "robot": "blue 1", "path": "field player", "params": {"margin": 0.2}},
+    {"do": "situation"},
+    {"do": "take", "robot": "blue 2"},
+    {"do": "release"},
+    {"do": "rest"},
+    {
+        "do": "drive",
+        "at": 3.0,
+        "vx": 0.5,
+        "vy": -1.0,
+        "omega": 0.1,
+        "frame": "field",
+        "kick": 3.0,
+        "assist": True,
+    },
+]
+ABSURD: list[Any] = [
+    *(nan, 1e308, -1e308, -0.0, 2**70, -1, True, None, "", "blue 99", "blue -1", "yellow 0", "\ud800", "\0"),
+    *("<img src=x onerror=alert(1)>", "../../etc/passwd", "x" * 5000, [], {}, [[]] * 60, {"": {"": [None]}}),
+]
+
+
+def hostile(seed: int) -> Iterator[str | bytes]:
+    """Messages without end like those of a page, with other values, cut, spoiled or nested."""
+    rng = random.Random(seed)
+    while True:
+        message = dict(rng.choice(FORMS))
+        for _ in range(rng.choice((0, 1, 1, 2, 5))):
+            _change(message, rng)
+        text = json.dumps(message, ensure_ascii=rng.random() < 0.5)
+        data = text.encode("utf-8", "replace")
+        kind = rng.random()
+        if kind < 0.3:
+            spoiled = bytearray(data)
+            for _ in range(rng.choice((1, 2, 9))):
+                spoiled[rng.randrange(len(spoiled))] ^= 1 << rng.randrange(8)
+            yield bytes(spoiled)
+        elif kind < 0.4:
+            yield data[: rng.randrange(len(data))]
+        elif kind < 0.45:
+            yield b"[" * rng.randrange(3000) + data
+        else:
+            yield data.decode() if rng.random() < 0.8 else data
+
+
+def _change(message: dict[str, Any], rng: random.Random) -> None:
+    name = rng.choice([*message, "more"])
+    others = [other[key] for other in FORMS for key in other if key == name]
+    value = rng.choice(ABSURD if rng.random() < 0.6 or not others else others)
+    if name == "play" and rng.random() < 0.8:
+        value = rng.choice([*PLAYS])
+    if name == "params" and isinstance(value, dict):
+        value = {
+            **value,
+            rng.choice(("rater", "policy", "speed", "margin", "team", "without")): rng.choice(ABSURD),
+        }
+    message[name] = value
+
+
+@pytest.mark.parametrize("count", [3000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_whatever_is_sent_is_a_message_or_none(count: int) -> None:
+    found: Counter[str] = Counter()
+    for data, _ in zip(hostile(1), range(count), strict=False):
+        message = read(data)
+        found["none" if message is None else message.do] += 1
+        assert message is None or len(data) <= MOST_BYTES
+    print(dict(found))
+    assert found["none"] > count / 3
+    assert len(found) > 15
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(3000, marks=pytest.mark.slow)])
+def test_whatever_is_asked_for_the_match_goes_on(count: int) -> None:
+    server = Server()
+    with Match(load_scenario("three_v_three").lasting(1e4), 3, sim_world) as match:
+        hands = Hands(match, server, perf_counter)
+        messages: Iterator[Message] = filter(None, map(read, hostile(2)))
+        for number, message in zip(range(count), messages, strict=False):
+            if message.do not in ("steer", "past", "layers"):
+                hands.do(message, 0.1 * number, 0.1 * number)  # type: ignore[arg-type]
+            hands.hold(0.1 * number)
+            assert match.tick()
+        assert len(match.players) == 6
+
+
+@pytest.mark.slow
+@pytest.mark.integration
+def test_thousands_of_hostile_messages_over_the_network() -> None:
+    messages, sent = hostile(3), 0
+    with playing("three_v_three") as session:
+        while sum(session.server.refused.values()) < 5000:
+            with Client(session.server.url) as client, suppress(ConnectionClosed):
+                for _ in range(20 * MOST_REFUSED):
+                    client.socket.send(next(messages))
+                    sent += 1
+        ticks = session.ticks
+        with Client(session.server.url) as client:
+            client.socket.send(json.dumps({"do": "steer"}))
+            client.socket.send(json.dumps({"do": "reset"}))
+            client.socket.send(json.dumps({"do": "pause", "on": False}))
+            wait_for(lambda: 0 < session.ticks < ticks or session.ticks > ticks + 10)
+    print(sent, session.server.refused)
