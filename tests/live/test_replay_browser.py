@@ -54,7 +54,8 @@ def test_a_window_of_a_chart_is_downloaded(
     page.open((tmp_path / "m.html").as_uri())
     page.button("Chart").click()
     adding = Select(page.find(".chart select"))
-    for name in ("blue 0 x [m]", "blue 0 shot.score"):
+    more = ["blue 0 vy [m/s]", "blue 0 turning [rad/s]", "blue 0 ball contact"]
+    for name in ("blue 0 x [m]", "blue 0 shot.score", *more):
         adding.select_by_visible_text(name)
     plot = page.find(".plot")
     width = plot.size["width"]
@@ -70,13 +71,20 @@ def test_a_window_of_a_chart_is_downloaded(
     page.find(".chart a").click()
     page.until(saved.exists)
     rows = [*csv.reader(saved.read_text().splitlines())]
-    assert rows[0] == ["time [s]", "ball speed [m/s]", "blue 0 x [m]", "blue 0 shot.score"]
+    assert rows[0] == ["time [s]", "ball speed [m/s]", "blue 0 x [m]", "blue 0 shot.score", *more]
     assert 0.15 < len(rows) / len(recording) < 0.35
     times = [float(row[0]) for row in rows[1:]]
     ticks = [int(abs(recording.times - time).argmin()) for time in times]
     assert ticks == [*range(ticks[0], ticks[0] + len(ticks))]
     xs = [float(row[2]) for row in rows[1:]]
     assert xs == pytest.approx(recording.truth.robots[ticks, 0, 0].tolist(), abs=6e-4)
+    for column, field, close in ((4, 4, 0.25), (5, 5, 1.0)):
+        misses = [
+            abs(float(row[column]) - recording.truth.robots[tick, 0, field])
+            for row, tick in zip(rows[1:], ticks, strict=True)
+        ]
+        assert sorted(misses)[int(0.95 * len(misses))] < close
+    assert [float(row[6]) for row in rows[1:]] == recording.truth.contact[ticks, 0].tolist()
 
 
 TREE = """const rows = [...document.querySelectorAll("#tree .row")], box = document.querySelector("#tree").getBoundingClientRect();

@@ -14,6 +14,18 @@ let series = [], hovered = null, range = null, begun = null;
 /* ---------------------------------------------------------------- what there is to show */
 const row = (rows, place) => frame => rows()[4 * frame] === ABSENT ? null : rows()[4 * frame + place] / 1000;
 const fields = (owner, rows, names) => names.map((name, place) => ({ name: `${owner} ${name}`, at: row(rows, place) }));
+/* Rows tell speeds; the direction is that from the frame before to the one after, as is how fast it turns. */
+const around = (rows, frame) => {
+  const from = Math.max(0, frame - 1), to = Math.min(match.frames - 1, frame + 1);
+  if ([from, frame, to].some(each => rows[4 * each] === ABSENT) || from === to) return null;
+  return { seconds: match.times[to] - match.times[from], moved: [0, 1, 2].map(place => (rows[4 * to + place] - rows[4 * from + place]) / 1000) };
+};
+const velocity = (rows, place, speed) => frame => {
+  const step = around(rows(), frame);
+  return step && (rows()[4 * frame + speed] / 1000 * step.moved[place] / Math.hypot(step.moved[0], step.moved[1]) || 0);
+};
+const turning = rows => frame => { const step = around(rows(), frame); return step && Math.atan2(Math.sin(step.moved[2]), Math.cos(step.moved[2])) / step.seconds; };
+const FLAGS = { "ball contact": 1, "dribbler": 2, "kick": 4 };
 const robotOf = name => match.robots.find(robot => robot.name === name);
 const within = (value, path) => path.reduce((inner, key) => inner === null || typeof inner !== "object" ? null : inner[key] ?? null, value);
 const pathsOf = (value, path = []) => typeof value === "number" ? [path]
@@ -22,10 +34,15 @@ const holding = (robot, kind, key) => frame => { const known = robotOf(robot); r
 const number = value => typeof value === "number" && Number.isFinite(value) ? value : null;
 /* The ball's, and those of the chosen robot: each finds its robot by name, in a later match too. */
 const offered = () => {
-  const found = fields("ball", () => match.ball, ["x [m]", "y [m]", "speed [m/s]", "height [m]"]);
+  const ball = () => match.ball, found = fields("ball", ball, ["x [m]", "y [m]", "speed [m/s]", "height [m]"]);
+  ["vx", "vy"].forEach((axis, place) => found.push({ name: `ball ${axis} [m/s]`, at: velocity(ball, place, 2) }));
   if (state.robot) {
     const { name, numbers, written } = state.robot;
-    found.push(...fields(name, () => (robotOf(name) || { rows: [ABSENT] }).rows, ["x [m]", "y [m]", "heading [rad]", "speed [m/s]"]));
+    const rows = () => (robotOf(name) || { rows: [ABSENT] }).rows;
+    found.push(...fields(name, rows, ["x [m]", "y [m]", "heading [rad]", "speed [m/s]"]));
+    ["vx", "vy"].forEach((axis, place) => found.push({ name: `${name} ${axis} [m/s]`, at: velocity(rows, place, 3) }));
+    found.push({ name: `${name} turning [rad/s]`, at: turning(rows) });
+    for (const [flag, bit] of Object.entries(FLAGS)) found.push({ name: `${name} ${flag}`, at: frame => robotOf(name) ? Number((valueAt(robotOf(name).flags, frame, 0) & bit) > 0) : null });
     for (const key of numbers.keys()) found.push({ name: `${name} ${key}`, at: holding(name, "numbers", key) });
     for (const [entry, { values }] of written) {
       const paths = new Map([...values.slice(-200), null].flatMap(value => pathsOf(value)).map(path => [path.join("."), path]));
