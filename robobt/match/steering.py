@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import degrees, pi
+from math import degrees
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -16,6 +16,7 @@ from robobt.match.players import Player
 from robobt.match.referee.by_hand import Order, give
 from robobt.match.referee.referee import Referee
 from robobt.match.scenario.robots import RobotSetup
+from robobt.match.situation import situation_of
 from robobt.plays.files import find_play
 from robobt.tree.devtools.substitution import replaced
 from robobt.tree.leaf import Leaf
@@ -26,7 +27,6 @@ from robobt.tree.runner import preorder
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
-from robobt.world.rules import own_side
 from robobt.world.state import Frame, RobotId, RobotState
 
 Driver = Callable[[Frame, RobotState], RobotCommand]
@@ -151,34 +151,7 @@ class Steering:
 
     def situation(self) -> dict[str, Any]:
         """Return the scenario that begins with the present situation, as data."""
-        frame = self._match.world.truth()
-        data = self._match.scenario.model_dump(mode="json", exclude_unset=True)
-        robots: dict[str, list[dict[str, Any]]] = {}
-        for team in Team:
-            side = -own_side(team)
-            there = {state.id: state for state in (frame.own if team is Team.BLUE else frame.opponents)}
-            robots[team.value] = []
-            for setup in self._match.scenario.robots.of(team):
-                state = there.get(setup.number)
-                if state is None:
-                    continue
-                now = self._setups[RobotId(team, setup.number)].model_dump(mode="json", exclude_unset=True)
-                heading = wrap_angle(state.heading + (pi if side < 0 else 0.0))
-                now["start"] = {
-                    "position": [round(side * state.x, 4), round(side * state.y, 4)],
-                    "heading": round(heading, 4),
-                }
-                robots[team.value].append(now)
-        ball = frame.ball
-        data |= {
-            "name": f"{self._match.scenario.name}_situation"[:80],
-            "robots": robots,
-            "ball": {
-                "position": [round(ball.x, 4), round(ball.y, 4)],
-                "velocity": [round(ball.vx, 3), round(ball.vy, 3)],
-            },
-        }
-        return data
+        return situation_of(self._match.scenario, self._match.world.truth(), self._setups)
 
     def _rebuild(
         self, robot: RobotId, changes: Mapping[str, object], nodes: Mapping[str, Mapping[str, object]]

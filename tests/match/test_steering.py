@@ -1,9 +1,10 @@
 """What a person does to a match while it is played."""
 
 from collections.abc import Iterator
-from math import pi
+from math import hypot, pi
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from robobt.match import Match
@@ -190,3 +191,36 @@ def test_a_situation_is_a_scenario_that_begins_there(match: Match) -> None:
         assert after.position == pytest.approx(before.position, abs=1e-3)
         assert after.heading == pytest.approx(before.heading, abs=1e-3)
     assert situation.robots.yellow[0].play == "stand_still"
+
+
+def test_any_moment_of_a_match_can_be_begun_from() -> None:
+    held = 0
+    with Match(load_scenario("three_v_three"), 5, sim_world) as match:
+        steering = Steering(match)
+        for tick in range(700):
+            assert match.tick()
+            if tick % 20:
+                continue
+            truth = match.world.truth()
+            situation = scenario_from(steering.situation(), "situation", build=False)
+            began = situation.place(np.random.default_rng(0))
+            held += situation.ball.held_by is not None
+            begun = {robot: pose[:2] for robot, pose in began.robots.items()}
+            moved = [(truth.ball.position, began.ball[:2])]
+            moved += [(state.position, begun[robot]) for robot, state in truth.robots().items()]
+            outside = max(max(abs(x) - 4.5, abs(y) - 3.0, 0.0) for (x, y), _ in moved)
+            for (x, y), after in moved:
+                assert hypot(after[0] - x, after[1] - y) < 0.03 + (0.1 + 2.0 * outside if outside else 0.0)
+    assert held > 2
+
+
+def test_what_lies_in_one_place_or_beyond_the_lines_is_moved_a_little(match: Match) -> None:
+    steering = Steering(match)
+    x, y = match.world.truth().own[0].position
+    match.world.put_robot(KEEPER, x, y, 0.0)
+    match.world.put_ball(4.7, 0.2, 0.0, 0.0)
+    situation = scenario_from(steering.situation(), "situation", build=False)
+    assert situation.ball.position == pytest.approx((4.5, 0.2))
+    begun = situation.place(np.random.default_rng(0)).robots
+    gap = hypot(begun[STRIKER][0] - begun[KEEPER][0], begun[STRIKER][1] - begun[KEEPER][1])
+    assert 0.18 <= gap < 0.19

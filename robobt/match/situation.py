@@ -1,0 +1,100 @@
+"""A moment of a match as a scenario that begins there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
+from math import cos, hypot, pi, sin
+from typing import Any
+
+from robobt.match.scenario.placing import HELD_DISTANCE
+from robobt.match.scenario.robots import RobotSetup
+from robobt.match.scenario.scenario import Scenario
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.geometry import wrap_angle
+from robobt.world.rules import own_side
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
+
+_GAP = 5e-4
+"""Left between what touches, so that rounding brings nothing together [m]."""
+
+_PASSES = 100
+"""More than a crowd takes to be moved apart."""
+
+
+def situation_of(scenario: Scenario, frame: Frame, setups: Mapping[RobotId, RobotSetup]) -> dict[str, Any]:
+    """Return the scenario that begins as ``frame`` is, seen from blue's side, as data.
+
+    A scenario begins within the lines and with nothing in one place: what is elsewhere is moved there by as
+    little as that takes. A ball that a robot's sensor sees is held by that robot.
+
+    Args:
+        scenario: what is played.
+        frame: the present.
+        setups: what each robot plays now.
+    """
+    there = {robot: state for robot, state in frame.robots().items() if robot in setups}
+    holder = _holder(frame, there)
+    places = {str(robot): [state.x, state.y, ROBOT_RADIUS] for robot, state in there.items()}
+    if holder is None:
+        places["ball"] = [frame.ball.x, frame.ball.y, BALL_RADIUS]
+    _move_apart(list(places.values()), frame.field)
+    robots: dict[str, list[dict[str, Any]]] = {}
+    for team in Team:
+        side = -own_side(team)
+        robots[team.value] = []
+        for setup in scenario.robots.of(team):
+            robot = RobotId(team, setup.number)
+            if robot not in there:
+                continue
+            x, y, _ = places[str(robot)]
+            heading = wrap_angle(there[robot].heading + (pi if side < 0 else 0.0))
+            now = setups[robot].model_dump(mode="json", exclude_unset=True)
+            now["start"] = {
+                "position": [round(side * x, 4), round(side * y, 4)],
+                "heading": round(heading, 4),
+            }
+            robots[team.value].append(now)
+    ball: dict[str, Any] = {"held_by": str(holder)}
+    if holder is None:
+        x, y, _ = places["ball"]
+        ball = {
+            "position": [round(x, 4), round(y, 4)],
+            "velocity": [round(frame.ball.vx, 3), round(frame.ball.vy, 3)],
+        }
+    data = scenario.model_dump(mode="json", exclude_unset=True)
+    return data | {"name": f"{scenario.name}_situation"[:80], "robots": robots, "ball": ball}
+
+
+def _holder(frame: Frame, there: Mapping[RobotId, RobotState]) -> RobotId | None:
+    """Return the robot in whose mouth the ball is, the one that has it deepest."""
+    ball = frame.ball
+
+    def apart(robot: RobotId) -> float:
+        state = there[robot]
+        mouth = state.x + HELD_DISTANCE * cos(state.heading), state.y + HELD_DISTANCE * sin(state.heading)
+        return hypot(ball.x - mouth[0], ball.y - mouth[1])
+
+    return min((robot for robot, state in there.items() if state.ball_contact), key=apart, default=None)
+
+
+def _move_apart(places: list[list[float]], field: FieldGeometry) -> None:
+    """Move discs (x, y, radius) into the field and away from each other, by little [m]."""
+    for _ in range(_PASSES):
+        moved = False
+        for place in places:
+            place[0] = min(max(place[0], -field.half_length), field.half_length)
+            place[1] = min(max(place[1], -field.half_width), field.half_width)
+        for one, other in combinations(places, 2):
+            dx, dy = other[0] - one[0], other[1] - one[1]
+            away, needed = hypot(dx, dy), one[2] + other[2] + _GAP
+            if away >= needed:
+                continue
+            moved = True
+            push = (needed - away + _GAP / 10) / 2
+            ux, uy = (dx / away, dy / away) if away else (1.0, 0.0)
+            one[0], one[1] = one[0] - push * ux, one[1] - push * uy
+            other[0], other[1] = other[0] + push * ux, other[1] + push * uy
+        if not moved:
+            return
