@@ -1,7 +1,7 @@
 """A policy in worlds that it was not trained in, beside the play it is to beat, from the same starts.
 
     python benchmarks/transfer.py models/score.pt --trials 200
-    python benchmarks/transfer.py models/save.pt --only default --only grsim
+    python benchmarks/transfer.py models/save.pt --only default --against attack_learned:policy=a.pt
     python benchmarks/transfer.py models/score.pt --address league://grsim
 
 The worlds are presets of the simulator, ``noisy`` the default one with ER-Force's realistic noise and delays.
@@ -44,11 +44,12 @@ def main(words: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="a policy in other worlds")
     parser.add_argument("model", help="name or file of a model for Score or Goalkeeper")
     parser.add_argument("--trials", type=int, default=200)
+    parser.add_argument("--against", default="", help="another opponent: PLAY[:NAME=VALUE,...]")
     parser.add_argument("--only", action="append", choices=list(WORLDS), help="all by default")
     parser.add_argument("--address", default=SIM, help="a world elsewhere, as robobt match --world takes it")
     given = parser.parse_args(words)
     base = load_scenario("score_on_goalkeeper")
-    players = variants(given.model)
+    players = variants(given.model, given.against)
     worlds: dict[str, Scenario] = {given.address: base}
     if given.address == SIM:
         worlds = {name: changed(base, {"simulator": WORLDS[name]}) for name in given.only or WORLDS}
@@ -74,8 +75,10 @@ def main(words: list[str] | None = None) -> None:
                 print(f"{'':17}trees failed in {one.errors} ticks; the first: {one.first_error}")
 
 
-def variants(model: str) -> dict[str, tuple[str, str]]:
+def variants(model: str, against: str = "") -> dict[str, tuple[str, str]]:
     """Return who plays for blue and for yellow, by what is judged: the written play, then the model.
+
+    ``against`` is who opposes both; empty for who does in the scenario.
 
     Raises:
         ModelError: it is no model for Score or Goalkeeper.
@@ -83,9 +86,12 @@ def variants(model: str) -> dict[str, tuple[str, str]]:
     skill = read_fitting_model(model, kind="policy").card.skill
     if skill == "Goalkeeper":
         keeper = f"team_keeper:policy={model}"
-        return {"team_keeper": ("", "team_keeper"), "Goalkeeper": ("", keeper)}
+        return {"team_keeper": (against, "team_keeper"), "Goalkeeper": (against, keeper)}
     read_fitting_model(model, skill="Score")
-    return {"attack_expected": ("attack_expected", ""), "Score": (f"attack_learned:policy={model}", "")}
+    return {
+        "attack_expected": ("attack_expected", against),
+        "Score": (f"attack_learned:policy={model}", against),
+    }
 
 
 def _points(one: Difference) -> str:

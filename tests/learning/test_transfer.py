@@ -39,9 +39,11 @@ def test_a_model_for_score_plays_in_each_world_beside_the_play(
 
 def test_a_model_for_goalkeeper_keeps_goal_beside_the_play(transfer: ModuleType, tmp_path: Path) -> None:
     model = str(write_model(tmp_path, network(23, 4), team_card("Goalkeeper", 0, 1)))
-    assert transfer.variants(model) == {
-        "team_keeper": ("", "team_keeper"), "Goalkeeper": ("", f"team_keeper:policy={model}"),
-    }  # fmt: skip
+    for against in ("", "attack_main"):
+        assert transfer.variants(model, against) == {
+            "team_keeper": (against, "team_keeper"),
+            "Goalkeeper": (against, f"team_keeper:policy={model}"),
+        }
 
 
 def test_another_model_is_an_error(transfer: ModuleType, tmp_path: Path) -> None:
