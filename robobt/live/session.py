@@ -55,7 +55,7 @@ class Live:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        self._server = server
+        self._server, self._audience, self._nothing_asked = server, server.audience, server.inbox.empty
         self._controls = Controls(server, speed, paused)
         self._clock, self._sleep = clock, sleep
         self._due = 0.0
@@ -140,7 +140,15 @@ class Live:
 
     def tick(self, match: Match) -> bool:
         """Play one tick when it is due and viewers want it; False when it is over or not wanted."""
-        if self._wanted() and not self._attend(match):
+        # Whether anybody wants more than that it is played, which is rare: as little as can be is looked at.
+        wanted = (
+            self._attentive
+            or not self._nothing_asked()
+            or self._audience.layers is not self._layers
+            or len(self._named) != self._known
+            or self._ended
+        )
+        if wanted and not self._attend(match):
             return False
         if not match.tick():
             self._controls.tell(over=match.outcome and match.outcome.value)
@@ -188,19 +196,6 @@ class Live:
         """Show a match that is over until a viewer asks for another."""
         while self._reset is None and not self._ended:
             self._idle(match)
-
-    def _wanted(self) -> bool:
-        """Return whether anybody wants anything of the next tick but that it is played, which is rare.
-
-        It is asked at every tick, so it looks at no more than it must.
-        """
-        return (
-            self._attentive
-            or not self._server.inbox.empty()
-            or self._server.audience.layers is not self._layers
-            or len(self._named) != self._known
-            or self._ended
-        )
 
     def _attend(self, match: Match) -> bool:
         """Do what viewers want before the next tick; False where they want none of this match."""

@@ -25,7 +25,7 @@ from robobt.world.state import Frame, RobotId
 FIELD = "field"
 """What the world itself draws is under this name, among those of the robots."""
 
-_LOOK_AGAIN = 1.0
+_LOOK_AGAIN = 2.0
 """How often every node of the trees is looked at, for what one may have done to another unseen [s]."""
 
 
