@@ -1,5 +1,5 @@
 # robobt with everything, on the CPU: docker build -t robobt . && docker run --rm robobt make test
-FROM python:3.12-slim
+FROM python:3.11-slim
 RUN apt-get update \
     && apt-get install -y --no-install-recommends make git chromium chromium-driver \
     && rm -rf /var/lib/apt/lists/*

@@ -229,29 +229,28 @@ LESS = {
     r"(paper table4)(?!.*--runs)": r"\1 --runs 1",
     r"--runs \d+": "--runs 1",
     r"paper deployed": "paper deployed --shots 1 --only attack_main --defenders 0",
+    r"\bFOLDER\b": str(DOCS.parent / "models" / "paper_shots.parquet"),
+    r"\bMODEL\b": "models/score.pt",
 }
 """What else is made shorter."""
 
 NOT_HERE = {
-    "ray": "a cluster",
-    "league://": "another simulator: tests/league/test_other_simulators.py",
-    "official": "the official program: tests/league/test_official_controller.py",
-    "FOLDER": "the shots of the paper's authors: tests/experiments/test_shot_tables.py",
-    "MODEL": "a model that does not ship",
-    "../old": "another checkout: tests/tournament/test_two_states.py",
-    "other_machine": "another machine's results: tests/tournament/test_store.py",
-    "robobt live": "Ctrl-C: tests/live",
-    "robobt serve": "ports that nobody uses: tests/cli/test_league.py",
-    "log.gz": "a log of a match: tests/cli/test_league.py",
-    "bench train": "hours",
-    "_100k": "hours",
-    "many.parquet": "hours: how the shipped models were made",
-    "own.parquet": "the same",
-    "--seed 301": "the same",
-    "own_many": "the same",
-    "--runs 100": "to be given again",
+    "ray": "tests/engines/test_cluster.py: it takes a cluster",
+    "league://": "tests/league/test_other_simulators.py: it takes another simulator",
+    "official": "tests/league/test_official_controller.py: it takes the official program",
+    "../old": "tests/tournament/test_two_states.py: it takes another checkout",
+    "other_machine": "tests/tournament/test_store.py: it takes another machine's results",
+    "robobt live": "tests/cli/test_live.py: it lasts until Ctrl-C",
+    "robobt serve": "tests/cli/test_league.py: it lasts until Ctrl-C, on ports that nobody uses",
+    "log.gz": "tests/cli/test_league.py: it takes the log of a match",
+    "bench train": "tests/cli/test_train.py: it takes hours",
 }
-"""By a word of it, what a command needs that is not here; test_docs reads it as robobt does."""
+"""By a word of it, where a command runs that cannot run here; test_docs reads it as robobt does."""
+
+
+def test_what_runs_elsewhere_names_the_test() -> None:
+    for said in [*NOT_HERE.values(), *ELSEWHERE.values()]:
+        assert Path(__file__).parents[1].joinpath(said.partition(":")[0]).is_file()
 
 
 def lines(page: str) -> list[str]:
@@ -273,7 +272,7 @@ def own_plays() -> Mapping[str, object]:
     return {}
 
 
-FILES = {"recording": a_recording, "tournament": entrants, "trees": own_plays}
+FILES = {"learning": models, "recording": a_recording, "tournament": entrants, "trees": own_plays}
 """By page, what puts the files there that its commands read."""
 
 
@@ -287,12 +286,12 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
     monkeypatch.chdir(tmp_path)
     FILES.get(page, dict)()
     monkeypatch.setattr("robobt.match.load_scenario", lambda source: load_scenario(source).lasting(2.0))
-    for line in lines(page):
-        shorter = line
-        for long, short in LESS.items():
-            shorter = re.sub(long, short, shorter)
-        command = [*shlex.split(shorter)[1:], *SHORTER.get(line.split()[1], [])]
-        with temporarily(PLAYS), temporarily(SKILLS):
+    with temporarily(PLAYS), temporarily(SKILLS):  # one file's plays are registered once in a process
+        for line in lines(page):
+            shorter = line
+            for long, short in LESS.items():
+                shorter = re.sub(long, short, shorter)
+            command = [*shlex.split(shorter)[1:], *SHORTER.get(line.split()[1], [])]
             done = CliRunner().invoke(app, command)
-        verdicts = (0, 1) if line.startswith("robobt sweep") else (0,)  # 1: nothing is better
-        assert done.exit_code in verdicts, f"{shorter}: {done.output} {done.exception}"
+            verdicts = (0, 1) if line.startswith("robobt sweep") else (0,)  # 1: nothing is better
+            assert done.exit_code in verdicts, f"{shorter}: {done.output} {done.exception}"
