@@ -10,7 +10,11 @@ from selenium.webdriver.common.keys import Keys
 
 from robobt.live.messages import Pause
 from robobt.live.replay_html import write_html
+from robobt.live.server import Server
+from robobt.live.session import Live
+from robobt.match import Match, load_scenario
 from robobt.match.recording.reader import parse_recording
+from robobt.worlds import sim_world
 from tests.live.chromium import Page
 from tests.live.playing import Session, playing, wait_for
 from tests.live.test_server import get
@@ -56,6 +60,17 @@ def test_the_page_shows_the_match_as_it_goes_on(live: Page, session: Session) ->
     assert live.find("h1").text == "striker_vs_goalie"
     assert len(live.driver.find_elements("css selector", "#picker .pick")) == 2
     live.wait("return document.querySelector('#tree .row[data-s=R]') !== null")
+
+
+def test_a_page_says_that_nothing_is_played_yet(page: Page) -> None:
+    with Server() as server:
+        page.open(server.url)
+        page.wait("return document.querySelector('.told').textContent.startsWith('Nothing is played yet')")
+        with Match(load_scenario("striker_vs_goalie"), 3, sim_world) as match:
+            Live(server).begin(match)
+            page.wait(
+                "return window.robobt.match.robots && document.querySelector('.told').textContent === ''"
+            )
 
 
 def test_space_pauses_the_match_and_an_arrow_plays_one_tick(live: Page, session: Session) -> None:

@@ -106,6 +106,7 @@ const open = () => {
 };
 on("hello", message => {
   if (message.version !== VERSION) { link = "this page is out of date: load it anew"; showHead(); return; }
+  if (!header) put(told, "");
   header = message; past = null; later = message.past ? [] : null; unpainted = [];
   if (message.past) send({ do: "past" });
   state.follow = true; measured.matches++;
@@ -135,7 +136,11 @@ on("state", message => {
   heard = now.said ? now.said[0] : 0;
   showState();
 });
-on("found", () => { link = "found"; });
+on("found", () => {
+  link = "found";
+  /* A training shows nothing before its first evaluation, a field nothing before all is set up. */
+  if (!header) setTimeout(() => { if (!header) put(told, "Nothing is played yet. This page shows it as soon as it is."); }, 500);
+});
 on("lost", () => { link = "connection lost"; if (header) showHead(); else say("The match is not there."); });
 
 /* ---------------------------------------------------------------- time */
