@@ -45,9 +45,11 @@ def rate(
     from robobt.learning.training.run_folder import read_settings
     from robobt.tournament.ratings import bradley_terry
 
-    given = [script(role) for role in scripts or ("attack", "press")]
-    found = [contenders_of(run, past, run.name if len(runs) > 1 else "") for run in runs]
-    contenders = [*(one for _, several in found for one in several), *given]
+    # Who is given twice would meet itself.
+    given = [script(role) for role in dict.fromkeys(scripts or ("attack", "press"))]
+    several = list(dict.fromkeys(runs))
+    found = [contenders_of(run, past, str(run) if len(several) > 1 else "") for run in several]
+    contenders = [*(one for _, policies in found for one in policies), *given]
     with one_thread():
         met = encounters(found[0][0], contenders, starts, seed)
     scores = [(one.first, one.second, score) for one in met for score in one.scores]

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import torch
 from typer.testing import CliRunner
@@ -18,12 +19,13 @@ def rate(*arguments):
 
 def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
     settings = load_settings("duel", "fast", {"environment.time_limit": 20})
-    (tmp_path / PAST).mkdir()
-    (tmp_path / SETTINGS).write_text(write_yaml(settings.model_dump(mode="json")))
+    run, other = tmp_path / "one" / "seed_0", tmp_path / "two" / "seed_0"
+    (run / PAST).mkdir(parents=True)
+    (run / SETTINGS).write_text(write_yaml(settings.model_dump(mode="json")))
     for seed in range(4):
         policy = Actor([1.0] * 23, 4, [4], generator=torch.Generator().manual_seed(seed))
-        save_actor(policy, tmp_path / ACTOR if seed == 3 else tmp_path / PAST / f"{seed:010}.pt")
-    told = rate(tmp_path, "--past", 2, "--script", "attack", "--starts", 3, "--json")
+        save_actor(policy, run / ACTOR if seed == 3 else run / PAST / f"{seed:010}.pt")
+    told = rate(run, "--past", 2, "--script", "attack", "--starts", 3, "--json")
     assert told.exit_code == 0, told.output
     found = json.loads(told.stdout)
     assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack"}
@@ -32,8 +34,12 @@ def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
     for one in found["ratings"].values():
         assert one["low"] < one["elo"] < one["high"]
         assert one["won"] + one["drawn"] + one["lost"] == 3 * 6
+    # Folders of one name are two runs, and who is given twice is there once.
+    shutil.copytree(run, other)
+    told = rate(run, other, run, "--past", 0, "--script", "still", "--script", "still", "-n", 1, "--json")
+    assert set(json.loads(told.stdout)["ratings"]) == {f"{run} best", f"{other} best", "still"}
     for arguments, said in (
-        ((tmp_path, "--script", "dance"), "no script 'dance'"),
+        ((run, "--script", "dance"), "no script 'dance'"),
         ((tmp_path / "none",), "none"),
     ):
         refused = rate(*arguments)
