@@ -34,7 +34,7 @@ def opposed_arenas(
 ) -> VectorTask:
     """Return arenas with ``n`` learners, a row each, of which the pool's shares play against the pool.
 
-    Where yellow has no learners nobody of the pool plays. Shares are rounded to whole arenas.
+    Where yellow has no learners nobody of the pool plays.
 
     Args:
         environment: of all arenas, but for who is yellow.
@@ -46,14 +46,8 @@ def opposed_arenas(
     if not isinstance(environment, SoccerSettings) or not environment.two_alike:
         return make_rows(environment, n, central)
     each, blue = learners_of(environment), environment.blue.count(LEARNER)
-    unit = lcm(each, blue)
-
-    def share(of: float) -> int:
-        return unit * round(of * n / unit)
-
-    past = share(pool.share)
-    scripted = share(pool.scripted / len(pool.scripts)) if pool.scripts else 0
-    itself = n - past - scripted * len(pool.scripts)
+    past, *scripted = opposed(environment, pool, n)
+    itself = n - past - sum(scripted)
     parts: list[VectorTask] = []
     if itself > 0:
         parts.append(make_rows(environment, itself, central))
@@ -61,6 +55,20 @@ def opposed_arenas(
         rows = make_rows(environment, past // blue * each, central)
         assert isinstance(rows, PerRobot)
         parts.append(OneSide(rows, others))
-    if scripted > 0:
-        parts += [make_rows(against(environment, role), scripted, central) for role in pool.scripts]
+    for role, count in zip(pool.scripts, scripted, strict=True):
+        if count > 0:
+            parts.append(make_rows(against(environment, role), count, central))
     return SeveralWorlds(parts)
+
+
+def opposed(environment: SoccerSettings, pool: PoolSettings, n: int) -> list[int]:
+    """Return how many of ``n`` learners play against past selves, then against each script.
+
+    Shares are rounded to whole arenas, and those that come last to what is left.
+    """
+    unit = lcm(learners_of(environment), environment.blue.count(LEARNER))
+    counts: list[int] = []
+    for share in pool.shares:
+        left = (n - sum(counts)) // unit
+        counts.append(unit * min(round(share * n / unit), left))
+    return counts

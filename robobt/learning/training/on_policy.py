@@ -67,6 +67,8 @@ class OnPolicyRun(Run):
 
     def _take_over(self, folder: Path) -> None:
         """Begin with the best policy of a run that has ended."""
+        if not (folder / ACTOR).is_file():
+            raise TrainError(f"init: {folder} is not the folder of a run that has ended")
         given, own = load_actor(folder / ACTOR), self._agent.actor
         if given.build != own.build:
             raise TrainError(

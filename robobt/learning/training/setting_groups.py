@@ -117,6 +117,11 @@ class PoolSettings(Settings):
     )
     scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
 
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Of the learners: against past selves, then against each script."""
+        return (self.share, *(self.scripted / len(self.scripts) for _ in self.scripts))
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         if self.share + self.scripted > 1.0:
@@ -133,4 +138,13 @@ class StageSettings(Settings):
     environment: dict[str, Any] = Field(
         default_factory=dict, description="changes to the environment; evaluations stay in the run's own"
     )
-    pool: dict[str, Any] = Field(default_factory=dict, description="changes to the pool")
+    pool: dict[str, Any] = Field(
+        default_factory=dict, description="changes to the pool's shares and scripts; who is in it stays"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("size", "every"):
+            if name in self.pool:
+                raise ValueError(f"pool.{name} is the same in all stages: set it for the run")
+        return self

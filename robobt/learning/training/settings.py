@@ -12,6 +12,7 @@ from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import TaskSettings
 from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of, make_rows
 from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.training.arenas import opposed
 from robobt.learning.training.preset_files import SettingsError as SettingsError
 from robobt.learning.training.preset_files import assign, merged, read_preset
 from robobt.learning.training.setting_groups import (
@@ -143,7 +144,10 @@ def load_settings(
         raise SettingsError(source, problem, "ppo.critic")
     for index, stage in enumerate(stages_of(settings, source)):
         place = f"environment with stages[{index}]" if settings.stages else "environment"
-        for world in worlds_of(stage, source):
+        worlds = worlds_of(stage, source)
+        if len(worlds) * learners_of(worlds[0]) > settings.collection.environments:
+            raise SettingsError(source, "more than there are arenas to share", "worlds")
+        for world in worlds:
             _check_rows(settings, environment, world, source, place)
         _check_pool(stage, environment, source)
     for found in (*validated_on(settings, source), evaluated_on(settings, source)):
@@ -236,6 +240,11 @@ def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) ->
     if stage.pool.every % stage.rebuild_every:
         problem = f"must be a multiple of rebuild_every ({stage.rebuild_every})"
         raise SettingsError(source, problem, "pool.every")
+    own, n = environment_of(stage, source), stage.collection.environments
+    if isinstance(own, SoccerSettings) and own.two_alike:
+        counts = opposed(own, stage.pool, n)
+        if any(share and not count for share, count in zip(stage.pool.shares, counts, strict=True)):
+            raise SettingsError(source, f"{n} learners are too few for an arena of each share", "pool")
 
 
 def worlds_of(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:

@@ -16,11 +16,11 @@ from robobt.learning.envs.soccer.one_side import OneSide
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
-from robobt.learning.training.arenas import opposed_arenas
+from robobt.learning.training.arenas import opposed, opposed_arenas
 from robobt.learning.training.problems import problem_for
 from robobt.learning.training.run import TrainError
 from robobt.learning.training.run_folder import load_actor
-from robobt.learning.training.setting_groups import PoolSettings
+from robobt.learning.training.setting_groups import PoolSettings, Script
 from robobt.learning.training.settings import SettingsError, load_settings, stage_after
 from robobt.learning.training.train import train
 from tests.learning.training.test_several_robots import TINY
@@ -101,6 +101,16 @@ def test_the_pools_shares_are_shares_of_the_learners() -> None:
     assert press.task.settings.yellow == ("goalkeeper", "press", "press")
 
 
+@pytest.mark.parametrize("scripts", [("attack", "press"), ("still", "press", "mark", "wall", "attack")])
+def test_shares_that_are_rounded_up_take_no_more_than_there_are(scripts: tuple[Script, ...]) -> None:
+    pool = PoolSettings(share=0.5, scripts=scripts, scripted=0.5)
+    for n in range(4, 100, 4):
+        counts = opposed(SUITE["Small3v3"](), pool, n)
+        assert len(counts) == 1 + len(scripts)
+        assert all(count % 4 == 0 for count in counts)
+        assert 0 <= n - sum(counts) <= 4 * len(scripts)
+
+
 @pytest.mark.integration
 def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
     settings = load_settings("duel", "self_play", SELF_PLAY)
@@ -126,6 +136,9 @@ def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_
     few = {**SELF_PLAY, "steps": 120, "init": str(tmp_path / "whole"), "ppo.critic_first": 10_000}
     begun = train(load_settings("duel", "self_play", few), tmp_path / "begun").actor.state_dict()
     assert all(torch.equal(begun[name], weight) for name, weight in whole.actor.state_dict().items())
+    nowhere = load_settings("duel", "self_play", {**few, "init": str(tmp_path)})
+    with pytest.raises(TrainError, match=r"init: .* is not the folder of a run that has ended"):
+        train(nowhere, tmp_path / "nowhere")
     with pytest.raises(TrainError, match=r"init: the policy of .* sees 23 entries"):
         train(load_settings("small3v3", "fast", {**few, "ppo.critic": "own"}), tmp_path / "other")
 
@@ -157,6 +170,8 @@ def test_a_stage_begins_after_its_share_of_the_steps() -> None:
         ("duel", {"pool.every": 1, "pool.share": 0.5}, "multiple of rebuild_every"),
         ("duel", {"stages": [{"share": 1, "environment": {"yellow": ["wall"] * 2}}]}, r"stages\[0\].* 27 "),
         ("duel", {"stages": [{"share": 1, "pool": {"sizes": 3}}]}, r"pool with stages\[0\]"),
+        ("duel", {"stages": [{"share": 1, "pool": {"size": 3}}]}, r"stages\.0: pool\.size is"),
+        ("small3v3", {"pool.share": 0.01}, "pool: 192 learners are too few"),
         ("duel", {"evaluation.environment": {"yellow": ["wall", "wall"]}}, "evaluation: a robot sees 27"),
         ("go_to_ball", {"stages": [{"share": 1}]}, "for learner ppo"),
     ],

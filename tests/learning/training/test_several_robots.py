@@ -101,6 +101,11 @@ def test_a_problem_has_a_row_for_each_learner() -> None:
         load_settings("attack3v2", "fast", {"collection.environments": 128})
 
 
+def test_every_world_has_an_arena() -> None:
+    with pytest.raises(SettingsError, match="worlds: more than there are arenas to share"):
+        load_settings("small3v3", "fast", {"worlds": [{}] * 49})
+
+
 def test_a_central_critic_needs_several_robots() -> None:
     with pytest.raises(SettingsError, match=r"ppo\.critic: a central critic is for tasks of several robots"):
         load_settings("score_on_goalkeeper", "fast", {"ppo.critic": "central"})
