@@ -150,8 +150,15 @@ class Steering:
         raise SteeringError(f"{robot} does not play here")
 
     def situation(self) -> dict[str, Any]:
-        """Return the scenario that begins with the present situation, as data."""
-        return situation_of(self._match.scenario, self._match.world.truth(), self._setups)
+        """Return the scenario that begins with the present situation, as data.
+
+        Raises:
+            SteeringError: no robot is on the field, and a scenario has at least one.
+        """
+        frame = self._match.world.truth()
+        if not frame.robots():
+            raise SteeringError("no robot is on the field: there is no situation to begin from")
+        return situation_of(self._match.scenario, frame, self._setups)
 
     def _rebuild(
         self, robot: RobotId, changes: Mapping[str, object], nodes: Mapping[str, Mapping[str, object]]

@@ -193,6 +193,14 @@ def test_a_situation_is_a_scenario_that_begins_there(match: Match) -> None:
     assert situation.robots.yellow[0].play == "stand_still"
 
 
+def test_a_field_without_robots_is_no_situation_to_begin_from(match: Match) -> None:
+    steering = Steering(match)
+    for robot in (STRIKER, KEEPER):
+        steering.take_off(robot)
+    with pytest.raises(SteeringError, match="no robot is on the field"):
+        steering.situation()
+
+
 def test_any_moment_of_a_match_can_be_begun_from() -> None:
     held = 0
     with Match(load_scenario("three_v_three"), 5, sim_world) as match:
