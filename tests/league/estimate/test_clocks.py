@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from robobt.league.estimate.clocks import CameraClocks, FieldClock
@@ -44,6 +44,7 @@ def test_delays_cost_no_more_than_they_are(rate: float, late: list[float]) -> No
 
 @pytest.mark.integration
 @given(rates, delays, origins)
+@example(2.0, [0.0] * 9 + [1 / 256] * 6, 0.0625)  # 0.1 s once ended a block by rounding
 def test_origins_do_not_matter(rate: float, late: list[float], origin: float) -> None:
     moved = follow(FieldClock(), rate, origin, late)
     assert moved == pytest.approx(follow(FieldClock(), rate, 0.0, late), abs=0.002)
