@@ -128,6 +128,22 @@ class TaskSettings(OrderedSettings):
     latency: int = Field(0, ge=0, le=20, description="age of what is observed [ticks]")
     randomisation: RandomisationSettings = RandomisationSettings()
 
+    @model_validator(mode="before")
+    @classmethod
+    def _in_part(cls, data: object) -> object:
+        """Let a group that is given in part keep the rest of what the task says of it."""
+        if not isinstance(data, Mapping):
+            return data
+        result = dict(data)
+        for name, value in data.items():
+            own = cls.model_fields[name].default if name in cls.model_fields else None
+            if isinstance(own, Settings) and not isinstance(own, SimSettings) and isinstance(value, Mapping):
+                kept = own.model_dump(exclude_unset=True)
+                # What one kind of action is scaled by means nothing to another.
+                if value.get("kind", kept.get("kind")) == kept.get("kind"):
+                    result[name] = {**kept, **value}
+        return result
+
     @model_validator(mode="after")
     def _fine_steps(self) -> Self:
         if self.period / self.sub_steps > 0.01:

@@ -8,7 +8,13 @@ import pytest
 from pydantic import ValidationError
 
 from robobt.config.yaml import parse_marked
-from robobt.learning.envs import HARDWARE_CHALLENGE, SHOOT_REWARDS, GoToBallSettings, ShootSettings
+from robobt.learning.envs import (
+    HARDWARE_CHALLENGE,
+    SHOOT_REWARDS,
+    GoToBallAmongRobotsSettings,
+    GoToBallSettings,
+    ShootSettings,
+)
 from robobt.models.actions import ActionScaling
 from robobt.sim import preset
 from robobt.world import DIVISION_B
@@ -42,6 +48,13 @@ def test_settings_come_from_yaml() -> None:
 def test_settings_that_are_written_out_are_read_again(settings: Any) -> None:
     assert type(settings).model_validate_json(settings.model_dump_json()) == settings
     assert type(settings).model_validate(settings.model_dump()) == settings
+
+
+def test_a_group_given_in_part_keeps_what_the_task_says_of_the_rest() -> None:
+    own = GoToBallAmongRobotsSettings().reward
+    dearer = GoToBallAmongRobotsSettings.model_validate({"reward": {"time": 0.02}}).reward
+    assert dearer == own.model_copy(update={"time": 0.02})
+    assert GoToBallSettings.model_validate({"action": {"max_turn": 3.0}}).action.max_speed == 1.5
 
 
 def test_the_defaults_are_the_papers() -> None:
