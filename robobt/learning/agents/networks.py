@@ -132,7 +132,7 @@ def one_thread() -> Iterator[None]:
         torch.set_num_threads(before)
 
 
-def policy_of(actor: Actor) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def policy_of(actor: nn.Module) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     """Return an actor over numpy arrays, without gradient: (n, observation) -> (n, action)."""
 
     def decide(observation: NDArray[np.float64]) -> NDArray[np.float64]:

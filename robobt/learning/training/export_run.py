@@ -27,7 +27,7 @@ from robobt.statistics import mean_interval
 
 _Floats = NDArray[np.float64]
 
-_SKILLS = {
+SKILLS = {
     "go_to_ball": "GoToBall",
     "go_to_ball_among_robots": "GoToBall",
     "shoot": "Shoot",
@@ -83,7 +83,7 @@ def export_run(
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
             policy_of(result.actor), "held_out", count
         )
-    skill, observation = _SKILLS.get(settings.task, "LearnedSkill"), make_task(environment, 1).observation
+    skill, observation = SKILLS.get(settings.task, "LearnedSkill"), make_task(environment, 1).observation
     card = ModelCard(
         kind="policy",
         name=called,

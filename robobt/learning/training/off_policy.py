@@ -51,7 +51,7 @@ class OffPolicyRun(Run):
     def _advance(self) -> None:
         """Step every environment once, and make the updates that are due."""
         collection, n = self._settings.collection, self._task.n
-        share = self._steps / self._settings.steps
+        share = self._share
         if self._steps < collection.random_steps:
             action = self._rng.uniform(-1.0, 1.0, (n, self._task.action_size))
         else:

@@ -80,7 +80,7 @@ class OnPolicyRun(Run):
 
     def _advance(self) -> None:
         rollout = self._roll_out()
-        share = self._steps / self._settings.steps
+        share = self._share
         self._agent.set_rates(1.0 - share)
         self._agent.look_ahead(share)
         value_alone = self._steps < self._settings.ppo.critic_first

@@ -88,6 +88,11 @@ class Run(ABC):
         return {}
 
     @property
+    def _share(self) -> float:
+        """How much of the run is over, which settings that change on the way go by."""
+        return self._steps / self._settings.steps
+
+    @property
     def _evaluated(self) -> Actor:
         """The actor that is evaluated and kept."""
         return self._agent.actor

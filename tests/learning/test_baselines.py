@@ -1,0 +1,62 @@
+"""The baselines: cells of ours and of Stable-Baselines3, once each, and what is made of them."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from robobt.skills import GoToBall, LearnedSkill
+
+
+@pytest.fixture
+def baselines(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "benchmarks")
+    return importlib.import_module("baselines")
+
+
+def run(baselines: ModuleType, monkeypatch: pytest.MonkeyPatch, out: Path, *given: str) -> list[dict]:
+    tiny = {"task": "GoToBall", "seeds": 1, "cpu-seconds": 0.2, "parts": 2, "validation": 4, "starts": 10}
+    options = [f"--{name}={value}" for name, value in tiny.items()]
+    monkeypatch.setattr(sys, "argv", ["baselines", f"--out={out}", *options, *given])
+    baselines.main()
+    return [json.loads(line) for line in (out / "baselines.jsonl").read_text().splitlines()]
+
+
+def test_a_cell_is_trained_once_and_is_in_table_and_curves(baselines, monkeypatch, tmp_path, capsys) -> None:
+    (cell,) = run(baselines, monkeypatch, tmp_path, "--algorithm", "ppo")
+    assert cell["held_out"]["success"]["n"] == 10
+    assert cell["cpu_s"] >= 0.2
+    assert cell["curve"][0][0] == 0
+    assert cell["curve"][-1][0] == cell["steps"] > 0
+    assert run(baselines, monkeypatch, tmp_path, "--algorithm", "ppo") == [cell]
+    picture = tmp_path / "curves.svg"
+    capsys.readouterr()
+    run(baselines, monkeypatch, tmp_path, "--table", "--curves", str(picture))
+    share = 100 * cell["held_out"]["success"]["value"]
+    assert f"| GoToBall | {share:.1f} % (1) |  |  |  |  |" in capsys.readouterr().out
+    assert "GoToBall" in picture.read_text()
+
+
+def test_a_policy_trained_by_stable_baselines3_is_a_skill(baselines, monkeypatch, tmp_path) -> None:
+    pytest.importorskip("stable_baselines3", reason="the comparison with Stable-Baselines3 needs it")
+    (cell,) = run(baselines, monkeypatch, tmp_path, "--algorithm", "sb3_td3")
+    assert cell["cpu_s"] >= 0.2
+    assert cell["curve"][-1][0] == cell["steps"] > 0
+    assert GoToBall(policy=cell["model"]).policy == cell["model"]
+    assert LearnedSkill(model=cell["model"]).model == cell["model"]
+
+
+def test_the_table_tells_median_range_and_number_of_seeds(baselines) -> None:
+    def cell(seed: int, share: float) -> dict:
+        found = {"success": {"value": share}}
+        return {"task": "Save", "algorithm": "ppo", "seed": seed, "steps": 2000, "held_out": found}
+
+    told = baselines.table([cell(0, 0.5), cell(1, 0.9), cell(2, 0.6)], ["Shoot", "Save"], {"ppo": "PPO"})
+    assert "| Save | 60.0 % (50.0 to 90.0; 3) |" in told
+    assert "| Save | 2 |" in told
+    assert "Shoot" not in told
