@@ -16,6 +16,7 @@ from robobt.skills.driving import DrivingSkill
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.rules import has_ball
@@ -233,6 +234,7 @@ def ddpg(store: Store, approach: Approach) -> RobotCommand:
     return LearnedApproach(SHIPPED["ddpg"])(store, approach)
 
 
+@compilable
 def beside(ball: Point, facing: float) -> Point:
     """Return where a robot stands that faces ``ball`` along ``facing`` [rad], before it takes it [m]."""
     return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))

@@ -14,7 +14,17 @@ from robobt.models.actions import SCORE_ACTION, ActionScaling
 from robobt.plays import PLAYS
 
 Role = Literal[
-    "learner", "goalkeeper", "play", "still", "press", "mark", "wall", "attack", "pass", "redirect"
+    "learner",
+    "goalkeeper",
+    "play",
+    "challenge",
+    "still",
+    "press",
+    "mark",
+    "wall",
+    "attack",
+    "pass",
+    "redirect",
 ]
 Aim = Literal["score", "save", "keep", "pass", "hold"]
 AIMS = ("score", "save", "keep", "pass", "hold")

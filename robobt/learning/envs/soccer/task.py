@@ -10,6 +10,7 @@ from robobt.learning.envs.soccer.judge import GOAL, LAST, MIND, judge
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
+from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import TRAITS
 from robobt.learning.opponents.plays import PlayedRobots
@@ -86,6 +87,9 @@ class SoccerTask(ArenaTask):
         self._players = FieldPlayers(
             settings.field, limits, period, settings.roles, self.blue, settings.player_speed
         )
+        self._challengers = Challengers(
+            settings.field, limits, period, n, settings.roles, self.blue, settings.player_speed
+        )
         self._keepers = [
             TeamKeeper(settings.field, limits, period, n, index, self.blue)
             for index, role in enumerate(settings.roles)
@@ -109,11 +113,13 @@ class SoccerTask(ArenaTask):
         traits = starts[:, 6 * self.robots + 4 :]
         for k, keeper in enumerate(self._keepers):
             keeper.restart(which, traits[:, len(TRAITS) * k : len(TRAITS) * (k + 1)])
+        self._challengers.restart(which)
         self._played.restart(self.arenas, which)
 
     def _oppose(self) -> None:
         arenas = self.arenas
         self._players.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
+        self._challengers.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
         for keeper in self._keepers:
             keeper.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
         self._played.decide(arenas, self._commands)

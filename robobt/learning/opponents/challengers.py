@@ -1,0 +1,297 @@
+"""Field players that defend as the play ``team_player`` does, over many arenas: one challenges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, hypot, inf, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.learning.opponents.at_the_ball import FRESH, MEMORY, play_the_ball, with_the_ball
+from robobt.motion.arrival import meetings
+from robobt.motion.ball_watch import rolling_after
+from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
+from robobt.motion.pilot import roughly
+from robobt.motion.scene import AREA_WIDTH as AREA
+from robobt.motion.scene import (
+    AVOID_ROBOTS,
+    BALL_GAP,
+    BALL_VX,
+    BALL_VY,
+    BALL_X,
+    BALL_Y,
+    DEPTH,
+    FINAL_SPEED,
+    HALF_LENGTH,
+    HALF_WIDTH,
+    HEADING,
+    NUMBER,
+    TARGET_X,
+    TARGET_Y,
+    scene_of,
+    task_of,
+)
+from robobt.motion.speeds import BRAKING, FORWARD, TOP, numbers
+from robobt.motion.way import travel_numbers
+from robobt.skills.defence.wall import GAP, wall_place
+from robobt.skills.tactics.agree import FRESH_FOR, FRESH_GAIN, HELD, SWITCH_GAIN
+from robobt.world.ball_model import DEFAULT_BALL
+from robobt.world.compiled import compiled
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.rules import before_mouth, in_area
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
+
+CHALLENGE = "challenge"
+"""The role of a field player that does what ``team_player`` does in open play.
+
+Of a team's challengers the one that has the ball soonest goes for it, by the plan's own times and reluctance
+to change (:mod:`robobt.skills.tactics.agree`), and the others are a wall; all are one while the ball is in a
+defence area. Nobody marks, supports, passes or shoots. The play's own speed is a ``player_speed`` of 3 m/s.
+"""
+
+_ATTACKER, _SINCE = range(2)
+_OWN_REACH, _REACH, _BEHIND_BALL, _REST = 0.12, 0.06, 0.3, 0.5
+"""So far round its own area and the others' nobody goes for the ball [m]; by so much at most a robot beyond
+a ball counts as later [s], if that is slower than this [m/s]."""
+_WALL_AHEAD, _WALL_FACING = 0.15, 0.5
+_SLIDE, _ROLL, _SHARE = (
+    DEFAULT_BALL.slide_deceleration,
+    DEFAULT_BALL.roll_deceleration,
+    DEFAULT_BALL.switch_share,
+)
+
+
+class Challengers:
+    """The robots of the role :data:`CHALLENGE` in each of ``n`` arenas.
+
+    Args:
+        field: dimensions.
+        limits: what they can do.
+        period: control period [s].
+        n: number of arenas.
+        roles: by the robots' indices; those with other roles are left alone.
+        blue: how many of an arena's robots, the first, attack towards +x.
+        speed: their top speed [m/s]; None for the limits'.
+    """
+
+    def __init__(
+        self,
+        field: FieldGeometry,
+        limits: RobotLimits,
+        period: float,
+        n: int,
+        roles: Sequence[str],
+        blue: int,
+        speed: float | None = None,
+    ) -> None:
+        count = len(roles)
+        self._who = np.array([role == CHALLENGE for role in roles])
+        self.any = bool(self._who.any())
+        top = limits.max_speed if speed is None else min(speed, limits.max_speed)
+        given = limits if top == limits.max_speed else limits.model_copy(update={"max_speed": top})
+        self._own, self._given = numbers(limits), numbers(given)
+        self._carrying = with_the_ball(limits)
+        # Each team sees its own robots first, numbered from 0, in open play.
+        self._sides: list[tuple[float, int, NDArray[np.int64], FloatArray]] = []
+        self._begin: list[list[float]] = []
+        for first, last in ((0, blue), (blue, count)):
+            if not self._who[first:last].any():
+                continue
+            own = tuple(RobotState(k, 0.0, 0.0) for k in range(last - first))
+            scene = scene_of(Frame(0.0, field, BallState(0.0, 0.0), own, (), Team.BLUE, period))
+            others = [k for k in range(count) if not first <= k < last]
+            rows = np.array([*range(first, last), *others], dtype=np.int64)
+            self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, scene))
+            # Whoever asks first of all is alone, and goes.
+            self._begin.append([float(self._who[first:last].argmax()), 0.0])
+        self._task = task_of(RobotState(0, 0.0, 0.0), (0.0, 0.0))
+        self._period = period
+        self._ticks = np.zeros(n)
+        self._memory = np.empty((n, count, MEMORY))
+        self._plans = np.empty((n, len(self._sides), 2))
+        self._watch = np.empty((n, 3))
+        self.restart(np.arange(n))
+
+    def restart(self, which: NDArray[np.int64]) -> None:
+        """Forget what was seen in the arenas ``which``."""
+        self._ticks[which] = 0.0
+        self._memory[which] = FRESH
+        self._plans[which] = np.reshape(self._begin, (-1, 2))
+        self._watch[which] = [-inf, 0.0, 0.0]
+
+    def decide(
+        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
+    ) -> None:
+        """Decide one control tick: fill these robots' commands (n, R, >= 6), given the arenas' state."""
+        times = self._ticks * self._period
+        for side, (sign, mates, rows, scene) in enumerate(self._sides):
+            _decide(
+                self._who,
+                rows,
+                mates,
+                sign,
+                scene,
+                self._task,
+                self._own,
+                self._given,
+                self._carrying,
+                times,
+                robots,
+                balls,
+                contact,
+                self._plans[:, side],
+                self._watch,
+                self._memory,
+                commands,
+            )
+        self._ticks += 1.0
+
+
+@compiled
+def _decide(
+    who: NDArray[np.bool_],
+    rows: NDArray[np.int64],
+    mates: int,
+    sign: float,
+    scene_: FloatArray,
+    task_: FloatArray,
+    own: FloatArray,
+    given: FloatArray,
+    carrying: FloatArray,
+    times: FloatArray,
+    robots: FloatArray,
+    balls: FloatArray,
+    contact: NDArray[np.bool_],
+    plans: FloatArray,
+    watches: FloatArray,
+    memory: FloatArray,
+    commands: FloatArray,
+) -> None:
+    scene, task, count = scene_.copy(), task_.copy(), len(rows)
+    seen, movers, has = np.empty((count, 6)), np.empty((count, 7)), np.empty(count, dtype=np.bool_)
+    for i in range(len(balls)):
+        ball = sign * balls[i]
+        disputed = False
+        for row in range(count):
+            robot = robots[i, rows[row]]
+            seen[row] = sign * robot
+            seen[row, 2] = robot[2] if sign > 0.0 else wrap_angle(robot[2] + pi)
+            seen[row, 5] = robot[5]
+            movers[row, :2], movers[row, 2:4] = seen[row, :2], seen[row, 3:5]
+            movers[row, 4], movers[row, 5], movers[row, 6] = own[TOP], own[FORWARD], own[BRAKING]
+            dx, dy = ball[0] - seen[row, 0], ball[1] - seen[row, 1]
+            has[row] = contact[i, rows[row]] or before_mouth(dx, dy, seen[row, 2])
+            disputed = disputed or (row >= mates and has[row])
+        scene[BALL_X], scene[BALL_Y], scene[BALL_VX], scene[BALL_VY] = ball[0], ball[1], ball[2], ball[3]
+        rolling = _rolling(times[i], ball, watches[i])
+        first = _who_goes(who, rows, mates, scene, seen, movers, has, ball, rolling, times[i], plans[i])
+        waiting = place = 0
+        for row in range(mates):
+            waiting += who[rows[row]] and row != first
+        for row in range(mates):
+            if not who[rows[row]]:
+                continue
+            task[:TARGET_X], task[NUMBER] = seen[row], row
+            command = commands[i, rows[row]]
+            if row == first:
+                play_the_ball(
+                    task,
+                    scene,
+                    movers,
+                    mates,
+                    own,
+                    given,
+                    carrying,
+                    ball,
+                    rolling,
+                    has[row],
+                    disputed,
+                    times[i],
+                    memory[i, rows[row]],
+                    command,
+                )
+            else:
+                _wall(task, scene, movers, own, given, ball, place, waiting, command)
+                place += 1
+
+
+@compiled
+def _rolling(time: float, ball: FloatArray, watch: FloatArray) -> float:
+    """Follow the ball's speed; return that from which on it rolls [m/s]."""
+    speed = hypot(ball[2], ball[3])
+    if time > watch[0]:
+        watch[2] = rolling_after(time - watch[0], watch[1], watch[2], speed, _SLIDE, _ROLL, _SHARE)
+        watch[0], watch[1] = time, speed
+    return min(float(watch[2]), speed)
+
+
+@compiled
+def _who_goes(
+    who: NDArray[np.bool_],
+    rows: NDArray[np.int64],
+    mates: int,
+    scene: FloatArray,
+    seen: FloatArray,
+    movers: FloatArray,
+    has: NDArray[np.bool_],
+    ball: FloatArray,
+    rolling: float,
+    time: float,
+    plan: FloatArray,
+) -> int:
+    """Return the row of who goes for the ball, -1 for nobody, as the plan of the play's team has it."""
+    before, best, least, present = plan[_ATTACKER], -1, inf, inf
+    length, depth, width = scene[HALF_LENGTH], scene[DEPTH], scene[AREA]
+    free = not in_area(-ball[0], ball[1], length, depth, width, _OWN_REACH) and not in_area(
+        ball[0], ball[1], length, depth, width, _REACH
+    )
+    if free:
+        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, length, scene[HALF_WIDTH])
+        for row in range(mates):
+            if not who[rows[row]]:
+                continue
+            needs = met[row, 0]
+            if has[row]:
+                needs = -HELD
+            elif hypot(ball[2], ball[3]) < _REST:
+                needs += min(_BEHIND_BALL, max(0.0, seen[row, 0] - ball[0]))
+            if row == before:
+                present = needs
+            if needs < least:
+                best, least = row, needs
+        gain = SWITCH_GAIN if time - plan[_SINCE] > FRESH_FOR else FRESH_GAIN
+        if present < least + gain:
+            best = int(before)
+    if best != before:
+        plan[_ATTACKER], plan[_SINCE] = best, time
+    return best
+
+
+@compiled
+def _wall(
+    task: FloatArray,
+    scene: FloatArray,
+    movers: FloatArray,
+    own: FloatArray,
+    given: FloatArray,
+    ball: FloatArray,
+    place: int,
+    size: int,
+    command: FloatArray,
+) -> None:
+    """Drive to a place of the wall by the planned way, facing the ball."""
+    depth = scene[DEPTH] + GAP
+    half = min(scene[AREA] / 2 + GAP, scene[HALF_WIDTH])
+    x, y = ball[0] + _WALL_AHEAD * ball[2], ball[1] + _WALL_AHEAD * ball[3]
+    task[TARGET_X], task[TARGET_Y] = wall_place(-scene[HALF_LENGTH], depth, half, x, y, place, size)
+    dx, dy = ball[0] - task[0], ball[1] - task[1]
+    slack = _WALL_FACING + atan2(ROBOT_RADIUS, hypot(dx, dy))
+    task[HEADING] = roughly(task[2], atan2(dy, dx), slack)
+    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, PLANNED_GAP, 1.0
+    command[:] = 0.0
+    other = given[TOP] != own[TOP]
+    command[0], command[1], command[2] = travel_numbers(task, scene, movers, own, given, other, True)
