@@ -13,7 +13,7 @@ from robobt.sim.bodies import fill, moment_of_inertia, walls_of
 from robobt.sim.chipmunk import BodyBuffer
 from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.kernels import control_tick
-from robobt.sim.reports import report
+from robobt.sim.reports import IntArray, report
 from robobt.sim.settings import SimSettings
 from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
@@ -176,13 +176,13 @@ class Arenas:
         self._buffer.write()
         self._refresh()
 
-    def place_robot(self, arena: int, robot: int, state: ArrayLike) -> None:
+    def place_robot(self, arena: int | IntArray, robot: int | IntArray, state: ArrayLike) -> None:
         """Put one robot of an arena somewhere; the ball and the others go on as they were.
 
         Args:
-            arena: its index.
-            robot: the robot's index in it.
-            state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
+            arena: its index; (m,) to put m robots anywhere.
+            robot: the robot's index in it; likewise.
+            state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s]; likewise (m, 6).
         """
         self._buffer.read()
         self._buffer.rows[arena * self._buffer.stride + robot] = state

@@ -147,6 +147,12 @@ class GameState:
         """Whether the ball is free for both teams."""
         return self.restart is None and self.command in STARTED
 
+    def ball_for(self, team: Team) -> int:
+        """Return whose ball it is: 1 where ``team`` alone may play it, 0 where both may, else -1."""
+        if self.in_play:
+            return 0
+        return 1 if self.command in STARTED and self.may_touch and self.restart_team is team else -1
+
     @property
     def next_team(self) -> Team | None:
         """Whose restart follows this stop or placement; None for both teams', or where nobody said."""

@@ -194,14 +194,16 @@ def touches(robot: RobotState, ball: BallState) -> bool:
     """Return whether the ball lies in the robot's mouth or against its hull."""
     if robot.ball_contact:
         return True
-    if ball.z >= ROBOT_HEIGHT:
-        return False
-    dx, dy = ball.x - robot.x, ball.y - robot.y
+    return ball.z < ROBOT_HEIGHT and against_hull(ball.x - robot.x, ball.y - robot.y, robot.heading)
+
+
+@compilable
+def against_hull(dx: float, dy: float, heading: float) -> bool:
+    """Return whether a ball so far from a robot's centre [m], and no higher than it, is against its hull."""
     reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
     if dx * dx + dy * dy > reach * reach:
         return False
-    ahead = cos(robot.heading) * dx + sin(robot.heading) * dy
-    return ahead <= _FRONT + BALL_RADIUS + _TOUCH_GAP
+    return cos(heading) * dx + sin(heading) * dy <= _FRONT + BALL_RADIUS + _TOUCH_GAP
 
 
 def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -> bool:

@@ -21,17 +21,24 @@ BALL = 7
 """Index of the ball's place."""
 
 _OWN, _EACH = 19, 4
-_NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])")
+_TOLD = ("", "_restarts", "_restarts_double_touch")
+"""Ends of the name: whether it tells of no restarts, of whose ball it is, or also of who may not touch it."""
+
+_NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])(|_restarts|_restarts_double_touch)")
 _ME = np.zeros(1, dtype=np.int64)
 
 
-def team_view(mates: int, opponents: int) -> ObservationSpec:
+def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
     """Return the observation with places for so many mates and opponents, the nearest first.
 
     Velocities are those over the field, in the robot's frame, as are positions but ``x``, ``y`` and the
     heading: these are the team's, which attacks towards +x. ``aim`` is where a kick would cross the goal
     line, from its middle, at most 1 m either way; ``lane`` how far to the left of that shot the opponent is
     who is nearest to it, at most 0.5 m either way, 0.5 without any on the way.
+
+    ``told`` is how many entries of the league's restarts follow, 0, 1 or 2: ``restart``, 1 where the ball is
+    the own team's to play, -1 where it is the others', 0 in play; and ``barred``, 1 for who took the last
+    restart and may not touch the ball before another robot has, else 0.
     """
     units: dict[str, str] = {
         **dict.fromkeys(("vx", "vy"), "m/s"),
@@ -51,17 +58,26 @@ def team_view(mates: int, opponents: int) -> ObservationSpec:
                 f"{who}_{k}_vx": "m/s",
                 f"{who}_{k}_vy": "m/s",
             }
-    return observation_spec(f"team_view_{mates}_{opponents}", 1, **units)
+    units |= dict.fromkeys(("restart", "barred")[:told], "1")
+    return observation_spec(f"team_view_{mates}_{opponents}{_TOLD[told]}", 1, **units)
 
 
-def places_of(name: str) -> tuple[int, int] | None:
-    """Return for how many mates and opponents the observation of that name has places; None: no such."""
+def places_of(name: str) -> tuple[int, int, int] | None:
+    """Return for how many mates and opponents the observation of that name has places; None: no such.
+
+    The third number is how many entries tell of restarts.
+    """
     found = _NAME.fullmatch(name)
-    return (int(found[1]), int(found[2])) if found else None
+    return (int(found[1]), int(found[2]), _TOLD.index(found[3])) if found else None
 
 
-def team_view_of(frame: Frame, robot: RobotState, mates: int, opponents: int) -> FloatArray:
-    """Compute the state :func:`team_view` of one robot in a frame, (size,)."""
+def team_view_of(
+    frame: Frame, robot: RobotState, mates: int, opponents: int, told: int = 0, barred: bool = False
+) -> FloatArray:
+    """Compute the state :func:`team_view` of one robot in a frame, (size,).
+
+    ``barred`` says whether it may not touch the ball after its own restart, which no frame tells.
+    """
     team = [robot, *(mate for mate in frame.own if mate.id != robot.id)]
     robots = np.array([kinematics(each) for each in (*team, *frame.opponents)])
     field = frame.field
@@ -74,7 +90,10 @@ def team_view_of(frame: Frame, robot: RobotState, mates: int, opponents: int) ->
         opponents,
         field.half_length,
         field.goal_width / 2,
+        told,
     )[0]
+    if told:
+        row[-told:] = (frame.game.ball_for(frame.team), barred)[:told]
     return row
 
 
@@ -88,6 +107,7 @@ def team_view_rows(
     opponents: int,
     goal_x: float,
     post_y: float,
+    told: int,
 ) -> FloatArray:
     """Compute the states :func:`team_view` of the robots ``who`` in many arenas, (n, len(who) * size).
 
@@ -100,8 +120,10 @@ def team_view_rows(
         opponents: likewise.
         goal_x: where the goal lines are, either way [m].
         post_y: distance of the posts from the field's long axis [m].
+        told: how many entries of restarts follow each, left at 0.
     """
-    size = _OWN + _EACH * (mates + opponents)
+    seen = _OWN + _EACH * (mates + opponents)
+    size = seen + told
     rows = np.empty((len(robots), len(who) * size))
     for i in range(len(robots)):
         for k in range(len(who)):
@@ -109,7 +131,8 @@ def team_view_rows(
             index = who[k]
             first, last = (0, blue) if index < blue else (blue, robots.shape[1])
             _observe(robots[i], balls[i], index, first, last, goal_x, post_y, row)
-            places = row[_OWN:].reshape(mates + opponents, _EACH)
+            row[seen:] = 0.0
+            places = row[_OWN:seen].reshape(mates + opponents, _EACH)
             _nearest(robots[i], index, first, last, True, places[:mates])
             _nearest(robots[i], index, first, last, False, places[mates:])
     return rows

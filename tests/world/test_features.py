@@ -19,6 +19,7 @@ from robobt.world.features import (
     SHOOT,
     SHOT,
     SHOT_SCENE,
+    find_observation,
     go_to_ball_of,
     go_to_ball_rows,
     shoot_of,
@@ -26,6 +27,7 @@ from robobt.world.features import (
     shot_features,
     shot_scene,
 )
+from robobt.world.team_view import team_view
 
 coordinate = st.floats(-5, 5)
 turn = st.floats(-3.1, 3.1)
@@ -198,3 +200,11 @@ def test_the_places_of_equally_near_opponents_are_in_their_order() -> None:
 def test_without_opponents_every_place_in_the_scene_is_absent() -> None:
     places = list(scene_of([1.0, 1.0, 0.0, 0.0], []).values())[SCENE_HEAD:]
     np.testing.assert_array_equal(np.reshape(places, (-1, 4)), np.tile(ABSENT, (SCENE_OPPONENTS, 1)))
+
+
+@pytest.mark.parametrize("told", [0, 1, 2])
+def test_a_team_view_is_found_by_its_name_with_what_it_tells_of_restarts(told: int) -> None:
+    spec = team_view(2, 3, told)
+    assert find_observation(spec.name) == spec
+    assert spec.size == team_view(2, 3).size + told
+    assert [name for name, _ in spec.entries][spec.size - told :] == ["restart", "barred"][:told]

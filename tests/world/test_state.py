@@ -125,3 +125,22 @@ def test_a_frame_is_packed_with_the_balls_height_only_where_it_flies() -> None:
 def test_a_mirrored_ball_is_as_high() -> None:
     ball = Frame(0.0, DIVISION_B, BallState(1.0, 2.0, 3.0, 4.0, 0.5, -0.5)).mirrored().ball
     assert (ball.x, ball.vx, ball.z, ball.vz) == (-1.0, -3.0, 0.5, -0.5)
+
+
+def restart(command: RefereeCommand, kind: Restart, may_touch: bool = True) -> GameState:
+    return GameState(command, restart=kind, restart_team=Team.BLUE, may_touch=may_touch)
+
+
+@pytest.mark.parametrize(
+    ("game", "blue", "yellow"),
+    [
+        (GameState(), 0, 0),
+        (GameState(RefereeCommand.DIRECT_FREE_BLUE), 0, 0),
+        (restart(RefereeCommand.DIRECT_FREE_BLUE, Restart.FREE_KICK), 1, -1),
+        (restart(RefereeCommand.STOP, Restart.FREE_KICK, may_touch=False), -1, -1),
+        (restart(RefereeCommand.BALL_PLACEMENT_BLUE, Restart.BALL_PLACEMENT), -1, -1),
+        (GameState(RefereeCommand.HALT), -1, -1),
+    ],
+)
+def test_whose_ball_it_is(game: GameState, blue: int, yellow: int) -> None:
+    assert (game.ball_for(Team.BLUE), game.ball_for(Team.YELLOW)) == (blue, yellow)

@@ -13,6 +13,8 @@ from robobt.config.errors import RobobtError
 from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.policy import load_policy
+from robobt.skills.store import TeamStore
+from robobt.skills.team.teamwork import has_kicked
 from robobt.tree import Registry
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of
 from robobt.world.command import RobotCommand
@@ -64,6 +66,7 @@ class LearnedControl:
 
     Attributes:
         card: the model's own description.
+        minds_kicker: whether it is told who took a restart and may not touch the ball again yet.
 
     Raises:
         ModelError: the model cannot be used.
@@ -82,19 +85,30 @@ class LearnedControl:
             there = ", ".join(OBSERVERS)
             raise ModelError(
                 f"{policy.path}: no skill makes the observation {name!r}; there are {there}, "
-                "and team_view_M_N with places for M mates and N opponents"
+                "and team_view_M_N with places for M mates and N opponents, which may end in _restarts "
+                "or _restarts_double_touch"
             )
-        self._observe = observe
+        self._observe: Callable[..., FloatArray] = observe
+        places = places_of(name)
+        self.minds_kicker = places is not None and places[2] > 1
         self._infer: Callable[[FloatArray], list[float]] = policy.single()
         self._scaling = self.card.action
 
-    def decide(self, frame: Frame, me: RobotState, sketch: Sketch | None = None) -> RobotCommand:
-        """Compute the command of one tick; ``sketch`` takes what it observes and answers.
+    def decide(
+        self, frame: Frame, me: RobotState, sketch: Sketch | None = None, barred: bool = False
+    ) -> RobotCommand:
+        """Compute the command of one tick.
+
+        Args:
+            frame: what its team sees.
+            me: its robot.
+            sketch: takes what it observes and answers.
+            barred: whether it took a restart and may not touch the ball yet, where it minds that.
 
         Raises:
             PolicyError: the policy's answer is not finite or lies outside [-1, 1].
         """
-        observed = self._observe(frame, me)
+        observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
         action = self._infer(observed)
         if sketch is not None and sketch.wants(OBSERVATION):
             self._draw(sketch, observed, action)
@@ -136,17 +150,22 @@ class PacedControl:
         """Forget the last decision."""
         self._decided = -inf
 
-    def decide(self, frame: Frame, me: RobotState, sketch: Sketch | None = None) -> RobotCommand:
+    def decide(
+        self, frame: Frame, me: RobotState, sketch: Sketch | None = None, team: TeamStore | None = None
+    ) -> RobotCommand:
         """Decide, or return what was decided, for one tick; see :meth:`LearnedControl.decide`.
+
+        ``team`` is what remembers who took a restart, from tick to tick.
 
         Raises:
             PolicyError: the policy's answer is not finite or lies outside [-1, 1].
         """
+        barred = team is not None and self._control.minds_kicker and has_kicked(frame, team, me.id)
         period = self._control.card.period or 0.0
         # Half a tick of room: times are sums of periods.
         if not 0.0 <= frame.time - self._decided < period - frame.period / 2:
             self._decided = -inf
-            self._command = self._control.decide(frame, me, sketch)
+            self._command = self._control.decide(frame, me, sketch, barred)
             self._decided = frame.time
         return replace(self._command)
 
@@ -156,7 +175,7 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
     places = places_of(name)
     if places is None:
         return OBSERVERS.get(name)
-    return partial(team_view_of, mates=places[0], opponents=places[1])
+    return partial(team_view_of, mates=places[0], opponents=places[1], told=places[2])
 
 
 def find_policy(

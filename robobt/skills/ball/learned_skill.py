@@ -42,7 +42,7 @@ class LearnedSkill(Skill):
         if self._control is None:
             return self.fail("it has been given no model")
         try:
-            self.store.command = self._control.decide(self.frame, self.me, self.draw)
+            self.store.command = self._control.decide(self.frame, self.me, self.draw, self.store.team)
         except PolicyError as error:
             self.store.command = RobotCommand()
             return self.fail(str(error))

@@ -45,7 +45,7 @@ class PolicySkill(Skill):
         if self._control is None:
             return self.fail("it has been given no policy")
         try:
-            command = self._control.decide(self.frame, self.me, self.draw)
+            command = self._control.decide(self.frame, self.me, self.draw, self.store.team)
         except PolicyError as error:
             self.store.command = RobotCommand()
             return self.fail(str(error))

@@ -59,6 +59,12 @@ def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
     return next((robot for robot in frame.opponents if robot.id == opponent), None)
 
 
+def has_kicked(frame: Frame, team: TeamStore, number: int) -> bool:
+    """Return whether that robot took a restart and may not touch the ball before another has."""
+    attacker(frame, team)
+    return team.kicker == number
+
+
 def follow_restart(frame: Frame, team: TeamStore) -> None:
     """Remember who took the own restart until somebody else has touched the ball."""
     game = frame.game

@@ -15,8 +15,8 @@ from robobt.world.state import ROBOT_RADIUS, RobotId
 _AREA_TOLERANCE = 0.015
 """Source: AutoReferee [m]."""
 
-_POINT_TOLERANCE = 0.02
-"""Source: AutoReferee [m]."""
+POINT_TOLERANCE = 0.02
+"""How much nearer to the ball than they have to keep nobody minds. Source: AutoReferee [m]."""
 
 _TOO_FAST_FOR = 0.3
 """A robot is too fast once it has been for this long. Source: AutoReferee [s]."""
@@ -75,7 +75,7 @@ class KickPointDistance(Rule):
         kicking, ball = scene.game.restart_team, scene.frame.ball
         if kicking is None or scene.time - scene.stopped < self._grace:
             return
-        reach = self._least + ROBOT_RADIUS - _POINT_TOLERANCE
+        reach = self._least + ROBOT_RADIUS - POINT_TOLERANCE
         defending = kicking.other
         for robot in scene.team(defending):
             dx, dy = robot.x - ball.x, robot.y - ball.y
