@@ -13,7 +13,7 @@ from robobt.plays import PLAYS
 from robobt.sim import SimWorld
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeRunner
-from robobt.world import Placement, RobotCommand, RobotId, RobotState, Team
+from robobt.world import GameState, Placement, RefereeCommand, RobotCommand, RobotId, RobotState, Team
 
 STAY = np.array([[0.0, 0.0, 0.0, -1.0]])
 
@@ -72,6 +72,21 @@ def test_episodes_start_anew_and_arenas_do_not_know_of_each_other() -> None:
     for _ in range(14):
         fresh.step(STAY)
     np.testing.assert_allclose(made.arenas.robots, fresh.arenas.robots, atol=1e-9)
+
+
+def test_a_play_takes_its_restart_and_leaves_the_ball_alone_then() -> None:
+    made = task("team_player", rules={"restarts": True, "double_touch": True})
+    # Blue's robot puts the ball out, over the touch line before it.
+    made.reset_to([0, 2.5, np.pi / 2, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 2.5968, 0, 0])
+    made.advance(np.array([[0.0, 0.0, 0.0, 1.0]]))
+    touched = []
+    for _ in range(220):
+        made.advance(STAY)
+        assert made.ended is None
+        touched.append(int(made.arenas.touch[0]))
+    assert touched[-1] == 1
+    # Nothing has stopped play since: a second touch would have been blue's free kick.
+    assert made.game(0) == GameState(RefereeCommand.DIRECT_FREE_YELLOW)
 
 
 @pytest.mark.parametrize(

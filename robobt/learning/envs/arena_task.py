@@ -88,6 +88,9 @@ class ArenaTask(ABC):
     def _oppose(self) -> None:  # noqa: B027 - nobody opposes where the learner is alone
         """Fill the commands of the robots that are not the learner's, for one tick."""
 
+    def _announce(self, seen: FloatArray, which: IntArray) -> None:  # noqa: B027
+        """Fill what the arenas ``which`` are told besides what is seen of them, in observations (m, O)."""
+
     def _starting(self, starts: FloatArray, which: IntArray) -> None:  # noqa: B027
         """Take from the starts what a task needs besides robots and ball."""
 
@@ -188,6 +191,7 @@ class ArenaTask(ABC):
             self.arenas.step(self._randomiser.delayed(self._commands))
             ended = self._judge(given, rewards, ends)
             final = self._perception.look(self.arenas.robots, self.arenas.balls)
+        self._announce(final, self._all)
         terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
         return StepResult(final.copy(), rewards, terminated, truncated, final, success)
@@ -228,7 +232,9 @@ class ArenaTask(ABC):
         self._starting(rows, which)
         self._progress[which] = progress_at(balls)
         self._optimal_time[which] = self._optimum(rows, which)
-        return self._perception.start(self.arenas.robots, self.arenas.balls, which)
+        seen = self._perception.start(self.arenas.robots, self.arenas.balls, which)
+        self._announce(seen, which)
+        return seen
 
     def _collect(self, which: IntArray, ends: BoolArray) -> Episodes:
         progress, period = self._progress[which], self.settings.period

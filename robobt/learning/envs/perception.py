@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robobt.learning.envs.settings import NoiseSettings, TaskSettings
 from robobt.learning.envs.task import FloatArray, IntArray
@@ -62,6 +63,12 @@ class Perception:
         if len(self._late) > 1:
             self._late[:, which] = seen
         return seen
+
+    def put(self, robots: FloatArray, balls: FloatArray, moved: NDArray[np.bool_]) -> None:
+        """Take no jump for a velocity: those ``moved`` (n, R + 1), the last the ball, were put elsewhere."""
+        if self._differenced:
+            self._last_robots[moved[:, :-1]] = robots[moved[:, :-1]]
+            self._last_balls[moved[:, -1]] = balls[moved[:, -1]]
 
     def _disturbed(
         self, robots: FloatArray, balls: FloatArray, which: IntArray, first: bool

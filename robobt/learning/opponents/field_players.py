@@ -39,7 +39,7 @@ _NEAR = 1.9
 """From this far they shoot [m]."""
 _AIMED = 0.06
 """How far off they kick [rad]."""
-_SHOT = 6.0
+SHOT = 6.0
 """Speed of shots [m/s]."""
 _LEAD = 0.5
 """How far ahead a rolling ball is thought of [s]."""
@@ -123,23 +123,21 @@ def _decide(
                 x, y = _coming(me, ball)
                 # There its mouth is to be, not its middle.
                 x, y = x - _MOUTH * cos(me[2]), y - _MOUTH * sin(me[2])
-                look_x, look_y, _ = _shot_at(field, all_, me, sign, blue)
-                kick = _SHOT
+                look_x, look_y, _ = shot_at(field, all_, me, sign, blue)
+                kick = SHOT
             elif role in (_ATTACK, _PASS):
                 if contact[i, r]:
                     turn = _GENTLE
                     if role == _PASS:
-                        look_x, look_y, near = _passed_to(all_, ball, r, first, last)
+                        look_x, look_y, near = passed_to(all_, ball, r, first, last)
                     else:
-                        look_x, look_y, near = _shot_at(field, all_, me, sign, blue)
+                        look_x, look_y, near = shot_at(field, all_, me, sign, blue)
                         if not near:
                             x, y, top = look_x, look_y, _CARRYING
                     off = wrap_angle(atan2(look_y - me[1], look_x - me[0]) - me[2])
                     if near and abs(off) < _AIMED:
                         kick = (
-                            _SHOT
-                            if role == _ATTACK
-                            else _pass_speed(hypot(look_x - ball[0], look_y - ball[1]))
+                            SHOT if role == _ATTACK else pass_speed(hypot(look_x - ball[0], look_y - ball[1]))
                         )
                 elif _nearest(all_, ball, first, last, roles) == r:
                     x, y = _coming(all_[r], ball)
@@ -161,7 +159,8 @@ def _decide(
 
 
 @compilable
-def _pass_speed(way: float) -> float:
+def pass_speed(way: float) -> float:
+    """Return how fast a pass so far [m] is kicked [m/s]."""
     return sqrt(_ARRIVES * _ARRIVES + 2.0 * _ROLLING * way) / _KEPT
 
 
@@ -257,7 +256,7 @@ def _walled(
 
 
 @compiled
-def _shot_at(
+def shot_at(
     field: FieldGeometry, robots: FloatArray, me: FloatArray, sign: float, blue: int
 ) -> tuple[float, float, bool]:
     """Return the corner farther from who is nearest to the goal, and whether the attacker is near."""
@@ -273,7 +272,7 @@ def _shot_at(
 
 
 @compiled
-def _passed_to(
+def passed_to(
     robots: FloatArray, ball: FloatArray, me: int, first: int, last: int
 ) -> tuple[float, float, bool]:
     """Return the mate whose way from the ball is the freest, and whether it is free."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from robobt.sim.arenas import Arenas
 from robobt.sim.world import command_row, robot_states
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import TreeRunner
-from robobt.world.game import Team
+from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, Frame, RobotId, RobotState
@@ -22,18 +22,27 @@ from robobt.world.state import BallState, Frame, RobotId, RobotState
 class PlayedRobots:
     """Robots with trees of their own in each arena; those of a team share what a team shares.
 
-    They see the arena's true state in open play, as in a match without a referee, noise and delay. One whose
-    tree fails stands still for that tick.
+    They see the arena's true state, as in a match without noise and delay: in open play, or as ``game``
+    tells. One whose tree fails stands still for that tick.
 
     Args:
         plays: by a robot's index the name of what it plays.
         blue: how many of an arena's robots, the first, are blue.
         limits: what each robot can do.
         n: number of arenas.
+        game: the state of the game in an arena, as blue sees it; None for open play.
     """
 
-    def __init__(self, plays: Mapping[int, str], blue: int, limits: Sequence[RobotLimits], n: int) -> None:
+    def __init__(
+        self,
+        plays: Mapping[int, str],
+        blue: int,
+        limits: Sequence[RobotLimits],
+        n: int,
+        game: Callable[[int], GameState] | None = None,
+    ) -> None:
         self._plays = dict(plays)
+        self._game = game
         self._blue = list(enumerate(limits[:blue]))
         self._yellow = list(enumerate(limits[blue:]))
         self._players: list[dict[int, Player]] = [{} for _ in range(n)]
@@ -80,6 +89,7 @@ class PlayedRobots:
             robot_states(self._yellow, robots[blue:], contact[blue:]),
             Team.BLUE,
             arenas.period,
+            OPEN_PLAY if self._game is None else self._game(arena),
             last_touch=touched if touch >= 0 else None,
             ball_model=arenas.settings.ball.model,
         )

@@ -126,7 +126,8 @@ def problem_of(
         smoothed = (True, True, True, False)
     elif isinstance(environment, SoccerSettings):
         own = (speed, speed, turn, 3.0, 2.0, 1.0, 1.0, 2.0, 1.5, 3.0, 3.0, *(4.0, 2.0) * 3, 0.3, 0.2)
-        scale = (*own, *(2.0, 2.0, speed, speed) * sum(environment.places))
+        told = (1.0,) * environment.rules.told
+        scale = (*own, *(2.0, 2.0, speed, speed) * sum(environment.places), *told)
         smoothed = (True, True, True, False)
         if central:
             each = (3.0, 2.0, 1.0, 1.0, speed, speed, turn)

@@ -15,7 +15,11 @@ from robobt.learning.envs.soccer.env import SoccerEnv
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 
-FEW = pytest.mark.parametrize("name", ["Save", "Duel", "Attack3v2"])
+RESTARTS = {
+    "rules": {"restarts": True, "double_touch": True, "held_by": None},
+    "starts": {"ball_speed": [3.0, 5.0]},
+    "time_limit": 100,
+}
 
 
 def many(name: str, num_envs: int, **more: Any) -> Any:
@@ -31,15 +35,24 @@ def test_every_task_of_the_suite_has_its_id() -> None:
 
 
 @pytest.mark.integration
-@FEW
-def test_gymnasiums_checker_has_nothing_to_say(name: str) -> None:
-    check_env(gymnasium.make(f"{name}-v0", settings={"noise": {"robot_position": 0.01}}).unwrapped)
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        *((name, {"noise": {"robot_position": 0.01}}) for name in ("Save", "Duel", "Attack3v2")),
+        ("Duel", RESTARTS),
+    ],
+)
+def test_gymnasiums_checker_has_nothing_to_say(name: str, settings: Any) -> None:
+    check_env(gymnasium.make(f"{name}-v0", settings=settings).unwrapped)
 
 
-@FEW
-def test_every_learner_is_an_environment_of_the_vector(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [("Save", {}), ("Duel", {}), ("Attack3v2", {}), ("Duel", {"settings": RESTARTS})],
+)
+def test_every_learner_is_an_environment_of_the_vector(name: str, more: dict[str, Any]) -> None:
     each = len(SUITE[name]().learners)
-    envs, again = many(name, 2 * each), many(name, 2 * each)
+    envs, again = (many(name, 2 * each, **more) for _ in range(2))
     seen, _ = envs.reset(seed=3)
     np.testing.assert_array_equal(seen, again.reset(seed=3)[0])
     assert envs.observation_space.contains(seen)
@@ -61,8 +74,11 @@ def test_every_learner_is_an_environment_of_the_vector(name: str) -> None:
         many("Duel", 3)
 
 
-@FEW
-def test_pettingzoos_checkers_have_nothing_to_say(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [("Save", None), ("Duel", None), ("Attack3v2", None), ("Duel", RESTARTS), ("Small3v3", RESTARTS)],
+)
+def test_pettingzoos_checkers_have_nothing_to_say(name: str, settings: Any) -> None:
     pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")
     from pettingzoo.test import parallel_api_test, parallel_seed_test
 
@@ -71,8 +87,8 @@ def test_pettingzoos_checkers_have_nothing_to_say(name: str) -> None:
     with warnings.catch_warnings():
         # It advises against settings that are no keyword arguments of their own.
         warnings.simplefilter("ignore", UserWarning)
-        parallel_api_test(SoccerParallelEnv(name), num_cycles=200)
-        parallel_seed_test(lambda: SoccerParallelEnv(name))
+        parallel_api_test(SoccerParallelEnv(name, settings), num_cycles=200)
+        parallel_seed_test(lambda: SoccerParallelEnv(name, settings))
 
 
 def test_agents_are_the_tasks_learners() -> None:

@@ -35,7 +35,15 @@ def learner_space(settings: SoccerSettings) -> Box[np.float32]:
     goals = [most + settings.field.goal_width] * 6
     mates, opponents = settings.places
     return bounded(
-        [*own, *goals, FAR_OFF, FAR_OFF / 2, *[far, far, robot, robot] * (mates + opponents)], distances=()
+        [
+            *own,
+            *goals,
+            FAR_OFF,
+            FAR_OFF / 2,
+            *[far, far, robot, robot] * (mates + opponents),
+            *[1.0] * settings.rules.told,
+        ],
+        distances=(),
     )
 
 

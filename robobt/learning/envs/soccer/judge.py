@@ -22,6 +22,9 @@ LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS, GOAL = range(8
 it was last in it [m]; for how many ticks in a row each team has held it; the goal, 1 blue's, -1 yellow's."""
 MIND = 8
 
+OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
+"""What stops play: a ball out, carried too far, a learner in the others' area, a ball touched twice."""
+
 _SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
 _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
 _WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
@@ -42,6 +45,8 @@ def judge(
     kicked: BoolArray,
     touch: NDArray[np.int64],
     kept: BoolArray,
+    fouls: FloatArray,
+    stops: NDArray[np.int64],
     minds: FloatArray,
     before: FloatArray,
     shares: FloatArray,
@@ -65,6 +70,10 @@ def judge(
         kicked: (n, R) who kicked.
         touch: (n,) who touched the ball last, -1 for nobody.
         kept: (n,) whether the ball rests where it is yellow's goalkeeper's.
+        fouls: (n,) which team broke a rule of restarts, 1 blue, -1 yellow, 0 nobody; where the rules have
+            restarts, any rule afterwards.
+        stops: (n,) what stops play without ending the episode, of
+            :data:`OUT` and so on, 0 for nothing; filled where the rules have restarts.
         minds: (n, MIND) what is kept of the episodes.
         before: (n, L, 2) what the rewards keep.
         shares: (n, L) rewards of the learners, added to.
@@ -94,28 +103,34 @@ def judge(
         mind[GOAL] = side
         out = is_out(ball[0], ball[1], half_length, half_width) and side == 0
         holder, passed, too_far = _possession(rules, contact[i], kicked[i], ball, blue, mind)
-        # Who ended it: 1 blue by a fault, -1 yellow, 0 nobody.
-        fault = 0.0
-        if out and touch[i] >= 0:
-            fault = 1.0 if touch[i] < blue else -1.0
-        if rules.longest_hold is not None and mind[BLUE_TICKS] > rules.longest_hold:
-            fault = 1.0
+        # Who broke a rule: 1 blue, -1 yellow, 0 nobody.
+        fault, stop = fouls[i], stops[i]
+        if out:
+            stop = OUT
+            if touch[i] >= 0:
+                fault = 1.0 if touch[i] < blue else -1.0
+        lost = rules.longest_hold is not None and mind[BLUE_TICKS] > rules.longest_hold
         if too_far:
-            fault = 1.0 if holder < blue else -1.0
+            fault, stop = 1.0 if holder < blue else -1.0, CARRIED
         if rules.areas:
             for index in who:
                 sign = 1.0 if index < blue else -1.0
                 x, y = sign * robots[i, index, 0], sign * robots[i, index, 1]
                 if in_area(x, y, half_length, field.defense_depth, field.defense_width):
-                    fault = sign
-        stolen = aim != _SAVE and (_at_least(mind[YELLOW_TICKS], rules.held_by) or kept[i])
-        if stolen:
+                    fault, stop = sign, IN_AREA
+        lost = lost or (aim != _SAVE and (_at_least(mind[YELLOW_TICKS], rules.held_by) or kept[i]))
+        if lost:
             fault = 1.0
-        failed = out or fault != 0.0 or side < 0
+        # Who ended it by that.
+        ended = fault
+        if rules.restarts:
+            out, ended = False, 1.0 if lost else 0.0
+            fouls[i], stops[i] = fault, 0 if lost or side != 0 else stop
+        failed = out or ended != 0.0 or side < 0
         success = side > 0
         if aim == _SAVE:
-            success = side > 0 or out or fault < 0.0 or _at_least(mind[BLUE_TICKS], rules.held_by)
-            failed = side < 0 or fault > 0.0
+            success = side > 0 or out or ended < 0.0 or _at_least(mind[BLUE_TICKS], rules.held_by)
+            failed = side < 0 or ended > 0.0
         elif aim == _PASS:
             success = passed and not failed
             failed = failed or side > 0

@@ -61,7 +61,8 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
         space, action = learner_space(made.settings), Box(-1.0, 1.0, (made.action.size,), np.float32)
         self.observation_spaces = dict.fromkeys(self.possible_agents, space)
         self.action_spaces = dict.fromkeys(self.possible_agents, action)
-        high = np.full(7 * made.robots + 4, np.inf, dtype=np.float32)
+        told = 2 * made.settings.rules.restarts
+        high = np.full(7 * made.robots + 4 + told, np.inf, dtype=np.float32)
         self.state_space = Box(-high, high, dtype=np.float32)
         self._begun = False
 
@@ -113,7 +114,7 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
         )
 
     def state(self) -> Observation:
-        """Return the arena's true state for a central critic, (7 R + 4,); see :meth:`SoccerTask.state`."""
+        """Return the arena's true state for a central critic, see :meth:`SoccerTask.state`."""
         state: Observation = self.task.state()[0].astype(np.float32)
         return state
 

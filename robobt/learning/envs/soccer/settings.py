@@ -55,7 +55,18 @@ class SoccerStarts(OrderedSettings):
 
 
 class SoccerRules(Settings):
-    """What ends an episode besides a goal, the ball over a line and the time limit."""
+    """What ends an episode besides a goal, the ball over a line and the time limit.
+
+    With ``restarts`` a ball over a line, one carried too far, a learner in the other team's area and a ball
+    touched twice end no episode: they stop play, which goes on with a restart of the league.
+    """
+
+    restarts: bool = Field(
+        False, description="a ball out and faults are followed by the league's restarts, and end nothing"
+    )
+    double_touch: bool = Field(
+        False, description="who takes a restart may not touch the ball before another robot has"
+    )
 
     held_by: int | None = Field(
         8, ge=1, le=1000, description="ticks in the other team's mouths after which the ball is lost"
@@ -71,6 +82,17 @@ class SoccerRules(Settings):
         8, ge=1, le=1000, description="ticks in a mouth that count as held, for the aim to hold"
     )
     pass_length: float = Field(0.8, ge=0.2, le=10, description="what is shorter is no pass [m]")
+
+    @property
+    def told(self) -> int:
+        """How many entries of an observation tell of restarts."""
+        return int(self.restarts) + int(self.double_touch)
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.double_touch and not self.restarts:
+            raise ValueError("double_touch: there is nothing to touch twice without restarts")
+        return self
 
 
 class SoccerSettings(TaskSettings):

@@ -6,16 +6,28 @@ import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.soccer.central import states_of
-from robobt.learning.envs.soccer.judge import GOAL, LAST, MIND, judge
+from robobt.learning.envs.soccer.judge import (
+    BLUE_TICKS,
+    GOAL,
+    LAST,
+    MIND,
+    TAKEN_X,
+    TAKEN_Y,
+    YELLOW_TICKS,
+    judge,
+)
+from robobt.learning.envs.soccer.restarts import Restarts
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
-from robobt.learning.envs.task import BoolArray, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task import TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import TRAITS
 from robobt.learning.opponents.plays import PlayedRobots
+from robobt.learning.opponents.restart_players import SPOT_X, SPOT_Y, TAKER, TEAM, RestartPlayers
 from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.world.compiled import numbers_of
+from robobt.world.game import GameState
 from robobt.world.limits import RobotLimits
 from robobt.world.team_view import team_view, team_view_rows
 
@@ -36,7 +48,7 @@ class SoccerTask(ArenaTask):
         settings = SoccerSettings() if settings is None else settings
         self.robots = len(settings.roles)
         self.learners = settings.learners
-        self.observation = team_view(*settings.places)
+        self.observation = team_view(*settings.places, settings.rules.told)
         self.start_columns = columns_of(settings)
         super().__init__(settings, n, seed)
         field = settings.field
@@ -55,16 +67,25 @@ class SoccerTask(ArenaTask):
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """See :func:`robobt.world.team_view.team_view`."""
-        return team_view_rows(robots, balls, self._who, self.blue, *self.settings.places, *self._goal)
+        settings = self.settings
+        return team_view_rows(
+            robots, balls, self._who, self.blue, *settings.places, *self._goal, settings.rules.told
+        )
 
     def state(self) -> FloatArray:
         """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
 
         For each robot x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx, vy, in
-        field coordinates.
+        field coordinates. Where the rules have restarts two entries follow: whose ball it is, 1 blue's, -1
+        yellow's, 0 in play; and which robot may not touch it after its restart, -1 for none.
         """
-        each = states_of(self.arenas.robots)
-        return np.concatenate((each.reshape(self.n, -1), self.arenas.balls), axis=1)
+        each = states_of(self.arenas.robots).reshape(self.n, -1)
+        told = self._restarts.rows[:, [TEAM, TAKER]] if self.settings.rules.restarts else each[:, :0]
+        return np.concatenate((each, self.arenas.balls, told), axis=1)
+
+    def game(self, arena: int) -> GameState:
+        """Return the state of the game in an arena as a referee would tell it, in field coordinates."""
+        return self._restarts.game(arena)
 
     @property
     def goals(self) -> FloatArray:
@@ -101,6 +122,11 @@ class SoccerTask(ArenaTask):
             self.blue,
             [own or limits for own in self._robot_limits],
             n,
+            self.game,
+        )
+        self._restarts = Restarts(settings, n)
+        self._at_restarts = RestartPlayers(
+            settings.field, limits, settings.roles, self.blue, settings.player_speed
         )
         self._minds = np.zeros((n, MIND))
         self._before = np.zeros((n, len(self.learners), 2))
@@ -110,6 +136,7 @@ class SoccerTask(ArenaTask):
         self._minds[which] = 0.0
         self._minds[which, LAST] = -1.0
         self._before[which] = np.nan
+        self._restarts.begin(which)
         traits = starts[:, 6 * self.robots + 4 :]
         for k, keeper in enumerate(self._keepers):
             keeper.restart(which, traits[:, len(TRAITS) * k : len(TRAITS) * (k + 1)])
@@ -122,6 +149,8 @@ class SoccerTask(ArenaTask):
         self._challengers.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
         for keeper in self._keepers:
             keeper.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
+        if self.settings.rules.restarts:
+            self._at_restarts.decide(self._restarts.rows, arenas.robots, arenas.balls, self._commands)
         self._played.decide(arenas, self._commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
@@ -130,7 +159,11 @@ class SoccerTask(ArenaTask):
         for keeper in self._keepers:
             if keeper.index >= self.blue:
                 kept |= keeper.kept
-        return judge(
+        restarts, on, progress = self._restarts, self.settings.rules.restarts, self._progress
+        if on:
+            put = restarts.watch(arenas, ends)
+            before = np.column_stack((progress["ball_x"], progress["ball_y"]))
+        ended = judge(
             self._numbers,
             self._field,
             self._weights,
@@ -144,6 +177,8 @@ class SoccerTask(ArenaTask):
             arenas.kicked,
             arenas.touch,
             kept,
+            restarts.fouls,
+            restarts.stops,
             self._minds,
             self._before,
             self.shares,
@@ -151,6 +186,26 @@ class SoccerTask(ArenaTask):
             rewards,
             ends,
         )
+        if on:
+            self._go_on(np.flatnonzero(restarts.stops * ~(ends[TERMINATED] | ends[TRUNCATED])), before)
+            self._perception.put(arenas.robots, arenas.balls, put)
+        return ended
+
+    def _go_on(self, which: IntArray, before: FloatArray) -> None:
+        """Let play go on with a restart where it has been stopped; balls were at ``before`` (n, 2) [m]."""
+        if len(which) == 0:
+            return
+        rows, minds = self._restarts.rows, self._minds
+        self._restarts.place(self.arenas, which, before[which], minds[which, TAKEN_X : TAKEN_Y + 1])
+        # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
+        minds[which, LAST] = -1.0
+        minds[which, BLUE_TICKS : YELLOW_TICKS + 1] = 0.0
+        self._before[which] = np.nan
+        self._progress["ball_x"][which], self._progress["ball_y"][which] = rows[which][:, [SPOT_X, SPOT_Y]].T
+
+    def _announce(self, seen: FloatArray, which: IntArray) -> None:
+        if self.settings.rules.restarts and self.learners:
+            self._restarts.tell(seen, which, self._who)
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
         # Nobody knows the shortest way past a team.
