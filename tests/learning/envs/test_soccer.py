@@ -142,6 +142,17 @@ def test_a_play_in_the_learners_places_starts_where_they_do_and_meets_who_they_m
     np.testing.assert_array_equal(*starts)
 
 
+def test_a_goalkeeper_starts_in_its_goal_by_its_role_and_by_its_play() -> None:
+    by_role = SoccerSettings(yellow=("goalkeeper", "wall"))
+    by_play = SoccerSettings(yellow=("play", "wall"), plays=("team_keeper",))
+    for settings in (by_role, by_play):
+        made = SoccerTask(settings)
+        keeper, other = made.sample_starts(3, 50)[:, 6:18].reshape(50, 2, 6).transpose(1, 0, 2)
+        assert (keeper[:, 0] > made.settings.field.half_length - 0.61).all()
+        np.testing.assert_array_equal(keeper[:, 1:3], np.tile([0.0, np.pi], (50, 1)))
+        assert (other[:, 0] <= settings.starts.yellow_x[1]).all()
+
+
 def test_a_pass_counts_when_it_comes_to_a_mate() -> None:
     start = [*at(0, 0), *at(1.5, 0, np.pi), *in_mouth(0, 0)]
     made = playing(start, blue=["learner", "still"], aim="pass", action={

@@ -31,6 +31,8 @@ AIMS = ("score", "save", "keep", "pass", "hold")
 LEARNER: Role = "learner"
 GOALKEEPER: Role = "goalkeeper"
 PLAY: Role = "play"
+KEEPING = ("goalkeeper", "fitted_goalkeeper", "keeper", "team_keeper", "keeper_2026_11")
+"""Plays of goalkeepers."""
 
 
 class SoccerStarts(OrderedSettings):
@@ -122,6 +124,15 @@ class SoccerSettings(TaskSettings):
     def roles(self) -> tuple[Role, ...]:
         """Of all robots in an arena, blue's first."""
         return (*self.blue, *self.yellow)
+
+    @property
+    def keeping(self) -> tuple[bool, ...]:
+        """Which robots start in their goals."""
+        plays, blue = iter(self.plays), len(self.blue)
+        by_play = [role == PLAY and next(plays) in KEEPING for role in self.roles]
+        return tuple(
+            role == GOALKEEPER or (index >= blue and by_play[index]) for index, role in enumerate(self.roles)
+        )
 
     @property
     def learners(self) -> tuple[int, ...]:

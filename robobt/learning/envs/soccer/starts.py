@@ -38,7 +38,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
     Raises:
         ValueError: no start was found in which all are far enough from each other.
     """
-    starts, field, roles = settings.starts, settings.field, settings.roles
+    starts, field, roles, keeping = settings.starts, settings.field, settings.roles, settings.keeping
     blue, total = len(settings.blue), len(roles)
     rows = np.zeros((count, len(columns_of(settings))))
     robots = rows[:, : 6 * total].reshape(count, total, 6)
@@ -52,16 +52,19 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
             own = traits[:, 3 * keeper : 3 * keeper + 3]
             own[:] = keeper_traits(settings.keepers, rng, count)
             robots[:, index, 0] = side * (field.half_length - own[:, 2])
-            robots[:, index, 2] = 0.0 if side < 0.0 else pi
             keeper += 1
+        elif keeping[index]:
+            robots[:, index, 0] = side * (field.half_length - rng.uniform(*settings.keepers.out, count))
         else:
             x = starts.blue_x if index < blue else starts.yellow_x
             robots[:, index, :2] = _free(rng, (x, starts.y), places, starts.apart)
+        if keeping[index]:
+            robots[:, index, 2] = 0.0 if side < 0.0 else pi
         places = np.concatenate((places, robots[:, index : index + 1, :2]), axis=1)
     ball[:, :2] = _free(rng, (starts.ball_x, starts.y), places, starts.apart)
     ball[:, 2:] = velocities(rng, starts.ball_speed, count)
     coming, aside = rng.random(count) < starts.coming, rng.uniform(-_ASIDE, _ASIDE, (count, 2))
-    fielders = [index for index in range(blue) if roles[index] != GOALKEEPER]
+    fielders = [index for index in range(blue) if not keeping[index]]
     if starts.coming > 0.0 and fielders:
         # Through a point beside it, as an inexact pass would be.
         way = robots[:, fielders[0], :2] + aside - ball[:, :2]
@@ -73,7 +76,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
         by_blue = rng.random(count) < 0.5
     ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
     for chosen, first, last in ((held & by_blue, 0, blue), (held & ~by_blue, blue, total)):
-        players = [index for index in range(first, last) if roles[index] != GOALKEEPER]
+        players = [index for index in range(first, last) if not keeping[index]]
         if players:
             holder = robots[chosen, players[0]]
             front = np.column_stack((np.cos(holder[:, 2]), np.sin(holder[:, 2])))
