@@ -144,6 +144,16 @@ def test_how_an_attack_is_lost(name: str, row: list[float], action: np.ndarray) 
     assert result.reward[0] < -0.8 * made.settings.reward.lost
 
 
+def test_a_shot_that_the_goalkeeper_has_saved_can_be_the_last() -> None:
+    row = start((1.0, 0.0, 0.0), kind="line")
+    goes_on, ends = (task(row, saved=saved, held_by_keeper=1000) for saved in (False, True))
+    assert not to_the_end(ends, KICK).success[0]
+    to_the_end(goes_on, KICK)
+    assert ends.ended is not None
+    assert goes_on.ended is not None
+    assert ends.ended.ticks[0] < 0.5 * goes_on.ended.ticks[0]
+
+
 def test_the_rules_dribbling_limit_can_be_kept() -> None:
     slowly = np.array([0.3, 0.0, 0.0, -1.0])
     kept = task(start((0.0, 0.0, 0.0)), dribbling=1.0)

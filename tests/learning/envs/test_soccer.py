@@ -63,6 +63,25 @@ def test_a_goal_is_earned_by_one_team_and_paid_for_by_the_other() -> None:
     assert even[0] + even[1] == pytest.approx(earned[0] + earned[1])
 
 
+@pytest.mark.parametrize(
+    ("mate", "opponent", "earned"),
+    [
+        (at(3.5, 0), at(3, 1.5), 1.0),
+        (at(3.5, 0.2), at(3, 1.5), 0.5),  # half of how far beside a mate a pass may come
+        (at(3.5, 0), at(2.8, 0.1), 0.0),  # an opponent is on the way
+        (at(2.5, 0.3), at(3, 1.5), 0.0),  # too near to be passed to
+    ],
+)
+def test_a_kick_at_a_mate_is_earned_by_who_kicks(
+    mate: list[float], opponent: list[float], earned: float
+) -> None:
+    start = [*at(2, 0), *mate, *opponent, *in_mouth(2, 0)]
+    nothing = dict.fromkeys(("approach", "advance", "shot", "goal", "fault", "time", "crash"), 0.0)
+    made = playing(start, **everybody_still(2, 1), reward={**nothing, "sent": 2.0})
+    made.advance(np.concatenate((KICK, STAY, STAY))[None])
+    np.testing.assert_allclose(made.shares[0], (2.0 * earned, 0.0, 0.0), atol=0.02)
+
+
 def test_what_two_in_each_others_place_see_and_earn_is_the_same() -> None:
     rng = np.random.default_rng(3)
     rows = rng.uniform(-2.0, 2.0, (20, 4, 6))

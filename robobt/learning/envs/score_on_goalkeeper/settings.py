@@ -58,6 +58,7 @@ class ScoreOnGoalkeeperSettings(TaskSettings):
     held_by_keeper: int = Field(
         8, ge=1, le=1000, description="ticks in its mouth after which the ball is the goalkeeper's"
     )
+    saved: bool = Field(False, description="whether a ball that the goalkeeper touches is lost at once")
     dribbling: float | None = Field(
         None, gt=0, le=20, description="longest way with the ball in the mouth, by the rules 1 [m]"
     )

@@ -77,6 +77,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             arenas.balls,
             arenas.contact,
             arenas.kicked,
+            arenas.touch,
             self._keepers.kept,
             self._progress_rows,
             rewards,
@@ -97,6 +98,7 @@ def _judge(
     balls: FloatArray,
     contact: BoolArray,
     kicked: BoolArray,
+    touch: IntArray,
     kept: BoolArray,
     progress: FloatArray,
     rewards: FloatArray,
@@ -119,7 +121,7 @@ def _judge(
         episode.ticks_held = episode.ticks_held + 1 if contact[i, 1] else 0.0
         goal = goal_of(episode, ball, half_length, half_width, post) > 0
         lost = is_out(ball[0], ball[1], half_length, half_width) or kept[i]
-        lost = lost or episode.ticks_held >= settings.held_by_keeper
+        lost = lost or episode.ticks_held >= settings.held_by_keeper or (settings.saved and touch[i] == 1)
         # The rules: no touching the ball in their defence area, not even partly inside.
         lost = lost or in_area(robot[0], robot[1], half_length, depth, width)
         lost = lost or (held and in_area(robot[0], robot[1], half_length, depth, width, ROBOT_RADIUS))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.soccer.rewards import SoccerReward, own_reward, team_reward
+from robobt.learning.envs.soccer.rewards import SoccerReward, own_reward, sent, team_reward
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
 from robobt.world.compiled import compilable, compiled, numbers_dtype
@@ -162,6 +162,9 @@ def judge(
                 nearest - 2.0 * ROBOT_RADIUS,
                 before[i, k],
             )
+            if weights.sent > 0.0 and kicked[i, who[k]]:
+                first, last = (0, blue) if team == 0 else (blue, robots.shape[1])
+                owns[k] += weights.sent * sent(ball, robots[i], first, last, rules.pass_length)
             means[team] += owns[k]
             teams[team] += 1.0
         total = 0.0

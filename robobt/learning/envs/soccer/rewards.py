@@ -15,6 +15,11 @@ from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
+_WITHIN = 0.4
+"""From here on a kick is not at a mate [m]."""
+_BLOCKED = 0.2
+"""An opponent nearer than this to its way gets a pass [m]."""
+
 
 class SoccerReward(Settings):
     """Weights of the reward's terms: the team's, the same for all its robots, and a robot's own."""
@@ -36,6 +41,9 @@ class SoccerReward(Settings):
     time: float = Field(0.002, ge=0, le=10, description="team: taken off every tick")
     approach: float = Field(0.3, ge=0, le=10, description="own: for each metre nearer to the ball")
     shot: float = Field(0.5, ge=0, le=100, description="own: on a kick that will go between the posts")
+    sent: float = Field(
+        0.0, ge=0, le=100, description="own: on a kick at a mate, less beside it and none past an opponent"
+    )
     crash: float = Field(
         0.02, ge=0, le=10, description="own: taken off every tick in which it touches a robot"
     )
@@ -111,3 +119,36 @@ def own_reward(
     if gap < 0.005:
         total -= weights.crash
     return total
+
+
+@compilable
+def sent(ball: FloatArray, robots: FloatArray, first: int, last: int, least: float) -> float:
+    """Return how well a kick is aimed at a mate: 1 at its centre, 0 beside it or with an opponent on the way.
+
+    Args:
+        ball: (4,) x, y, vx, vy as it has left.
+        robots: (R, 6) states, the team's being ``first`` to ``last``, who kicked included.
+        first: index of the team's first robot.
+        last: behind its last.
+        least: how far away a mate must be [m].
+    """
+    fast = hypot(ball[2], ball[3])
+    if fast == 0.0:
+        return 0.0
+    best, until = 0.0, 0.0
+    for r in range(first, last):
+        along, beside = _off(ball, robots[r], fast)
+        if along >= least and 1.0 - beside / _WITHIN > best:
+            best, until = 1.0 - beside / _WITHIN, along
+    for r in range(len(robots)):
+        along, beside = _off(ball, robots[r], fast)
+        if not first <= r < last and 0.0 < along < until and beside < _BLOCKED:
+            return 0.0
+    return best
+
+
+@compilable
+def _off(ball: FloatArray, robot: FloatArray, fast: float) -> tuple[float, float]:
+    """Return how far along the ball's way a robot is, and how far beside it [m]."""
+    dx, dy = robot[0] - ball[0], robot[1] - ball[1]
+    return (dx * ball[2] + dy * ball[3]) / fast, abs(dy * ball[2] - dx * ball[3]) / fast
