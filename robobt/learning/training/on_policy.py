@@ -8,13 +8,14 @@ import numpy as np
 
 from robobt.learning.agents.past_selves import PastSelves
 from robobt.learning.agents.ppo import PPO, Rollout
+from robobt.learning.envs import make_task
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.clock import RunClock
 from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.run import Run, TrainError, part
-from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor
-from robobt.learning.training.settings import TrainSettings
+from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor, read_settings
+from robobt.learning.training.settings import TrainSettings, environment_of
 
 
 class OnPolicyRun(Run):
@@ -66,17 +67,27 @@ class OnPolicyRun(Run):
             self._folder.keep(self._past.add(self._agent.actor, self._steps), self._steps)
 
     def _take_over(self, folder: Path) -> None:
-        """Begin with the best policy of a run that has ended."""
+        """Begin with the best policy of a run that has ended; what that did not see changes nothing yet."""
         if not (folder / ACTOR).is_file():
             raise TrainError(f"init: {folder} is not the folder of a run that has ended")
         given, own = load_actor(folder / ACTOR), self._agent.actor
-        if given.build != own.build:
+        seen, sees = _seen(read_settings(folder)), _seen(self._settings)
+        known = [k for k, name in enumerate(sees) if name in seen]
+        scale = [own.build["scale"][k] for k in known]
+        if [sees[k] for k in known] != seen or given.build != {**own.build, "scale": scale}:
             raise TrainError(
-                f"init: the policy of {folder} sees {len(given.build['scale'])} entries with layers of "
-                f"{given.build['hidden']}, this run's {len(own.build['scale'])} with {own.build['hidden']}, "
-                "or of other sizes"
+                f"init: the policy of {folder} sees {len(seen)} entries with layers of "
+                f"{given.build['hidden']}, this run's {len(sees)} with {own.build['hidden']}, "
+                "or others or of other sizes"
             )
-        own.load_state_dict(given.state_dict())
+        weights = given.state_dict()
+        for name in ("inverse_scale", "body.0.weight"):
+            whole = own.state_dict()[name].clone()
+            if whole.ndim == 2:
+                whole[:] = 0.0
+            whole[..., known] = weights[name]
+            weights[name] = whole
+        own.load_state_dict(weights)
 
     def _advance(self) -> None:
         rollout = self._roll_out()
@@ -110,3 +121,8 @@ class OnPolicyRun(Run):
         following = np.concatenate((rollout.value[1:], agent.worth(self._observation)[None]))
         rollout.next_value[~rollout.ended] = following[~rollout.ended]
         return rollout
+
+
+def _seen(settings: TrainSettings) -> list[str]:
+    """Return the names of what the policy of such a run sees."""
+    return [name for name, _ in make_task(environment_of(settings), 1).observation.entries]

@@ -48,7 +48,8 @@ class TrainSettings(Settings):
     )
     init: str | None = Field(
         None,
-        description="the folder of a run that has ended, whose policy training begins with, by learner ppo",
+        description="the folder of a run that has ended, whose policy training begins with, by learner ppo; "
+        "it may have seen fewer robots",
     )
     pool: PoolSettings = PoolSettings()
     learner: Literal["ddpg", "ppo"] = Field(

@@ -140,7 +140,12 @@ def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_
     with pytest.raises(TrainError, match=r"init: .* is not the folder of a run that has ended"):
         train(nowhere, tmp_path / "nowhere")
     with pytest.raises(TrainError, match=r"init: the policy of .* sees 23 entries"):
-        train(load_settings("small3v3", "fast", {**few, "ppo.critic": "own"}), tmp_path / "other")
+        train(load_settings("duel", "self_play", {**few, "ppo.hidden": [7]}), tmp_path / "other")
+    # One who sees more robots does at first as if it saw but those.
+    changes = {**few, "ppo.critic": "own", "environment.opponents": 3}
+    more = train(load_settings("duel", "self_play", changes), tmp_path / "more").actor
+    seen = torch.rand(5, 31, generator=torch.Generator().manual_seed(0))
+    torch.testing.assert_close(more(seen), whole.actor(seen[:, :23]))
 
 
 def test_a_stage_begins_after_its_share_of_the_steps() -> None:
