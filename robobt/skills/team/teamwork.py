@@ -60,8 +60,12 @@ def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
 
 
 def has_kicked(frame: Frame, team: TeamStore, number: int) -> bool:
-    """Return whether that robot took a restart and may not touch the ball before another has."""
-    attacker(frame, team)
+    """Return whether that robot took a restart and may not touch the ball before another has.
+
+    Who goes for the ball is not asked: a team may agree on that otherwise.
+    """
+    if team.agreed_on is not frame and team.plan.frame is not frame:
+        follow_restart(frame, team)
     return team.kicker == number
 
 
