@@ -65,6 +65,8 @@ class SkillTeacher:
     def __init__(self, task: ArenaTask, make: Callable[[], Skill]) -> None:
         self._task = task
         self._make = make
+        # The tasks know no defence areas, and a skill would keep out of the opponents'.
+        self._field = task.settings.field.model_copy(update={"defense_depth": 0.0, "defense_width": 0.0})
         self._limits = _within(task.settings.robot_limits, task.action)
         self._runners: dict[int, tuple[TreeRunner, Store]] = {}
         self._ticks = np.zeros(task.n, dtype=np.int64)
@@ -99,7 +101,7 @@ class SkillTeacher:
             RobotState(number, *state) for number, state in enumerate(arenas.robots[arena, 1:].tolist())
         )
         time = float(self._ticks[arena]) * settings.period
-        return Frame(time, settings.field, BallState(*ball), (me,), others, period=settings.period)
+        return Frame(time, self._field, BallState(*ball), (me,), others, period=settings.period)
 
 
 def playing(task: ArenaTask, teacher: Teacher) -> Callable[[FloatArray], FloatArray]:
