@@ -3,9 +3,11 @@
 The plan is made anew every tick and only its first leg is driven. Obstacles are
 circles; a blocked path leaves along the tangent of the first circle on it, on
 the side with the shorter way round. Defence areas are passed by their corners.
+Robots that move are no obstacles to the path: the velocity along it is changed
+where it would meet one (:mod:`robobt.motion.velocity_obstacles`).
 
 Source of the idea and the clearances: RoboBulls' published code (FPPA planner);
-tangents, side choice and moving obstacles are robobt's.
+tangents and side choice are robobt's.
 """
 
 from __future__ import annotations
@@ -117,8 +119,8 @@ def next_waypoint(
 ) -> tuple[Point, float]:
     """Return the next point of a free path to ``target``, and the speed at which to pass it [m/s].
 
-    The speed is 0 for ``target`` itself. An obstacle that the robot already
-    overlaps, or that ``target`` lies in, blocks only ways that lead deeper into it.
+    The speed is 0 for ``target`` itself. Robots that move are gone round where they will be. An obstacle that
+    the robot already overlaps, or that ``target`` lies in, blocks only ways that lead deeper into it.
     """
     task = task_of(
         me,
@@ -128,7 +130,7 @@ def next_waypoint(
         goalkeeper=goalkeeper,
         placing=placing,
     )
-    x, y, speed = waypoint_numbers(task, scene_of(frame), movers_of(frame), numbers(me.limits))
+    x, y, speed = waypoint_numbers(task, scene_of(frame), movers_of(frame), numbers(me.limits), True)
     return (x, y), speed
 
 
@@ -138,7 +140,7 @@ def _way(frame: Frame, me: RobotState, task: FloatArray) -> Iterator[Point]:
     target = task[TARGET_X], task[TARGET_Y] = allowed_numbers(task, scene)
     yield me.position
     for _ in range(_MOST_LEGS):
-        x, y, _ = waypoint_numbers(task, scene, robots, own)
+        x, y, _ = waypoint_numbers(task, scene, robots, own, False)
         yield x, y
         if (x, y) == target:
             break

@@ -153,6 +153,14 @@ def row_of(task: FloatArray, scene: FloatArray) -> int:
 
 
 @compiled
+def from_ball(task: FloatArray, scene: FloatArray) -> float:
+    """Return how far its centre has to stay from the ball's, 0 where that is no obstacle [m]."""
+    if scene[KEEP_OFF] > 0.0:
+        return ROBOT_RADIUS + BALL_RADIUS + STOP_DISTANCE
+    return ROBOT_RADIUS + BALL_RADIUS + task[BALL_GAP] if task[BALL_GAP] >= 0.0 else 0.0
+
+
+@compiled
 def _away_from_ball(task: FloatArray, scene: FloatArray, x: float, y: float) -> Point:
     bx, by = scene[BALL_X], scene[BALL_Y]
     keep = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS

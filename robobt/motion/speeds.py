@@ -62,6 +62,16 @@ def drive_numbers(
         gentle: whether not to ask for more change of velocity than that.
         period: time until the next command [s].
     """
+    vx, vy = wanted_velocity(state, task, own, given, period)
+    rate = turn_rate_numbers(state, task[2], own, given, period)
+    return command_numbers(state, vx, vy, rate, own, given, gentle, period)
+
+
+@compiled
+def wanted_velocity(
+    state: FloatArray, task: FloatArray, own: FloatArray, given: FloatArray, period: float
+) -> Point:
+    """Return the velocity in field coordinates that :func:`drive_numbers` asks for; arguments as there."""
     px, py, turned, svx, svy = state[0], state[1], state[2], state[3], state[4]
     x, y, final_speed = task[0], task[1], task[3]
     dx, dy = x - px, y - py
@@ -84,8 +94,7 @@ def drive_numbers(
                 distance, ahead, across, given, acceleration, braking, sideways, stands
             )
         vx, vy = ux * ahead - uy * across, uy * ahead + ux * across
-    rate = turn_rate_numbers(state, task[2], own, given, period)
-    return command_numbers(state, vx, vy, rate, own, given, gentle, period)
+    return vx, vy
 
 
 @compiled

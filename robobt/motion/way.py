@@ -12,7 +12,6 @@ from robobt.motion.give_way import slowed_towards
 from robobt.motion.scene import (
     AREA_GAP,
     AVOID_ROBOTS,
-    BALL_GAP,
     BALL_VX,
     BALL_VY,
     BALL_X,
@@ -31,19 +30,24 @@ from robobt.motion.scene import (
     THEIR_GAP,
     allowed_numbers,
     around_area,
+    from_ball,
     is_open,
     row_of,
 )
-from robobt.motion.speeds import FORWARD, LATERAL, REACTION, TOP, drive_numbers
+from robobt.motion.speeds import (
+    FORWARD,
+    LATERAL,
+    REACTION,
+    TOP,
+    command_numbers,
+    turn_rate_numbers,
+    wanted_velocity,
+)
+from robobt.motion.velocity_obstacles import STANDS_APART, clear_velocity, is_moving
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.rules import STOP_DISTANCE
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import ROBOT_RADIUS
 
-ROBOT_GAP = 0.03
-"""Gap to another robot below which a way is blocked [m]."""
-
-_ROBOTS_APART = 2.0 * ROBOT_RADIUS + ROBOT_GAP
 _LOOK_AHEAD = 0.4
 """Longest time an obstacle is moved ahead along its velocity [s]."""
 _HEADSTRONG = 0.5
@@ -87,11 +91,15 @@ def travel_numbers(
     final_speed = task[FINAL_SPEED] if goal_x == task[TARGET_X] and goal_y == task[TARGET_Y] else 0.0
     task = task.copy()
     task[TARGET_X], task[TARGET_Y] = goal_x, goal_y
-    x, y, speed = waypoint_numbers(task, scene, robots, own)
+    x, y, speed = waypoint_numbers(task, scene, robots, own, False)
     task[TARGET_X], task[TARGET_Y] = x, y
     task[FINAL_SPEED] = final_speed if x == goal_x and y == goal_y else speed
     state, leg = task[:TARGET_X], task[TARGET_X : FINAL_SPEED + 1]
-    vx, vy, omega = drive_numbers(state, leg, own, given, gentle, scene[PERIOD])
+    vx, vy = wanted_velocity(state, leg, own, given, scene[PERIOD])
+    if task[AVOID_ROBOTS] > 0.0:
+        vx, vy = clear_velocity(task, scene, robots, own, given, (vx, vy), (goal_x, goal_y))
+    omega = turn_rate_numbers(state, leg[2], own, given, scene[PERIOD])
+    vx, vy, omega = command_numbers(state, vx, vy, omega, own, given, gentle, scene[PERIOD])
     now, mates = np.array((state[0], state[1], state[2], vx, vy)), len(scene) - NUMBERS
     if task[AVOID_ROBOTS] > 0.0 and scene[IN_PLAY] == 0.0:
         now[3], now[4] = slowed_towards(now, robots[mates:], -1, 0)
@@ -102,11 +110,12 @@ def travel_numbers(
 
 @compiled
 def waypoint_numbers(
-    task: FloatArray, scene: FloatArray, robots: FloatArray, own: FloatArray
+    task: FloatArray, scene: FloatArray, robots: FloatArray, own: FloatArray, moving: bool
 ) -> tuple[float, float, float]:
     """Do what :func:`robobt.motion.path_planner.next_waypoint` does.
 
-    Arguments as for :func:`travel_numbers`. Returns the point's x and y [m], and the speed there [m/s].
+    Arguments as for :func:`travel_numbers`, and whether robots that move are gone round too. Returns the
+    point's x and y [m], and the speed there [m/s].
     """
     target_x, target_y = task[TARGET_X], task[TARGET_Y]
     x, y, vx, vy = task[0], task[1], task[3], task[4]
@@ -119,12 +128,7 @@ def waypoint_numbers(
                 scene, -x, y, -target_x, target_y, ROBOT_RADIUS + AREA_GAP
             )
             goal_x = -goal_x
-    ball_radius = -1.0
-    if scene[KEEP_OFF] > 0.0:
-        ball_radius = ROBOT_RADIUS + BALL_RADIUS + STOP_DISTANCE
-    elif task[BALL_GAP] >= 0.0:
-        ball_radius = ROBOT_RADIUS + BALL_RADIUS + task[BALL_GAP]
-    circles = _obstacles(task, scene, robots, goal_x, goal_y, ball_radius)
+    circles = _obstacles(task, scene, robots, goal_x, goal_y, moving)
     hit, radius = first_hit(x, y, goal_x, goal_y, circles, not corner_first)
     if hit < 0:
         return goal_x, goal_y, own[TOP] * 0.5 if corner_first else 0.0
@@ -158,11 +162,16 @@ def waypoint_numbers(
 
 @compiled
 def _obstacles(
-    task: FloatArray, scene: FloatArray, robots: FloatArray, gx: float, gy: float, ball_radius: float
+    task: FloatArray,
+    scene: FloatArray,
+    robots: FloatArray,
+    gx: float,
+    gy: float,
+    moving: bool,
 ) -> FloatArray:
     """Return the obstacles (n, 3) near enough to matter, each where it will be when the robot gets there.
 
-    ``ball_radius`` is how far to stay from the ball; below 0 it is no obstacle [m].
+    ``moving`` says whether robots that move are among them.
     """
     x, y = task[0], task[1]
     circles = np.empty((len(robots) + 1, 3))
@@ -174,11 +183,12 @@ def _obstacles(
         for i in range(len(robots)):
             ox, oy = robots[i, X], robots[i, Y]
             gap = hypot(ox - x, oy - y)
-            if i != skip and gap < reach:
+            if i != skip and gap < reach and (moving or not is_moving(robots, i)):
                 ahead = min(_LOOK_AHEAD, gap * pace)
-                circles[n] = (ox + robots[i, VX] * ahead, oy + robots[i, VY] * ahead, _ROBOTS_APART)
+                circles[n] = (ox + robots[i, VX] * ahead, oy + robots[i, VY] * ahead, STANDS_APART)
                 n += 1
-    if ball_radius >= 0.0:
+    ball_radius = from_ball(task, scene)
+    if ball_radius > 0.0:
         bx, by = scene[BALL_X], scene[BALL_Y]
         ahead = min(_LOOK_AHEAD, hypot(bx - x, by - y) * pace)
         circles[n] = (bx + scene[BALL_VX] * ahead, by + scene[BALL_VY] * ahead, ball_radius)

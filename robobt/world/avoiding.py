@@ -51,18 +51,20 @@ velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
 
 
 @compilable
-def _free(ox: float, oy: float, wx: float, wy: float) -> float:
-    """Return when one at (ox, oy) that drives with (wx, wy), both relative, is in the way."""
-    reach = 2.0 * ROBOT_RADIUS + MARGIN
+def free_time(ox: float, oy: float, wx: float, wy: float, apart: float) -> float:
+    """Return when one at (ox, oy) that drives with (wx, wy), both relative, comes nearer than ``apart``."""
     closing = ox * wx + oy * wy
     if closing >= 0.0:
         return AHEAD
-    beyond = ox * ox + oy * oy - reach * reach
+    beyond = ox * ox + oy * oy - apart * apart
     if beyond <= 0.0:
         return 0.0
     squared = wx * wx + wy * wy
     meets = closing * closing - squared * beyond
-    return min((-closing - sqrt(meets)) / squared, AHEAD) if meets > 0.0 else AHEAD
+    if meets <= 0.0 or squared == 0.0:
+        # A robot that has come to rest may keep a velocity so small that its square is none.
+        return AHEAD
+    return min((-closing - sqrt(meets)) / squared, AHEAD)
 
 
 @compiled
@@ -98,7 +100,7 @@ def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
                 it = robots[i, other]
                 ox = it[0] - me[0] + 0.5 * LAG * (vx - me[3])
                 oy = it[1] - me[1] + 0.5 * LAG * (vy - me[4])
-                free = min(free, _free(ox, oy, it[3] - vx, it[4] - vy))
+                free = min(free, free_time(ox, oy, it[3] - vx, it[4] - vy, 2.0 * ROBOT_RADIUS + MARGIN))
             row[FIRST_WAY + way] = free
     return rows
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.motion import detour, path_planner, scene, speeds, way
+from robobt.motion import detour, path_planner, scene, velocity_obstacles, way
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.world import (
     DIVISION_A,
@@ -268,17 +268,27 @@ COMPILED = (
     (path_planner, "travel_numbers"),
     (scene, "_away_from_ball"),
     (scene, "_expelled"),
-    (speeds, "command_numbers"),
-    (speeds, "turn_rate_numbers"),
+    (velocity_obstacles, "_any_moves"),
+    (velocity_obstacles, "_free_for"),
+    (velocity_obstacles, "_is_near"),
+    (velocity_obstacles, "from_ball"),
+    (velocity_obstacles, "is_moving"),
+    (velocity_obstacles, "is_open"),
+    (velocity_obstacles, "row_of"),
     (way, "_obstacles"),
     (way, "allowed_numbers"),
     (way, "around_area"),
+    (way, "clear_velocity"),
+    (way, "command_numbers"),
     (way, "detour"),
-    (way, "drive_numbers"),
     (way, "first_hit"),
+    (way, "from_ball"),
+    (way, "is_moving"),
     (way, "is_open"),
     (way, "row_of"),
     (way, "slowed_towards"),
+    (way, "turn_rate_numbers"),
+    (way, "wanted_velocity"),
     (way, "waypoint_numbers"),
 )
 

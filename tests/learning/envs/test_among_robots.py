@@ -165,10 +165,7 @@ def test_it_is_seen_likewise_in_a_match() -> None:
 
 
 @pytest.mark.integration
-def test_the_hand_written_planner_touches_fewer_than_who_looks_at_none() -> None:
+def test_the_hand_written_planner_gets_through_as_well_as_a_script_that_sees_when_ways_are_free() -> None:
     made = task(30)
     starts = made.sample_starts(6, 60)
-    planned = run_starts(made, playing(made, skill(made)), starts)
-    straight = run_starts(made, straight_drive_among, starts)
-    assert planned.success.sum() >= straight.success.sum() + 6
-    assert (planned.success | planned.truncated).sum() >= (straight.success | straight.truncated).sum() + 6
+    assert run_starts(made, playing(made, skill(made)), starts).success.sum() >= 58
