@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from robobt.motion.arrival import movers_of
-from robobt.motion.scene import TARGET_X, TARGET_Y, allowed_numbers, scene_of, task_of
+from robobt.motion.scene import EVADES, TARGET_X, TARGET_Y, allowed_numbers, scene_of, task_of
 from robobt.motion.speeds import numbers
 from robobt.motion.stadium import outside_stadium
 from robobt.motion.way import travel_numbers, waypoint_numbers
@@ -140,7 +140,7 @@ def _way(frame: Frame, me: RobotState, task: FloatArray) -> Iterator[Point]:
     target = task[TARGET_X], task[TARGET_Y] = allowed_numbers(task, scene)
     yield me.position
     for _ in range(_MOST_LEGS):
-        x, y, _ = waypoint_numbers(task, scene, robots, own, False)
+        x, y, _ = waypoint_numbers(task, scene, robots, own, scene[EVADES] == 0.0)
         yield x, y
         if (x, y) == target:
             break

@@ -37,9 +37,13 @@ AVOID_ROBOTS, GOALKEEPER, PLACING, NUMBER = 11, 12, 13, 14
     INSISTS,
     IN_PLAY,
     MOST_SPEED,
+    EVADES,
     NUMBERS,
-) = range(18)
-"""Entries of a scene; from the last on there are the numbers of the own robots."""
+) = range(19)
+"""Entries of a scene; from the last on there are the numbers of the own robots.
+
+``EVADES`` says whether ways evade robots that move; with 0 they go round where those will be.
+"""
 
 AREA_GAP = 0.02
 """From a defence area to a robot that may not enter it [m]."""
@@ -80,6 +84,7 @@ def scene_of(frame: Frame) -> FloatArray:
         insists,
         in_play,
         STOP_SPEED if stopped else inf,
+        True,
         *[robot.id for robot in frame.own],
     )
     made = frame.made["scene"] = np.array(scene, dtype=np.float64)

@@ -16,6 +16,7 @@ from robobt.motion.scene import (
     BALL_VY,
     BALL_X,
     BALL_Y,
+    EVADES,
     FINAL_SPEED,
     GOALKEEPER,
     IN_PLAY,
@@ -91,12 +92,13 @@ def travel_numbers(
     final_speed = task[FINAL_SPEED] if goal_x == task[TARGET_X] and goal_y == task[TARGET_Y] else 0.0
     task = task.copy()
     task[TARGET_X], task[TARGET_Y] = goal_x, goal_y
-    x, y, speed = waypoint_numbers(task, scene, robots, own, False)
+    evades = task[AVOID_ROBOTS] > 0.0 and scene[EVADES] > 0.0
+    x, y, speed = waypoint_numbers(task, scene, robots, own, not evades)
     task[TARGET_X], task[TARGET_Y] = x, y
     task[FINAL_SPEED] = final_speed if x == goal_x and y == goal_y else speed
     state, leg = task[:TARGET_X], task[TARGET_X : FINAL_SPEED + 1]
     vx, vy = wanted_velocity(state, leg, own, given, scene[PERIOD])
-    if task[AVOID_ROBOTS] > 0.0:
+    if evades:
         vx, vy = clear_velocity(task, scene, robots, own, given, (vx, vy), (goal_x, goal_y))
     omega = turn_rate_numbers(state, leg[2], own, given, scene[PERIOD])
     vx, vy, omega = command_numbers(state, vx, vy, omega, own, given, gentle, scene[PERIOD])

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from robobt.plays.attack_main import attack_main
 from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS, first_of, when
+from robobt.plays.baselines.go_round import GoRound
 from robobt.plays.goalkeeper import goalkeeper
 from robobt.plays.penalty_kick import penalty_kick
 from robobt.skills.aim.aim_upfield import AimUpfield
@@ -78,7 +79,7 @@ def field_player_2026_11(
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
     shooting = _Shooting(rater, min_score, shot_distance)
-    return first_of(
+    tree = first_of(
         "field player",
         when("halted", IsHalted(), Stop()),
         _take_penalty(farthest),
@@ -90,6 +91,7 @@ def field_player_2026_11(
         when("on the ball", IsAttacker(farthest=farthest), _on_the_ball(shooting, dribble_speed)),
         _off_the_ball(),
     )
+    return GoRound("as in 2026-11", tree)
 
 
 @PLAYS.register("defender_2026_11")
@@ -115,7 +117,7 @@ def defender_2026_11(
         farthest: largest x of the ball at which it goes for it [m].
     """
     shooting = _Shooting(rater, min_score, shot_distance)
-    return first_of(
+    tree = first_of(
         "defender",
         when("halted", IsHalted(), Stop()),
         _take_penalty(farthest),
@@ -126,6 +128,7 @@ def defender_2026_11(
         when("on the ball", IsAttacker(farthest=farthest), _on_the_ball(shooting, dribble_speed)),
         Wall(place=place, size=size),
     )
+    return GoRound("as in 2026-11", tree)
 
 
 @PLAYS.register("keeper_2026_11")
@@ -135,13 +138,14 @@ def keeper_2026_11(*, speed: float = 1.0) -> Behaviour:
     Args:
         speed: factor on its top speed.
     """
-    return first_of(
+    tree = first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", _ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when("ball is dead", _ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
         goalkeeper(speed=speed),
     )
+    return GoRound("as in 2026-11", tree)
 
 
 def _ball_dead() -> Behaviour:
