@@ -188,7 +188,7 @@ def _carry(
     state, limits, period = task[:TARGET_X], carrying[DRIBBLE], scene[PERIOD]
     task[TARGET_X], task[TARGET_Y] = scene[HALF_LENGTH] - scene[DEPTH] - _BEFORE_AREA, 0.0
     task[BALL_GAP], task[AVOID_ROBOTS] = -1.0, 1.0
-    x, y, there = waypoint_numbers(task, scene, movers, own)
+    x, y, there = waypoint_numbers(task, scene, movers, own, True)
     dx, dy = x - state[0], y - state[1]
     way, gap = atan2(dy, dx), hypot(dx, dy)
     if abs(wrap_angle(way - memory[WAY])) > _OTHER_WAY and 0.0 <= time - memory[WAY_SINCE] < _STEADY:
