@@ -334,6 +334,7 @@ def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):
         "evaluation.held_out": 8,
         "rebuild_every": 128,
         "checkpoint_seconds": 0.0,
+        "stages": [],
         "tensorboard": False,
     }
     settings = load_settings("score_on_goalkeeper", changes=changes)
