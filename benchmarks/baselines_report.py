@@ -69,9 +69,12 @@ def draw(cells: Cells, tasks: Sequence[str], algorithms: Mapping[str, str], path
             curves = [np.array(cell["curve"], dtype=float)[:, :3] for cell in _of(cells, task, algorithm)]
             for column, axis in enumerate(pair if curves else ()):
                 x, success = _together(curves, column)
+                if column == 0:
+                    x, success = x[1:], success[:, 1:]  # a logarithmic axis has no 0
                 axis.plot(x, np.median(success, axis=0), f"C{index}", label=algorithms[algorithm])
                 axis.fill_between(x, success.min(axis=0), success.max(axis=0), color=f"C{index}", alpha=0.2)
         pair[0].set_xscale("log")
+        pair[0].minorticks_off()
         pair[0].set_ylim(-2.0, 102.0)
         pair[0].set_title(task, loc="left", fontsize="small")
         for axis, label in zip(pair, ("steps", "CPU seconds"), strict=True):
@@ -95,7 +98,6 @@ def _of(cells: Cells, task: str, algorithm: str) -> Cells:
 
 
 def _together(curves: Sequence[NDArray[np.float64]], column: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return where in a column all seeds have been, (x,), and each one's percentage there, (seeds, x)."""
-    every = np.unique(np.concatenate([curve[:, column] for curve in curves]))
-    x = every[every <= min(curve[-1, column] for curve in curves)]
+    """Return places of a column where all seeds have been, (x,), and their percentages there, (seeds, x)."""
+    x = np.unique(np.minimum(curves[0][:, column], min(curve[-1, column] for curve in curves)))
     return x, 100.0 * np.array([np.interp(x, curve[:, column], curve[:, 2]) for curve in curves])
