@@ -16,13 +16,16 @@ import numpy as np
 
 from robobt.motion.arrival import VX, VY, X, Y
 from robobt.motion.scene import (
+    AREA_GAP,
     BALL_VX,
     BALL_VY,
     BALL_X,
     BALL_Y,
     GOALKEEPER,
+    IN_PLAY,
     PERIOD,
     PLACING,
+    THEIR_GAP,
     from_ball,
     is_open,
     row_of,
@@ -113,6 +116,10 @@ def clear_velocity(
         return wanted
     goalkeeper, placing = task[GOALKEEPER] > 0.0, task[PLACING] > 0.0
     bounded = is_open(scene, x, y, goalkeeper, placing)
+    if scene[IN_PLAY] == 0.0:
+        # What is open leaves out a little of their area's gap, which is the rules' in a restart.
+        scene = scene.copy()
+        scene[THEIR_GAP] += 2.0 * AREA_GAP
     best, least = wanted, inf
     for way in range(_WAYS + _SLOW_WAYS + 1):
         share, angle = 0.0, 0.0
