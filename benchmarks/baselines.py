@@ -17,7 +17,6 @@ need. Where several robots learn in an arena, each is a row of the rollout or re
 from __future__ import annotations
 
 import argparse
-import json
 from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
@@ -26,7 +25,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from baselines_report import draw, table
+from baselines_report import add_cell, draw, read_cells, table
 from torch import nn
 
 import robobt
@@ -104,15 +103,9 @@ def main() -> None:
                     continue
                 with one_thread():
                     cell = train_cell(task, algorithm, seed, given)
-                with file.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps(cell, allow_nan=False) + "\n")
+                add_cell(file, cell)
                 reached = cell["held_out"]["success"]["value"]
                 print(f"{task:33}{ALGORITHMS[algorithm]:8} seed {seed}: {reached:.1%}", flush=True)
-
-
-def read_cells(file: Path) -> list[dict[str, Any]]:
-    """Return the cells that have ended; none where there is no file yet."""
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
 def train_cell(task: str, algorithm: str, seed: int, given: argparse.Namespace) -> dict[str, Any]:

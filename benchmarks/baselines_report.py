@@ -1,7 +1,8 @@
-"""The finished cells of ``baselines.py`` as tables in Markdown and as learning curves."""
+"""The finished cells of ``baselines.py``: their file, tables in Markdown and learning curves."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from statistics import median
@@ -14,6 +15,20 @@ from numpy.typing import NDArray
 from robobt.experiments.picture import new_figure, save_figure
 
 Cells = Sequence[Mapping[str, Any]]
+
+
+def read_cells(file: Path) -> list[dict[str, Any]]:
+    """Return the cells that have ended, without a last line that was cut off; none where there is no file."""
+    whole = file.read_bytes().rpartition(b"\n")[0] if file.exists() else b""
+    return [json.loads(line) for line in whole.splitlines()]
+
+
+def add_cell(file: Path, cell: Mapping[str, Any]) -> None:
+    """Add a cell's line, in the place of a last line that was cut off."""
+    with file.open("ab+") as lines:
+        lines.seek(0)
+        lines.truncate(lines.read().rfind(b"\n") + 1)
+        lines.write(json.dumps(cell, allow_nan=False).encode() + b"\n")
 
 
 def table(cells: Cells, tasks: Sequence[str], algorithms: Mapping[str, str]) -> str:

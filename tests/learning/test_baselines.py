@@ -51,6 +51,16 @@ def test_a_policy_trained_by_stable_baselines3_is_a_skill(baselines, monkeypatch
     assert LearnedSkill(model=cell["model"]).model == cell["model"]
 
 
+def test_a_line_that_was_cut_off_is_no_cell_and_spoils_none(baselines, tmp_path) -> None:
+    file = tmp_path / "baselines.jsonl"
+    baselines.add_cell(file, {"seed": 0})
+    file.write_bytes(file.read_bytes() + b'{"seed": 1, "curv')
+    assert baselines.read_cells(file) == [{"seed": 0}]
+    baselines.add_cell(file, {"seed": 1})
+    assert baselines.read_cells(file) == [{"seed": 0}, {"seed": 1}]
+    assert file.read_text() == '{"seed": 0}\n{"seed": 1}\n'
+
+
 def test_the_table_tells_median_range_and_number_of_seeds(baselines) -> None:
     def cell(seed: int, share: float) -> dict:
         found = {"success": {"value": share}}
