@@ -9,6 +9,7 @@ from pathlib import Path
 from robobt.config.errors import short_repr, unknown_name
 from robobt.models.find import rename_models
 from robobt.plays.base import PLAYS, Play
+from robobt.plays.baselines.go_round import GoRound
 from robobt.plays.private_files import join_play, private_files, split_play
 from robobt.plays.sources import PythonFileError
 from robobt.skills import SKILLS
@@ -42,7 +43,7 @@ def _place_models(value: Value, folder: Path) -> Value:
 VOCABULARY = Vocabulary(
     SKILLS,
     PLAYS,
-    (RefereeSwitch, StayOut, AvoidCrash, TaskSwitch),
+    (RefereeSwitch, StayOut, AvoidCrash, GoRound, TaskSwitch),
     {ShotRater: RATERS},
     Store,
     _place_models,

@@ -51,6 +51,7 @@ def played(page: Page, runs: int, trials: tuple[str, ...]) -> Any:
     return result
 
 
+@pytest.mark.slow
 def test_a_person_plays_from_the_same_starts_by_the_same_clock(page: Page) -> None:
     result = played(page, 2, ("1",))
     row = result["limits"]["paper"]["1"]["rows"][HUMAN]

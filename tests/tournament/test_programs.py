@@ -102,6 +102,7 @@ def test_a_program_that_may_stay_is_started_once_for_either_side(
     assert not left(name)
 
 
+@pytest.mark.slow
 def test_a_program_that_may_stay_and_has_lost_by_rule_is_started_anew(tmp_path: Path) -> None:
     found = run(tmp_path, program(tmp_path, "crashes", more="stays: true"), seconds=24.0)
     assert [match.forfeited_by for match in found.matches] == ["crashes"] * 2
@@ -202,6 +203,7 @@ def test_who_misbehaves_has_lost_and_nothing_is_left(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("told", [True, False])
+@pytest.mark.slow
 def test_a_forfeit_says_where_the_output_lies(told: bool, tmp_path: Path) -> None:
     found = run(tmp_path, program(tmp_path, "exits"), tell_outputs=told).matches[0]
     said, _, printed = str(found.side("exits").first_error).partition("; its output: ")
