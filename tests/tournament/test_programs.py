@@ -139,6 +139,7 @@ def twice(tmp_path: Path, what: Plan) -> list[list[PlayedMatch]]:
     return found
 
 
+@pytest.mark.slow
 def test_matches_of_programs_in_lock_step_are_the_same_bit_for_bit(tmp_path: Path) -> None:
     teams = [
         program(tmp_path, name, port="{steps}", more="lockstep: true", silent=60.0)
