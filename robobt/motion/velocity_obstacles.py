@@ -104,8 +104,11 @@ def clear_velocity(
             apart = MOVES_APART if is_moving(robots, i) else STANDS_APART
             near[count] = robots[i, X] - x, robots[i, Y] - y, robots[i, VX], robots[i, VY], apart
             count += 1
-    near[count] = scene[BALL_X] - x, scene[BALL_Y] - y, scene[BALL_VX], scene[BALL_VY], from_ball(task, scene)
-    near = near[: count + 1]
+    apart = from_ball(task, scene)
+    if apart > 0.0:
+        near[count] = scene[BALL_X] - x, scene[BALL_Y] - y, scene[BALL_VX], scene[BALL_VY], apart
+        count += 1
+    near = near[:count]
     for one in near:
         gx, gy = goal[0] - x - one[0], goal[1] - y - one[1]
         one[4] = min(one[4], 0.999 * min(hypot(gx, gy), hypot(gx - needed * one[2], gy - needed * one[3])))

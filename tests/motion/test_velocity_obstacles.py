@@ -82,6 +82,17 @@ def test_who_is_not_met_on_the_way_changes_nothing(other: tuple[float, float, fl
     assert cleared(me, [other], (2.0, 0.0), (1.5, 0.0)) == (2.0, 0.0)
 
 
+def test_a_ball_that_it_may_touch_is_nothing_to_evade() -> None:
+    """While another moves nearby rounding once made it an obstacle straight ahead, in 1 of 80 directions."""
+    for step in range(500):
+        x, y = 0.3 * cos(0.0125 * step), 0.3 * sin(0.0125 * step)
+        me = robot(velocity=(5 * x, 5 * y, 0.0))
+        away = robot(-2 * x, -2 * y, velocity=(-3 * x, -3 * y, 0.0))
+        seen, goal, wanted = frame(me, (x, y), opponents=(away,)), (1.2 * x, 1.2 * y), (6.0 * x, 6.0 * y)
+        task, limits = task_of(me, goal), numbers(me.limits)
+        assert clear_velocity(task, scene_of(seen), movers_of(seen), limits, limits, wanted, goal) == wanted
+
+
 def test_one_that_crosses_is_evaded_the_more_the_sooner_it_is_met() -> None:
     me = robot(velocity=(1.5, 0.0, 0.0))
     changes = []
