@@ -13,6 +13,7 @@ from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.let_go import LetGo
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.score import Score
 from robobt.skills.ball.settle_ball import SettleBall
@@ -105,7 +106,7 @@ def team_player(
 def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score: str = "") -> Behaviour:
     """Get the ball, and shoot, pass or carry it; ``score`` is a model for Score, or empty."""
     options = {
-        "let_go": when("let go", CarriedFar(limit=0.9), Stop()),
+        "let_go": when("let go", CarriedFar(limit=0.9), LetGo()),
         "kick_loose": KickLoose(),
         "receive": ReceivePass(),
         "settle": SettleBall(),

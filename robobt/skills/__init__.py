@@ -24,6 +24,7 @@ from robobt.skills.ball.intercept import Intercept as Intercept
 from robobt.skills.ball.kick_loose import KickLoose as KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget as KickToTarget
 from robobt.skills.ball.learned_skill import LearnedSkill as LearnedSkill
+from robobt.skills.ball.let_go import LetGo as LetGo
 from robobt.skills.ball.pick_up_ball import PickUpBall as PickUpBall
 from robobt.skills.ball.score import Score as Score
 from robobt.skills.ball.settle_ball import SettleBall as SettleBall

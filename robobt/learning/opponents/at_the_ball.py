@@ -43,6 +43,7 @@ from robobt.motion.speeds import (
 from robobt.motion.way import travel_numbers, waypoint_numbers
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE, beside
 from robobt.skills.ball.kick_loose import KickLoose
+from robobt.skills.ball.let_go import FASTER
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE, PickUpBall
 from robobt.skills.ball.settle_ball import SettleBall
 from robobt.skills.tactics.receive_pass import ReceivePass
@@ -125,7 +126,8 @@ def play_the_ball(
     if _kicks_loose(state, has and disputed, time, memory):
         command[0], command[3], command[4] = _FOLLOW, _LOOSE, 1.0
     elif _carried_far(ball, speed, has and not disputed, memory):
-        return
+        along = cos(state[2]) * ball[2] + sin(state[2]) * ball[3]
+        command[3] = max(0.0, along) + FASTER if cos(state[2]) > 0.0 else 0.0
     elif has and _settles(speed, time, memory):
         limits, period = carrying[BRAKE], scene[PERIOD]
         omega = turn_rate_numbers(state, state[2], own, limits, period)

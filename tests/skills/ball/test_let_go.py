@@ -1,0 +1,59 @@
+"""Letting go of the ball before it has been carried too far."""
+
+from __future__ import annotations
+
+from math import hypot, pi
+
+import pytest
+
+from robobt.plays.base import first_of, when
+from robobt.skills import CarriedFar, LetGo, Stop
+from robobt.skills.base import Skill
+from robobt.tree import Behaviour, Status
+from robobt.world import Frame
+from robobt.world.rules import CARRY_DISTANCE, keeps_ball
+from tests.simulation import Trial, always, blue
+from tests.skills.fixed_world import HELD, Alone, frame, held, robot
+
+
+class Sideways(Skill):
+    """Carry the ball to the left."""
+
+    def on_running(self) -> Status:
+        command = self.store.command
+        command.vy, command.dribbler = 2.0, True
+        return self.run()
+
+
+def carried(let_go: Behaviour) -> float:
+    """How far the robot takes a ball sideways before it has let go of it [m]."""
+    ways = [0.0]
+
+    def followed(seen: Frame) -> bool:
+        if len(ways) < 2 or ways[-1] > 0.0:
+            kept = keeps_ball(seen.own[0], seen.ball)
+            ways.append(hypot(seen.ball.x - HELD, seen.ball.y) if kept else 0.0)
+        return True
+
+    tree = first_of("carry", when("far", CarriedFar(limit=0.9), let_go), Sideways())
+    Trial({blue(1): tree}, {blue(1): (0.0, 0.0, 0.0)}, ball=(HELD, 0.0)).run(1.5, always("seen", followed))
+    assert ways[-1] == 0.0
+    return max(ways)
+
+
+def test_a_ball_that_is_carried_sideways_is_let_go_of_in_time() -> None:
+    assert carried(LetGo()) < 0.85 < CARRY_DISTANCE < carried(Stop())
+
+
+@pytest.mark.parametrize(("speed", "kick"), [(0.0, 1.0), (1.5, 2.5), (-1.5, 1.0)])
+def test_the_ball_leaves_a_robot_that_drives_at_it(speed: float, kick: float) -> None:
+    alone, me = Alone(LetGo()), robot(velocity=(speed, 0.7, 0.0), contact=True)
+    assert alone.tick(frame(me, (*held(me), speed, 0.7))) is Status.RUNNING
+    assert alone.command.kick_speed == pytest.approx(kick)
+    assert (alone.command.vx, alone.command.vy, alone.command.dribbler) == (0.0, 0.0, False)
+
+
+def test_it_does_not_kick_towards_the_own_goal() -> None:
+    alone, me = Alone(LetGo()), robot(heading=0.6 * pi, contact=True)
+    alone.tick(frame(me, held(me)))
+    assert alone.command.kick_speed == 0.0
