@@ -201,6 +201,30 @@ def test_how_blue_loses(changes: dict[str, Any], start: list[float], action: lis
     assert earned[0] < -0.4
 
 
+def test_a_ball_that_was_let_go_is_carried_anew() -> None:
+    made = playing(
+        [*at(0, 0), *at(-3, 2), *in_mouth(0, 0)],
+        yellow=["still"],
+        rules={"dribbling": 0.4},
+        action={
+            "kind": "drive_and_kick",
+            "max_speed": 3.0,
+            "max_turn": 6.0,
+            "kick_speed": 1.0,
+            "dribbler": True,
+        },
+    )
+    made.advance(np.array([KICK]))
+    assert not made.arenas.contact[0, 0]
+    while not made.arenas.contact[0, 0] and made.ended is None:
+        made.advance(np.array([[0.3, 0.0, 0.0, -1.0]]))
+    taken = made.arenas.balls[0, 0]
+    assert taken > HELD + 0.4
+    assert made.ended is None
+    to_the_end(made, [0.4, 0.0, 0.0, -1.0])
+    assert made.arenas.balls[0, 0] - taken == pytest.approx(0.4, abs=0.1)
+
+
 @pytest.mark.parametrize(("aim", "won"), [("hold", True), ("score", False)])
 def test_a_ball_held_for_long_is_received_or_no_redirection(aim: str, won: bool) -> None:
     start = [*at(0, 0), *at(-3, 2), *in_mouth(0, 0)]

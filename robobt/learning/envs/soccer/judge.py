@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, inf
+from math import hypot, inf, isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,17 @@ from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
 from robobt.world.compiled import compilable, compiled, numbers_dtype
 from robobt.world.field import FieldGeometry
-from robobt.world.rules import in_area, is_out
-from robobt.world.state import ROBOT_RADIUS
+from robobt.world.rules import KEPT_GAP, in_area, is_out
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS, GOAL = range(8)
 """What is kept of an episode: who held the ball last, -1 for nobody; where it came into that mouth and where
-it was last in it [m]; for how many ticks in a row each team has held it; the goal, 1 blue's, -1 yellow's."""
+it was last in it [m], TAKEN_X nan where that robot has let go of it; for how many ticks in a row each team
+has held it; the goal, 1 blue's, -1 yellow's."""
 MIND = 8
+
+_KEPT = ROBOT_RADIUS + BALL_RADIUS + KEPT_GAP
+"""Whose centre is farther from the ball has let go of it [m]."""
 
 OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
 """What stops play: a ball out, carried too far, a learner in the others' area, a ball touched twice."""
@@ -102,7 +106,7 @@ def judge(
         side = goal_of(episode, ball, half_length, half_width, post)
         mind[GOAL] = side
         out = is_out(ball[0], ball[1], half_length, half_width) and side == 0
-        holder, passed, too_far = _possession(rules, contact[i], kicked[i], ball, blue, mind)
+        holder, passed, too_far = _possession(rules, robots[i], contact[i], kicked[i], ball, blue, mind)
         # Who broke a rule: 1 blue, -1 yellow, 0 nobody.
         fault, stop = fouls[i], stops[i]
         if out:
@@ -200,7 +204,13 @@ def _at_least(ticks: float, most: int | None) -> bool:
 
 @compiled
 def _possession(
-    rules: SoccerRules, contact: BoolArray, kicked: BoolArray, ball: FloatArray, blue: int, mind: FloatArray
+    rules: SoccerRules,
+    robots: FloatArray,
+    contact: BoolArray,
+    kicked: BoolArray,
+    ball: FloatArray,
+    blue: int,
+    mind: FloatArray,
 ) -> tuple[int, bool, bool]:
     """Follow the ball; return who holds it, -1 for nobody, whether it was passed, and carried too far."""
     holder = -1
@@ -214,12 +224,16 @@ def _possession(
             if kicked[r]:
                 # It had the ball, if for less than a tick.
                 mind[LAST], mind[LEFT_X], mind[LEFT_Y] = r, ball[0], ball[1]
+        had = int(mind[LAST])
+        if had >= 0 and hypot(ball[0] - robots[had, 0], ball[1] - robots[had, 1]) > _KEPT:
+            mind[TAKEN_X] = nan
         return holder, False, False
     last, passed = int(mind[LAST]), False
     if holder != last:
         way = hypot(ball[0] - mind[LEFT_X], ball[1] - mind[LEFT_Y])
         passed = 0 <= last < blue and holder < blue and way >= rules.pass_length
         mind[LAST] = holder
+    if holder != last or isnan(mind[TAKEN_X]):
         mind[TAKEN_X], mind[TAKEN_Y] = ball[0], ball[1]
     mind[LEFT_X], mind[LEFT_Y] = ball[0], ball[1]
     carried = hypot(ball[0] - mind[TAKEN_X], ball[1] - mind[TAKEN_Y])
