@@ -13,7 +13,7 @@ from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
-from robobt.skills.ball.let_go import LetGo
+from robobt.skills.ball.learned_skill import LearnedSkill
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.score import Score
 from robobt.skills.ball.settle_ball import SettleBall
@@ -53,6 +53,7 @@ def team_player(
     chips: bool = True,
     score: str = "",
     go: str = "",
+    open_play: str = "",
     without: Omitted = "nothing",
 ) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
@@ -70,6 +71,8 @@ def team_player(
             the ball and neither shot nor pass is worth it; empty for none.
         go: name or file of a model that drives to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
+        open_play: name or file of a model of a task of several robots, which plays while the ball is in play,
+            whatever the robot's task; empty for the written tasks.
         without: a part of the game to do without, the same for every robot of the team, so that a tournament
             shows what it is worth.
     """
@@ -77,6 +80,7 @@ def team_player(
     def choose() -> ChooseKick:
         return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience, chips=chips)
 
+    in_play: dict[str, Behaviour] = {} if open_play else {"attack": attack(choose, without, score)}
     player = TaskSwitch(
         "part",
         {
@@ -95,9 +99,9 @@ def team_player(
                 when("ours", MayTouchBall(), TakePlace()),
                 when("keep away", KeepDistance(), TakePlace()),
             ),
-            "attack": attack(choose, without, score),
+            **in_play,
         },
-        otherwise=TakePlace(policy=go),
+        otherwise=play_on(open_play) if open_play else TakePlace(policy=go),
         without=without,
     )
     return StayOut("team player", player if without == "avoid_crash" else AvoidCrash("no crash", player))
@@ -106,7 +110,7 @@ def team_player(
 def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score: str = "") -> Behaviour:
     """Get the ball, and shoot, pass or carry it; ``score`` is a model for Score, or empty."""
     options = {
-        "let_go": when("let go", CarriedFar(limit=0.9), LetGo()),
+        "let_go": let_go(),
         "kick_loose": KickLoose(),
         "receive": ReceivePass(),
         "settle": SettleBall(),
@@ -122,6 +126,16 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
     }
     left_out = {without} if score else {without, "score"}
     return first_of("attack", *(option for name, option in options.items() if name not in left_out))
+
+
+def play_on(model: str) -> Behaviour:
+    """Play by a model, which is not told how far it may carry the ball."""
+    return first_of("open play", let_go(0.7), LearnedSkill(model=model))
+
+
+def let_go(limit: float = 0.9) -> Behaviour:
+    """Leave a ball that has been carried as far as is allowed."""
+    return when("let go", CarriedFar(limit=limit), LetGo())
 
 
 def kick() -> KickToTarget:
