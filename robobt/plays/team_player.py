@@ -14,6 +14,7 @@ from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.learned_skill import LearnedSkill
+from robobt.skills.ball.let_go import LetGo
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.score import Score
 from robobt.skills.ball.settle_ball import SettleBall
@@ -130,12 +131,12 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
 
 def play_on(model: str) -> Behaviour:
     """Play by a model, which is not told how far it may carry the ball."""
-    return first_of("open play", let_go(0.7), LearnedSkill(model=model))
+    return first_of("open play", let_go(), LearnedSkill(model=model))
 
 
-def let_go(limit: float = 0.9) -> Behaviour:
+def let_go() -> Behaviour:
     """Leave a ball that has been carried as far as is allowed."""
-    return when("let go", CarriedFar(limit=limit), LetGo())
+    return when("let go", CarriedFar(limit=0.9), LetGo())
 
 
 def kick() -> KickToTarget:

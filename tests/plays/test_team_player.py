@@ -17,11 +17,12 @@ from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.plan import Omitted, Task
 from robobt.skills.tactics.take_place import TakePlace
 from robobt.tree import Behaviour
-from robobt.world import Team
+from robobt.world import RobotId, Team
 from robobt.worlds import sim_world
-from tests.models.made_models import Onward, Passing, among_robots_card, score_card, write_model
+from tests.models.made_models import Onward, Passing, among_robots_card, score_card, team_card, write_model
 
 SECONDS = 40.0
+MINE = RobotId(Team.BLUE, 1), RobotId(Team.BLUE, 2)
 
 
 class Watched:
@@ -78,6 +79,26 @@ def test_with_them_it_plays_on_and_they_are_used(tmp_path: Path) -> None:
             assert not any(player.problem for player in mine)
             used.update(tip.feedback_message for player in mine if (tip := player.runner.root.tip()))
     assert used["to its place as learned"] > 0
+
+
+@pytest.mark.integration
+def test_a_policy_plays_while_the_ball_is_in_play_and_only_then(tmp_path: Path) -> None:
+    model = str(write_model(tmp_path, Passing(), team_card("LearnedSkill", 1, 3)))
+    scenario = load_scenario("three_v_three").lasting(8.0)
+    for number in (1, 2):
+        scenario = scenario.with_robot(f"blue {number}", play="team_player", open_play=model)
+    seen: Counter[tuple[bool, bool]] = Counter()
+    with Match(scenario, 4, sim_world) as match:
+        mine = [player for player in match.players if player.robot in MINE]
+        while match.tick():
+            for player in mine:
+                assert not player.problem
+                tip = player.runner.root.tip()
+                learned = tip is not None and tip.feedback_message == f"driven by {model}"
+                seen[player.store.frame.game.in_play, learned] += 1
+    assert seen[True, True] > 50
+    assert seen[False, False] > 50
+    assert not seen[False, True]
 
 
 @pytest.fixture(scope="module")

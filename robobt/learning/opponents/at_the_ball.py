@@ -46,6 +46,7 @@ from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.let_go import FASTER
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE, PickUpBall
 from robobt.skills.ball.settle_ball import SettleBall
+from robobt.skills.conditions.carried_far import LETTING_GO
 from robobt.skills.tactics.receive_pass import ReceivePass
 from robobt.world.ball_model import DEFAULT_BALL, way_in
 from robobt.world.compiled import compiled
@@ -67,7 +68,7 @@ _PATIENCE, _SLOW, _PAUSE = KickLoose.patience, SettleBall.slow, SettleBall.pause
 _CREEP, _ROLLS = PickUpBall.speed or 0.5, ReceivePass.slowest
 _BROKEN, _LOOSE, _FOLLOW = 0.1, 2.0, 0.3
 """A hold broken off for so long begins anew [s]; speed of a ball kicked loose, and after it [m/s]."""
-_CARRIED, _LETTING_GO = 0.9, 0.15
+_CARRIED = 0.9
 """It lets go of a ball carried so far [m], so much sooner [s]."""
 _CARRYING, _STEADY, _OTHER_WAY, _BEFORE_AREA = 1.5, 0.25, 0.6, 0.2
 """How fast it carries the ball [m/s], keeps to a way for [s] where one differs by [rad], and to where [m]."""
@@ -164,7 +165,7 @@ def _carried_far(ball: FloatArray, speed: float, alone: bool, memory: FloatArray
     if np.isnan(memory[TAKEN_X]):
         memory[TAKEN_X], memory[TAKEN_Y] = ball[0], ball[1]
     way = hypot(ball[0] - memory[TAKEN_X], ball[1] - memory[TAKEN_Y])
-    return bool(way + _LETTING_GO * speed >= _CARRIED)
+    return bool(way + LETTING_GO * speed >= _CARRIED)
 
 
 @compiled

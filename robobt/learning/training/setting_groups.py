@@ -98,7 +98,7 @@ class EvaluationSettings(Settings):
     stop_after: int = Field(1, ge=1, le=100, description="so often running")
 
 
-Script = Literal["still", "press", "mark", "wall", "attack", "pass", "redirect"]
+Script = Literal["challenge", "still", "press", "mark", "wall", "attack", "pass", "redirect"]
 """A field player of :data:`robobt.learning.opponents.field_players.PLAYERS`."""
 
 

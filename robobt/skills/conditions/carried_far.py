@@ -11,7 +11,7 @@ from robobt.world.geometry import Point
 from robobt.world.rules import has_ball, keeps_ball, touches
 from robobt.world.state import RobotId
 
-_LETTING_GO = 0.15
+LETTING_GO = 0.15
 """How long it takes to come off a ball [s]."""
 
 
@@ -49,7 +49,7 @@ class CarriedFar(Condition):
             if not (touches(self.me, ball) or has_ball(self.me, ball)):
                 return self.fail("it has no ball yet")
             self._start = ball.position
-        way = hypot(ball.x - self._start[0], ball.y - self._start[1]) + _LETTING_GO * ball.speed
+        way = hypot(ball.x - self._start[0], ball.y - self._start[1]) + LETTING_GO * ball.speed
         if way < self.limit:
             return self.fail(f"{way:.2f} m")
         return self.succeed(f"{way:.2f} m")

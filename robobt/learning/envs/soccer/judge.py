@@ -23,7 +23,7 @@ it was last in it [m], TAKEN_X nan where that robot has let go of it; for how ma
 has held it; the goal, 1 blue's, -1 yellow's."""
 MIND = 8
 
-_KEPT = ROBOT_RADIUS + BALL_RADIUS + KEPT_GAP
+KEPT = ROBOT_RADIUS + BALL_RADIUS + KEPT_GAP
 """Whose centre is farther from the ball has let go of it [m]."""
 
 OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
@@ -224,8 +224,9 @@ def _possession(
             if kicked[r]:
                 # It had the ball, if for less than a tick.
                 mind[LAST], mind[LEFT_X], mind[LEFT_Y] = r, ball[0], ball[1]
+                mind[TAKEN_X] = nan
         had = int(mind[LAST])
-        if had >= 0 and hypot(ball[0] - robots[had, 0], ball[1] - robots[had, 1]) > _KEPT:
+        if had >= 0 and hypot(ball[0] - robots[had, 0], ball[1] - robots[had, 1]) > KEPT:
             mind[TAKEN_X] = nan
         return holder, False, False
     last, passed = int(mind[LAST]), False

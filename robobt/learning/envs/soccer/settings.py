@@ -77,6 +77,12 @@ class SoccerRules(Settings):
     dribbling: float | None = Field(
         None, gt=0, le=20, description="longest way with the ball in one mouth, by the rules 1 [m]"
     )
+    let_go: float | None = Field(
+        None,
+        gt=0,
+        le=20,
+        description="a learner that has carried the ball so far is stopped until it has let go of it [m]",
+    )
     longest_hold: int | None = Field(
         None, ge=1, le=1000, description="most ticks in a row in blue's mouths; None for any"
     )

@@ -16,6 +16,7 @@ from robobt.learning.envs.soccer.judge import (
     YELLOW_TICKS,
     judge,
 )
+from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
@@ -152,6 +153,11 @@ class SoccerTask(ArenaTask):
         if self.settings.rules.restarts:
             self._at_restarts.decide(self._restarts.rows, arenas.robots, arenas.balls, self._commands)
         self._played.decide(arenas, self._commands)
+        limit = self.settings.rules.let_go
+        if limit is not None and self.learners:
+            # What they want holds for several ticks, being stopped for one.
+            self._commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
+            let_go(limit, self._who, arenas.robots, arenas.balls, self._minds, self._commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
         arenas = self.arenas
