@@ -225,18 +225,13 @@ def test_a_ball_that_was_let_go_is_carried_anew() -> None:
     assert made.arenas.balls[0, 0] - taken == pytest.approx(0.4, abs=0.1)
 
 
-def test_a_learner_is_made_to_let_go_of_a_ball_and_may_take_it_again() -> None:
+def test_a_learner_is_made_to_let_go_of_a_ball() -> None:
     rules = {"dribbling": 0.5, "let_go": 0.4}
-    made = playing([*at(-2, 0), *at(-3, 2), *in_mouth(-2, 0)], yellow=["still"], rules=rules, time_limit=100)
-    held = []
+    made = playing([*at(-2, 0), *at(-3, 2), *in_mouth(-2, 0)], yellow=["still"], rules=rules, time_limit=60)
     while made.ended is None:
         made.advance(np.array([[0.35, 0.0, 0.0, -1.0]]))
-        held.append(bool(made.arenas.contact[0, 0]))
     assert made.ended.truncated[0]
-    assert made.arenas.balls[0, 0] > -1.0
-    assert held[0]
-    assert not all(held)
-    assert any(held[held.index(False) :])
+    assert made.arenas.balls[0, 0] - made.arenas.robots[0, 0, 0] > 0.3
 
 
 @pytest.mark.parametrize(("aim", "won"), [("hold", True), ("score", False)])

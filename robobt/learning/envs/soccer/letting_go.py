@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from math import hypot, isnan
+from math import cos, hypot, isnan, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.envs.soccer.judge import KEPT, LAST, TAKEN_X, TAKEN_Y
 from robobt.learning.envs.task import FloatArray
+from robobt.sim.columns import KICK
+from robobt.skills.ball.let_go import FASTER
 from robobt.skills.conditions.carried_far import LETTING_GO
 from robobt.world.compiled import compiled
 
@@ -17,18 +19,21 @@ from robobt.world.compiled import compiled
 def let_go(
     limit: float,
     who: NDArray[np.int64],
+    blue: int,
     robots: FloatArray,
     balls: FloatArray,
     minds: FloatArray,
     commands: FloatArray,
 ) -> None:
-    """Stop each learner that has carried the ball ``limit`` [m] or farther, and its dribbler.
+    """Let each learner that has carried the ball ``limit`` [m] or farther get off it.
 
-    What counts is what :class:`~robobt.skills.conditions.carried_far.CarriedFar` measures.
+    What counts is what :class:`~robobt.skills.conditions.carried_far.CarriedFar` measures, and they do as
+    :class:`~robobt.skills.ball.let_go.LetGo` does.
 
     Args:
         limit: [m].
         who: (L,) indices of the learners.
+        blue: how many robots, the first, attack towards +x.
         robots: (n, R, 6) states.
         balls: (n, 4) states.
         minds: (n, MIND) as of :func:`~robobt.learning.envs.soccer.judge.judge`.
@@ -44,4 +49,7 @@ def let_go(
                 continue
             way = hypot(ball[0] - mind[TAKEN_X], ball[1] - mind[TAKEN_Y])
             if way + LETTING_GO * hypot(ball[2], ball[3]) >= limit:
+                c, s = cos(robot[2]), sin(robot[2])
                 commands[i, index] = 0.0
+                if (c > 0.0) == (index < blue):
+                    commands[i, index, KICK] = max(0.0, c * ball[2] + s * ball[3]) + FASTER

@@ -81,7 +81,7 @@ class SoccerRules(Settings):
         None,
         gt=0,
         le=20,
-        description="a learner that has carried the ball so far is stopped until it has let go of it [m]",
+        description="a learner that has carried the ball so far is made to let go of it, as in plays [m]",
     )
     longest_hold: int | None = Field(
         None, ge=1, le=1000, description="most ticks in a row in blue's mouths; None for any"

@@ -155,9 +155,9 @@ class SoccerTask(ArenaTask):
         self._played.decide(arenas, self._commands)
         limit = self.settings.rules.let_go
         if limit is not None and self.learners:
-            # What they want holds for several ticks, being stopped for one.
+            # What they want holds for several ticks, having to let go for one.
             self._commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
-            let_go(limit, self._who, arenas.robots, arenas.balls, self._minds, self._commands)
+            let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, self._commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
         arenas = self.arenas
