@@ -217,6 +217,7 @@ class Arenas:
         control_tick(
             buffer.calls,
             buffer.handles,
+            buffer.bodies,
             buffer.cursors,
             buffer.rows,
             self._walls,

@@ -3,8 +3,12 @@
 ``pymunk.batch`` reads or writes every body of a space in one C call, but calling
 it from Python costs about as much as a few hundred physics steps of a small
 space. Here the same C functions are called from compiled code, by address, so a
-whole control tick runs without returning to Python. pymunk declares its batch
-interface experimental: whatever of it changes is mended here.
+whole control tick runs without returning to Python. Within it even the batch costs
+more than it has to: it computes each body's rotation anew, which the step does
+again. :func:`load_bodies` and :func:`store_bodies` therefore read and write the numbers
+where Chipmunk has them. pymunk declares its batch interface experimental, and
+Chipmunk its structures private: whatever of them changes is found when arenas are made,
+and mended here.
 """
 
 from __future__ import annotations
@@ -21,8 +25,14 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
+from robobt.world.compiled import compiled
+from robobt.world.geometry import FloatArray
+
 ROW = 6
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
+
+_X, _Y, _TURN, _VX, _VY, _SPIN = _PLACES = (64, 72, 112, 80, 88, 120)
+"""Where in a ``cpBody`` the numbers of its row lie [bytes]."""
 
 
 Generated = tuple[Signature, Callable[..., ir.Value]]
@@ -64,9 +74,66 @@ def _call_each_body(
     return signature, generate
 
 
+@intrinsic
+def _load(_context: object, _address: object) -> Generated:
+    """Return the number at an address, in compiled code."""
+    signature = types.float64(types.uint64)
+
+    def generate(
+        _context: Any, builder: ir.IRBuilder, _signature: object, arguments: Sequence[ir.Value]
+    ) -> ir.Value:
+        return builder.load(builder.inttoptr(arguments[0], ir.DoubleType().as_pointer()))
+
+    return signature, generate
+
+
+@intrinsic
+def _store(_context: object, _address: object, _number: object) -> Generated:
+    """Write a number to an address, from compiled code."""
+    signature = types.void(types.uint64, types.float64)
+
+    def generate(
+        context: Any, builder: ir.IRBuilder, _signature: object, arguments: Sequence[ir.Value]
+    ) -> ir.Value:
+        builder.store(arguments[1], builder.inttoptr(arguments[0], ir.DoubleType().as_pointer()))
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
 # numba passes the first argument itself.
+load = cast(Callable[[np.uint64], float], _load)
+store = cast(Callable[[np.uint64, float], None], _store)
 call_step = cast(Callable[..., None], _call_step)
 call_each_body = cast(Callable[..., None], _call_each_body)
+
+
+@compiled
+def load_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
+    """Fill ``rows`` (k, 6) from the bodies at the addresses ``bodies`` (k,), after a step."""
+    for i in range(bodies.shape[0]):
+        # As ``cpBodyGetPosition``, which knows no negative zero.
+        rows[i, 0] = load(bodies[i] + np.uint64(_X)) + 0.0
+        rows[i, 1] = load(bodies[i] + np.uint64(_Y)) + 0.0
+        rows[i, 2] = load(bodies[i] + np.uint64(_TURN))
+        rows[i, 3] = load(bodies[i] + np.uint64(_VX))
+        rows[i, 4] = load(bodies[i] + np.uint64(_VY))
+        rows[i, 5] = load(bodies[i] + np.uint64(_SPIN))
+
+
+@compiled
+def store_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
+    """Set the bodies at the addresses ``bodies`` (k,) from ``rows`` (k, 6), right before a step.
+
+    The step computes what follows from them; without one, ``cpSpaceEachBody`` has to write them.
+    """
+    for i in range(bodies.shape[0]):
+        store(bodies[i] + np.uint64(_X), rows[i, 0])
+        store(bodies[i] + np.uint64(_Y), rows[i, 1])
+        store(bodies[i] + np.uint64(_TURN), rows[i, 2])
+        store(bodies[i] + np.uint64(_VX), rows[i, 3])
+        store(bodies[i] + np.uint64(_VY), rows[i, 4])
+        store(bodies[i] + np.uint64(_SPIN), rows[i, 5])
 
 
 class BodyBuffer:
@@ -80,7 +147,8 @@ class BodyBuffer:
         rows: (spaces * stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
             the order in which they were added, then spare rows [m, rad, m/s, rad/s].
         stride: rows of a space.
-        calls: addresses for compiled code: step, each-body, the reading and the writing callback.
+        calls: addresses for compiled code: step, each-body and the writing callback.
+        bodies: (spaces, bodies) addresses of the bodies.
         handles: (spaces, 2) addresses of each space and its batch descriptor.
         cursors: (spaces, k); where in its rows a space's next batched call starts is the first number of
             a row, to be set to 0 before each.
@@ -112,16 +180,19 @@ class BodyBuffer:
             [
                 _address(ffi.addressof(lib, "cpSpaceStep")),
                 _address(ffi.addressof(lib, "cpSpaceEachBody")),
-                _address(ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")),
                 _address(ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")),
             ],
             dtype=np.uint64,
+        )
+        self.bodies: NDArray[np.uint64] = np.array(
+            [[_address(body._body) for body in space.bodies] for space in spaces], dtype=np.uint64
         )
         self.handles: NDArray[np.uint64] = np.array(
             [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)],
             dtype=np.uint64,
         )
         self._check_order()
+        _check_places()
 
     def read(self) -> None:
         """Fill ``rows`` from the spaces."""
@@ -147,6 +218,16 @@ class BodyBuffer:
                     f"pymunk {pymunk.version} visits {found} bodies in another order than they were added: "
                     "its batch interface has changed"
                 )
+
+
+def _check_places() -> None:
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.angle, body.velocity, body.angular_velocity = (1.5, 2.5), 3.5, (4.5, 5.5), 6.5
+    numbers = ffi.cast("double *", body._body)
+    if [numbers[place // 8] for place in _PLACES] != [1.5, 2.5, 3.5, 4.5, 5.5, 6.5]:
+        raise RuntimeError(
+            f"pymunk {pymunk.version} keeps a body's state in other places: its structures have changed"
+        )
 
 
 def _address(pointer: object) -> int:

@@ -16,7 +16,7 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.sim.chipmunk import call_each_body, call_step
+from robobt.sim.chipmunk import call_each_body, call_step, load_bodies, store_bodies
 from robobt.sim.columns import (
     ANGLE,
     BALL_R,
@@ -61,6 +61,7 @@ _ELSEWHERE = 1e4
 def control_tick(
     calls: NDArray[np.uint64],
     handles: NDArray[np.uint64],
+    bodies: NDArray[np.uint64],
     cursors: NDArray[np.int32],
     rows: FloatArray,
     walls: FloatArray,
@@ -90,6 +91,7 @@ def control_tick(
     Args:
         calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`.
         handles: of the same.
+        bodies: of the same.
         cursors: of the same.
         rows: of the same.
         walls: (W, 4) boxes x0, y0, x1, y1 relative to an arena's centre [m].
@@ -251,11 +253,9 @@ def control_tick(
                     ball[1] -= y * dt * back
             ball[3] = target[0] = move[0]
             ball[4] = target[1] = move[1]
-            cursors[a, 0] = 0
-            call_each_body(calls[1], handles[a, 0], calls[3], handles[a, 1])
+            store_bodies(bodies[a], rows[first : first + width])
             call_step(calls[0], handles[a, 0], dt)
-            cursors[a, 0] = 0
-            call_each_body(calls[1], handles[a, 0], calls[2], handles[a, 1])
+            load_bodies(bodies[a], rows[first : first + width])
             if high:
                 ball[0], ball[1] = aloft[0], aloft[1]
                 ball[3], ball[4] = velocity[0], velocity[1]
@@ -276,5 +276,5 @@ def control_tick(
         if high:
             # Its body is still elsewhere.
             cursors[a, 0] = 0
-            call_each_body(calls[1], handles[a, 0], calls[3], handles[a, 1])
+            call_each_body(calls[1], handles[a, 0], calls[2], handles[a, 1])
     report(rows, arena_parameters, ball_velocity, flight, contact, robots_out, balls_out)
