@@ -25,6 +25,7 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.match.views import KeptView
 from robobt.signals import check, let_go
 from robobt.skills.aim.raters.shot_predictor import load_shot_predictors
+from robobt.skills.ball.learned_control import load_shipped_policies
 from robobt.tree import Behaviour, TreeRunner
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
@@ -129,6 +130,7 @@ class Match:
     def be_ready(self) -> None:
         """Load now what else is loaded when it is first needed, while a match in real time would go on."""
         load_shot_predictors()
+        load_shipped_policies()
 
     def capture(self) -> Capture:
         """Return what takes hold of every tick from now on, for recorders and viewers."""

@@ -52,7 +52,7 @@ def team_player(
     pass_at: float = 0.35,
     patience: float = 1.5,
     chips: bool = True,
-    score: str = "",
+    score: str = "score_on_defender_ppo",
     go: str = "",
     open_play: str = "",
     without: Omitted = "nothing",
@@ -69,7 +69,7 @@ def team_player(
         patience: time in which what is demanded of both falls to its floor [s].
         chips: whether passes may fly over opponents.
         score: name or file of a model for Score, which plays on in the opponents' half while the robot has
-            the ball and neither shot nor pass is worth it; empty for none.
+            the ball and neither shot nor pass is worth it; ``without="score"`` for none.
         go: name or file of a model that drives to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
         open_play: name or file of a model of a task of several robots, which plays while the ball is in play,
@@ -109,7 +109,9 @@ def team_player(
 
 
 def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score: str = "") -> Behaviour:
-    """Get the ball, and shoot, pass or carry it; ``score`` is a model for Score, or empty."""
+    """Get the ball, and shoot, pass or carry it; ``score`` is a model for Score, empty for none."""
+    if without == "score":
+        score = ""
     options = {
         "let_go": let_go(),
         "kick_loose": KickLoose(),

@@ -30,12 +30,12 @@ class Task(StrEnum):
 
 
 Omitted: TypeAlias = Literal[
-    "nothing", "wall", "marks", "short_place", "one_touch", "kick_loose", "draw", "avoid_crash"
+    "nothing", "wall", "marks", "short_place", "one_touch", "kick_loose", "score", "draw", "avoid_crash"
 ]
 """What a team can do without, to see what it is worth.
 
 In this order: robots before the own area, marking, the mate beside the ball of a free kick, shots with one
-touch, kicking a held ball loose, drawing the goalkeeper, braking before opponents.
+touch, kicking a held ball loose, the learned attack, drawing the goalkeeper, braking before opponents.
 """
 
 

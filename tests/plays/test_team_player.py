@@ -46,7 +46,13 @@ class Watched:
 
 
 @pytest.mark.parametrize(
-    ("without", "node"), [("kick_loose", KickLoose), ("draw", DrawGoalkeeper), ("avoid_crash", AvoidCrash)]
+    ("without", "node"),
+    [
+        ("kick_loose", KickLoose),
+        ("score", Score),
+        ("draw", DrawGoalkeeper),
+        ("avoid_crash", AvoidCrash),
+    ],
 )
 def test_it_can_do_without_a_part(without: Omitted, node: type[Behaviour]) -> None:
     def count(tree: Behaviour) -> int:
@@ -55,14 +61,14 @@ def test_it_can_do_without_a_part(without: Omitted, node: type[Behaviour]) -> No
     assert count(team_player(without=without)) == count(team_player()) - 1
 
 
-def test_learned_skills_are_parts_of_it_only_where_a_model_is_named(tmp_path: Path) -> None:
+def test_its_learned_skills_are_the_attack_and_those_of_which_a_model_is_named(tmp_path: Path) -> None:
     score = str(write_model(tmp_path, Passing(), score_card()))
     go = str(write_model(tmp_path, Onward(), among_robots_card()))
     learned = [
         [node.policy for node in tree.iterate() if isinstance(node, Score | TakePlace) and node.policy]
-        for tree in (team_player(), team_player(score=score, go=go))
+        for tree in (team_player(without="score"), team_player(), team_player(score=score, go=go))
     ]
-    assert learned == [[], [score, go]]
+    assert learned == [[], ["score_on_defender_ppo"], [score, go]]
 
 
 @pytest.mark.integration

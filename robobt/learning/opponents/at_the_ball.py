@@ -128,7 +128,7 @@ def play_the_ball(
         command[0], command[3], command[4] = _FOLLOW, _LOOSE, 1.0
     elif _carried_far(ball, speed, has and not disputed, memory):
         along = cos(state[2]) * ball[2] + sin(state[2]) * ball[3]
-        command[3] = max(0.0, along) + FASTER if cos(state[2]) > 0.0 else 0.0
+        command[3] = max(0.0, along) + FASTER if ball[0] > 0.0 or cos(state[2]) > 0.0 else 0.0
     elif has and _settles(speed, time, memory):
         limits, period = carrying[BRAKE], scene[PERIOD]
         omega = turn_rate_numbers(state, state[2], own, limits, period)

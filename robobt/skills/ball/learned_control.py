@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import inf, isnan
@@ -10,8 +11,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from robobt.config.errors import RobobtError
+from robobt.config.resources import models_folder
 from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
+from robobt.models.fitting import read_fitting_model
 from robobt.models.policy import load_policy
 from robobt.skills.store import TeamStore
 from robobt.skills.team.teamwork import has_kicked
@@ -45,6 +48,10 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
 
 P = TypeVar("P")
 
+_shipped: dict[Path, None] = {}
+"""Models that ship of which a control was made; with their networks loaded only when first asked, most
+processes need no torch."""
+
 OBSERVATION = "observation"
 """The layer of what trained policies observe and answer."""
 
@@ -58,6 +65,9 @@ class PolicyError(RobobtError, RuntimeError):
 
 class LearnedControl:
     """A trained policy that decides one robot's command, tick by tick. It has no memory.
+
+    The network of a model that ships is loaded when it first decides, or by :func:`load_shipped_policies`;
+    any other at once, so that what is wrong with it is said before anything moves.
 
     Args:
         model: name of a shipped model, or the path of a model file.
@@ -75,24 +85,28 @@ class LearnedControl:
     def __init__(
         self, model: str | Path, skill: str | None = None, observation: ObservationSpec | None = None
     ) -> None:
-        policy = load_policy(model, skill=skill, observation=observation)
-        self.card = policy.card
+        file = read_fitting_model(model, skill=skill, observation=observation)
+        self.card, self._path = file.card, file.path
         if self.card.kind != "policy" or self.card.action is None:
-            raise ModelError(f"{policy.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
+            raise ModelError(f"{file.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
         name = self.card.observation.name
         observe = observer_of(name)
         if observe is None:
             there = ", ".join(OBSERVERS)
             raise ModelError(
-                f"{policy.path}: no skill makes the observation {name!r}; there are {there}, "
+                f"{file.path}: no skill makes the observation {name!r}; there are {there}, "
                 "and team_view_M_N with places for M mates and N opponents, which may end in _restarts "
                 "or _restarts_double_touch"
             )
         self._observe: Callable[..., FloatArray] = observe
         places = places_of(name)
         self.minds_kicker = places is not None and places[2] > 1
-        self._infer: Callable[[FloatArray], list[float]] = policy.single()
+        self._infer: Callable[[FloatArray], list[float]] | None = None
         self._scaling = self.card.action
+        if file.path.parent.resolve() == models_folder().resolve():
+            _shipped[file.path] = None
+        else:
+            self._infer = load_policy(file.path).single()
 
     def decide(
         self, frame: Frame, me: RobotState, sketch: Sketch | None = None, barred: bool = False
@@ -106,8 +120,13 @@ class LearnedControl:
             barred: whether it took a restart and may not touch the ball yet, where it minds that.
 
         Raises:
-            PolicyError: the policy's answer is not finite or lies outside [-1, 1].
+            PolicyError: the policy's answer is not finite or lies outside [-1, 1], or it cannot be loaded.
         """
+        if self._infer is None:
+            try:
+                self._infer = load_policy(self._path).single()
+            except ModelError as error:
+                raise PolicyError(str(error)) from error
         observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
         action = self._infer(observed)
         if sketch is not None and sketch.wants(OBSERVATION):
@@ -125,6 +144,14 @@ class LearnedControl:
             sketch.number(OBSERVATION, name, value)
         for place, value in enumerate(action):
             sketch.number(OBSERVATION, f"action {place}", value)
+
+
+def load_shipped_policies() -> None:
+    """Load the networks that controls made so far will ask, as before a match in real time."""
+    for path in _shipped:
+        # What is wrong with one is said where it is asked.
+        with suppress(ModelError):
+            load_policy(path)
 
 
 class PacedControl:

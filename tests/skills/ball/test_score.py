@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from robobt.models.file import ModelError
+from robobt.models.policy import Policy, load_policy
 from robobt.skills import Score
+from robobt.skills.ball import learned_control
 from robobt.tree import Status
 from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotState
 from robobt.world.game import Team, TeamStatus
@@ -53,6 +55,41 @@ def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
 
 def test_one_trained_against_defenders_plays_as_in_training(tmp_path: Path) -> None:
     the_leaf_does_what_it_does_in_training("ScoreOnGoalkeeperAndDefenders", "Score", tmp_path)
+
+
+def test_a_model_that_ships_is_loaded_when_it_is_needed_and_any_other_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loaded: list[str] = []
+
+    def load(path: Path) -> Policy:
+        loaded.append(path.stem)
+        return load_policy(path)
+
+    monkeypatch.setattr(learned_control, "load_policy", load)
+    monkeypatch.setattr(learned_control, "_shipped", {})
+    alone = Alone(Score(policy="score_on_goalkeeper_ppo"))
+    assert not loaded
+    learned_control.load_shipped_policies()
+    assert loaded == ["score_on_goalkeeper_ppo"]
+    for time in (0.0, 1.0):
+        assert alone.tick(frame(robot(), ball=(3.0, 0.0), time=time)) is Status.RUNNING
+    assert loaded == ["score_on_goalkeeper_ppo"] * 2
+    model = write_model(tmp_path, Passing(), score_card())
+    Score(policy=str(model))
+    assert loaded[2:] == [model.stem]
+
+
+def test_one_that_cannot_be_loaded_fails_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    def load(path: Path) -> Policy:
+        raise ModelError(f"{path.name}: needs torch to run")
+
+    monkeypatch.setattr(learned_control, "load_policy", load)
+    alone = Alone(Score(policy="score_on_goalkeeper_ppo"))
+    learned_control.load_shipped_policies()
+    assert alone.tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
+    assert "needs torch" in alone.tree.feedback_message
+    assert alone.command == RobotCommand()
 
 
 def test_without_a_policy_it_fails() -> None:

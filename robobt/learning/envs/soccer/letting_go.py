@@ -51,5 +51,6 @@ def let_go(
             if way + LETTING_GO * hypot(ball[2], ball[3]) >= limit:
                 c, s = cos(robot[2]), sin(robot[2])
                 commands[i, index] = 0.0
-                if (c > 0.0) == (index < blue):
+                side = 1.0 if index < blue else -1.0
+                if side * ball[0] > 0.0 or side * c > 0.0:
                     commands[i, index, KICK] = max(0.0, c * ball[2] + s * ball[3]) + FASTER
