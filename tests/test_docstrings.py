@@ -52,7 +52,7 @@ def exported() -> dict[int, object]:
         names = {*dir(module), *getattr(module, "_HOMES", ())}  # those imported on first use too
         found += [getattr(module, name) for name in names if not name.startswith("_")]
     found += [*(SKILLS[name] for name in SKILLS), *(PLAYS[name] for name in PLAYS)]
-    return {id(one): one for one in found if getattr(one, "__module__", "").startswith("robobt.")}
+    return {id(one): one for one in found if (getattr(one, "__module__", None) or "").startswith("robobt.")}
 
 
 REFERENCE = re.compile(r"(?:See|see|as for) :\w+:`~?([\w.]+)`")
