@@ -10,7 +10,7 @@ import pytest
 from robobt.learning.envs import run_starts
 from robobt.learning.envs.soccer.central import central_view
 from robobt.learning.envs.soccer.per_robot import PerRobot
-from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.soccer.suite import SUITE, played, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
 
@@ -232,6 +232,11 @@ def test_a_learner_is_made_to_let_go_of_a_ball() -> None:
         made.advance(np.array([[0.35, 0.0, 0.0, -1.0]]))
     assert made.ended.truncated[0]
     assert made.arenas.balls[0, 0] - made.arenas.robots[0, 0, 0] > 0.3
+
+
+def test_a_ball_has_to_be_let_go_of_before_it_was_carried_too_far() -> None:
+    with pytest.raises(ValueError, match=r"let_go: 1 m is too late, dribbling allows 1 m"):
+        SoccerRules(dribbling=1.0, let_go=1.0)
 
 
 @pytest.mark.parametrize(("aim", "won"), [("hold", True), ("score", False)])

@@ -100,6 +100,8 @@ class SoccerRules(Settings):
     def _sensible(self) -> Self:
         if self.double_touch and not self.restarts:
             raise ValueError("double_touch: there is nothing to touch twice without restarts")
+        if self.let_go is not None and self.dribbling is not None and self.let_go >= self.dribbling:
+            raise ValueError(f"let_go: {self.let_go:g} m is too late, dribbling allows {self.dribbling:g} m")
         return self
 
 
