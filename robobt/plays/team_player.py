@@ -73,7 +73,7 @@ def team_player(
         go: name or file of a model that drives to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
         open_play: name or file of a model of a task of several robots, which plays while the ball is in play,
-            whatever the robot's task; empty for the written tasks.
+            whatever the robot's task, and without ``score`` and ``go``; empty for the written tasks.
         without: a part of the game to do without, the same for every robot of the team, so that a tournament
             shows what it is worth.
     """
