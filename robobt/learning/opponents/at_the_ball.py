@@ -69,7 +69,7 @@ _CREEP, _ROLLS = PickUpBall.speed or 0.5, ReceivePass.slowest
 _BROKEN, _LOOSE, _FOLLOW = 0.1, 2.0, 0.3
 """A hold broken off for so long begins anew [s]; speed of a ball kicked loose, and after it [m/s]."""
 _CARRIED = 0.9
-"""It lets go of a ball carried so far [m], so much sooner [s]."""
+"""It lets go of a ball carried so far [m]."""
 _CARRYING, _STEADY, _OTHER_WAY, _BEFORE_AREA = 1.5, 0.25, 0.6, 0.2
 """How fast it carries the ball [m/s], keeps to a way for [s] where one differs by [rad], and to where [m]."""
 _FACING, _FACING_STILL, _LOOKING = pi / 6.0, pi / 3.0, pi / 18.0

@@ -99,7 +99,8 @@ class EvaluationSettings(Settings):
 
 
 Script = Literal["challenge", "still", "press", "mark", "wall", "attack", "pass", "redirect"]
-"""A field player of :data:`robobt.learning.opponents.field_players.PLAYERS`."""
+"""A scripted field player: ``challenge``, or one of
+:data:`robobt.learning.opponents.field_players.PLAYERS`."""
 
 
 class PoolSettings(Settings):
@@ -113,7 +114,7 @@ class PoolSettings(Settings):
     every: int = Field(307_200, ge=1, description="steps between them, a multiple of rebuild_every")
     share: float = Field(0.0, ge=0, le=1, description="of the learners that play against them")
     scripts: tuple[Script, ...] = Field(
-        (), max_length=7, description="scripted field players in the places of yellow's learners"
+        (), max_length=8, description="scripted field players in the places of yellow's learners"
     )
     scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
 
