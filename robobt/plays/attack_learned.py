@@ -15,8 +15,8 @@ def attack_learned(*, policy: str = "") -> Behaviour:
     """Get the ball and score by one learned policy, from first touch to goal.
 
     It knows of other robots what it was trained to see, and of rules nothing: it carries the ball as far as
-    it likes, so that it is for scenarios without a referee. ``score_on_goalkeeper_ppo`` ships, for one
-    goalkeeper: what it can do is in docs/learning.md.
+    it likes, so that it is for scenarios without a referee. ``score_on_goalkeeper_ppo`` ships for one
+    goalkeeper, others for its defenders and for a duel: docs/several_robots.md says what they can do.
 
     Args:
         policy: name or file of a model for Score or Duel, or of another task of several robots; without one
