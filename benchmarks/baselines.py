@@ -87,7 +87,12 @@ def main() -> None:
     parser.add_argument("--curves", type=Path, help="draw what is there: .svg, .png or .pdf")
     given = parser.parse_args()
     file = given.out / "baselines.jsonl"
-    cells = [cell for cell in read_cells(file) if cell["cpu_seconds"] == given.cpu_seconds]
+    there_are = read_cells(file)
+    cells = [cell for cell in there_are if cell["cpu_seconds"] == given.cpu_seconds]
+    if (given.table or given.curves) and not cells:
+        budgets = ", ".join(f"{budget:g}" for budget in sorted({cell["cpu_seconds"] for cell in there_are}))
+        other = f"; there are some of {budgets}: give --cpu-seconds" if budgets else ""
+        parser.error(f"{file}: has no cells of {given.cpu_seconds:g} CPU seconds{other}")
     if given.table:
         print(table(cells, list(TASKS), ALGORITHMS))
     if given.curves:

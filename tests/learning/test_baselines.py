@@ -40,6 +40,9 @@ def test_a_cell_is_trained_once_and_is_in_table_and_curves(baselines, monkeypatc
     share = 100 * cell["held_out"]["success"]["value"]
     assert f"| GoToBall | {share:.1f} % (1) |  |  |  |  |" in capsys.readouterr().out
     assert "GoToBall" in picture.read_text()
+    with pytest.raises(SystemExit):
+        run(baselines, monkeypatch, tmp_path, "--table", "--cpu-seconds", "7")
+    assert "no cells of 7 CPU seconds; there are some of 0.2" in capsys.readouterr().err
 
 
 def test_a_policy_trained_by_stable_baselines3_is_a_skill(baselines, monkeypatch, tmp_path) -> None:
