@@ -19,12 +19,14 @@ import numpy as np
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
+from robobt.cli.compare import parse_play
 from robobt.learning.envs import run_starts
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.envs.soccer.suite import SUITE, against, played, scripted
+from robobt.learning.envs.soccer.suite import SUITE, against, instead, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
+from robobt.learning.opponents.play_settings import PlaySettings
 from robobt.statistics import mcnemar, paired_difference_interval, wilson_interval
 
 SEED = 3_000_017
@@ -67,7 +69,8 @@ def _all(
         yield "chance", _run(settings, starts)
     alone = against(settings, "attack")
     for play in plays:
-        yield play, _run(played(alone, play), starts)
+        name, params = parse_play(play, "--play")
+        yield play, _run(instead(alone, PlaySettings(play=name, params=params)), starts)
     for model in models:
         yield model, _run(alone, starts, load_policy(model, kind="policy"))
 

@@ -1,4 +1,4 @@
-"""``robobt rate``: how strong the policies of self-play are, against each other and scripts."""
+"""``robobt rate``: how strong the policies of self-play are, against each other, scripts and plays."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import MAX_SEED, Json, console, print_json, table
+from robobt.cli.compare import PLAY, parse_play
 
 
 def rate(
@@ -22,7 +23,14 @@ def rate(
     scripts: Annotated[
         list[str] | None,
         typer.Option(
-            "--script", help="Scripted field players to meet; may be given again. attack and press."
+            "--script",
+            help="Scripted field players to meet; may be given again. attack and press without a play.",
+        ),
+    ] = None,
+    plays: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--play", metavar=PLAY, help="Robots that a play moves, slowly, to meet; may be given again."
         ),
     ] = None,
     starts: Annotated[
@@ -32,7 +40,7 @@ def rate(
     seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of the starts.")] = 0,
     as_json: Json = False,
 ) -> None:
-    """Let a run's policies, past and best, and scripts meet in a round robin, and rate them.
+    """Let a run's policies, past and best, scripts and plays meet in a round robin, and rate them.
 
     For tasks in which two teams learn. A goal wins an episode; one without is a draw. Ratings are
     Bradley-Terry's on the Elo scale, 0 their mean.
@@ -41,12 +49,14 @@ def rate(
     lost) and encounters (first, second, starts, won, drawn, lost).
     """
     from robobt.learning.agents.networks import one_thread
-    from robobt.learning.training.meetings import contenders_of, encounters, script
+    from robobt.learning.training.meetings import contenders_of, encounters, play, script
     from robobt.learning.training.run_folder import read_settings
     from robobt.tournament.ratings import bradley_terry
 
     # Who is given twice would meet itself.
-    given = [script(role) for role in dict.fromkeys(scripts or ("attack", "press"))]
+    default = () if plays else ("attack", "press")
+    given = [script(role) for role in dict.fromkeys(scripts or default)]
+    given += [play(text, *parse_play(text, "--play")) for text in dict.fromkeys(plays or ())]
     several = list(dict.fromkeys(runs))
     found = [contenders_of(run, past, str(run) if len(several) > 1 else "") for run in several]
     contenders = [*(one for _, policies in found for one in policies), *given]

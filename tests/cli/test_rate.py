@@ -25,21 +25,25 @@ def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
     for seed in range(4):
         policy = Actor([1.0] * 23, 4, [4], generator=torch.Generator().manual_seed(seed))
         save_actor(policy, run / ACTOR if seed == 3 else run / PAST / f"{seed:010}.pt")
-    told = rate(run, "--past", 2, "--script", "attack", "--starts", 3, "--json")
+    told = rate(
+        run, "--past", 2, "--script", "attack", "--play", "attack_main:speed=1.0", "--starts", 3, "--json"
+    )
     assert told.exit_code == 0, told.output
     found = json.loads(told.stdout)
-    assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack"}
-    assert len(found["encounters"]) == 6
+    assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack", "attack_main:speed=1.0"}
+    assert len(found["encounters"]) == 10
     assert found["task"] == "duel"
     for one in found["ratings"].values():
         assert one["low"] < one["elo"] < one["high"]
-        assert one["won"] + one["drawn"] + one["lost"] == 3 * 6
+        assert one["won"] + one["drawn"] + one["lost"] == 4 * 6
     # Folders of one name are two runs, and who is given twice is there once.
     shutil.copytree(run, other)
     told = rate(run, other, run, "--past", 0, "--script", "still", "--script", "still", "-n", 1, "--json")
     assert set(json.loads(told.stdout)["ratings"]) == {f"{run} best", f"{other} best", "still"}
     for arguments, said in (
         ((run, "--script", "dance"), "no script 'dance'"),
+        ((run, "--play", "dance"), "dance: play: no play is called 'dance'"),
+        ((run, "--play", "attack_main:sped=1"), "attack_main:sped=1: params.sped: attack_main has no such"),
         ((tmp_path / "none",), "none"),
     ):
         refused = rate(*arguments)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from robobt.config.validation import first_problem
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.match.players import Player
@@ -18,7 +19,7 @@ from robobt.world import GameState, Placement, RefereeCommand, RobotCommand, Rob
 STAY = np.array([[0.0, 0.0, 0.0, -1.0]])
 
 
-def task(*plays: str, n: int = 1, **changes: object) -> SoccerTask:
+def task(*plays: object, n: int = 1, **changes: object) -> SoccerTask:
     settings = {"yellow": ["play"] * len(plays), "plays": plays, "decide_every": 1, **changes}
     return SoccerTask(SoccerSettings.model_validate(settings), n, seed=4)
 
@@ -74,6 +75,20 @@ def test_episodes_start_anew_and_arenas_do_not_know_of_each_other() -> None:
     np.testing.assert_allclose(made.arenas.robots, fresh.arenas.robots, atol=1e-9)
 
 
+def test_a_play_has_its_parameters() -> None:
+    def after(play: object) -> np.ndarray:
+        made = task(play, starts={"yellow_x": (1.0, 1.5), "ball_x": (-2.5, -2.0)})
+        made.reset()
+        for _ in range(30):
+            made.advance(STAY)
+        return made.arenas.robots[0, 1, :2] - made.arenas.balls[0, :2]
+
+    slow, fast = (
+        np.hypot(*after({"play": "attack_main", "params": {"speed": speed}})) for speed in (0.2, 2.0)
+    )
+    assert slow > fast + 0.5
+
+
 def test_a_play_takes_its_restart_and_leaves_the_ball_alone_then() -> None:
     made = task("team_player", rules={"restarts": True, "double_touch": True})
     # Blue's robot puts the ball out, over the touch line before it.
@@ -90,12 +105,15 @@ def test_a_play_takes_its_restart_and_leaves_the_ball_alone_then() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("plays", "said"),
     [
-        ({"yellow": ["play"]}, "plays: names 0, for 1 robots with the role play"),
-        ({"yellow": ["play"], "plays": ["nobody"]}, "plays: no play is called 'nobody'; there are attack_"),
+        ([], "plays: names 0, for 1 robots with the role play"),
+        (["nobody"], "plays.0.play: no play is called 'nobody'; there are attack_"),
+        ([{"play": "attack_main", "params": {"sped": 1}}], "plays.0.params.sped: attack_main has no such"),
+        ([{"play": "attack_main", "params": {"speed": "x"}}], "plays.0.params.speed: input should be"),
     ],
 )
-def test_every_such_robot_needs_a_play_that_there_is(changes: dict[str, object], said: str) -> None:
-    with pytest.raises(ValidationError, match=said):
-        SoccerSettings.model_validate(changes)
+def test_every_such_robot_needs_a_play_that_can_be_built(plays: list[object], said: str) -> None:
+    with pytest.raises(ValidationError) as raised:
+        SoccerSettings.model_validate({"yellow": ["play"], "plays": plays})
+    assert ": ".join(first_problem(raised.value, SoccerSettings)).removeprefix(": ").startswith(said)

@@ -32,7 +32,7 @@ class OrderedSettings(Settings):
     def _ordered(self) -> Self:
         for name in type(self).model_fields:
             value = getattr(self, name)
-            ranges = isinstance(value, tuple) and len(value) == 2 and not isinstance(value[0], str)
+            ranges = isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], int | float)
             if ranges and value[0] > value[1]:
                 raise ValueError(f"{name}: the least, {value[0]:g}, is above the most, {value[1]:g}")
         return self

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.learning.opponents.play_settings import PlaySettings
 from robobt.match.players import Player
-from robobt.plays import PLAYS
 from robobt.sim.arenas import Arenas
 from robobt.sim.world import command_row, robot_states
 from robobt.skills.store import Store, TeamStore
@@ -26,7 +26,7 @@ class PlayedRobots:
     tells. One whose tree fails stands still for that tick.
 
     Args:
-        plays: by a robot's index the name of what it plays.
+        plays: by a robot's index what it plays.
         blue: how many of an arena's robots, the first, are blue.
         limits: what each robot can do.
         n: number of arenas.
@@ -35,7 +35,7 @@ class PlayedRobots:
 
     def __init__(
         self,
-        plays: Mapping[int, str],
+        plays: Mapping[int, PlaySettings],
         blue: int,
         limits: Sequence[RobotLimits],
         n: int,
@@ -60,7 +60,7 @@ class PlayedRobots:
                 blue = len(self._blue)
                 robot = RobotId(Team.BLUE, index) if index < blue else RobotId(Team.YELLOW, index - blue)
                 store = Store(frame, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
-                self._players[arena][index] = Player(robot, TreeRunner(PLAYS[play](), store), store)
+                self._players[arena][index] = Player(robot, TreeRunner(play.build_tree(), store), store)
 
     def decide(self, arenas: Arenas, commands: FloatArray) -> None:
         """Decide one control tick: fill these robots' commands (n, R, COMMAND)."""

@@ -38,7 +38,7 @@ def opposed_arenas(
 
     Args:
         environment: of all arenas, but for who is yellow.
-        pool: the shares, and the scripts.
+        pool: the shares, the scripts and the plays.
         others: plays the part of the past selves.
         n: learners.
         central: whether what a central critic sees follows each observation.
@@ -46,8 +46,8 @@ def opposed_arenas(
     if not isinstance(environment, SoccerSettings) or not environment.two_alike:
         return make_rows(environment, n, central)
     each, blue = learners_of(environment), environment.blue.count(LEARNER)
-    past, *scripted = opposed(environment, pool, n)
-    itself = n - past - sum(scripted)
+    past, *opponents = opposed(environment, pool, n)
+    itself = n - past - sum(opponents)
     parts: list[VectorTask] = []
     if itself > 0:
         parts.append(make_rows(environment, itself, central))
@@ -55,14 +55,14 @@ def opposed_arenas(
         rows = make_rows(environment, past // blue * each, central)
         assert isinstance(rows, PerRobot)
         parts.append(OneSide(rows, others))
-    for role, count in zip(pool.scripts, scripted, strict=True):
+    for opponent, count in zip(pool.opponents, opponents, strict=True):
         if count > 0:
-            parts.append(make_rows(against(environment, role), count, central))
+            parts.append(make_rows(against(environment, opponent), count, central))
     return SeveralWorlds(parts)
 
 
 def opposed(environment: SoccerSettings, pool: PoolSettings, n: int) -> list[int]:
-    """Return how many of ``n`` learners play against past selves, then against each script.
+    """Return how many of ``n`` learners play against past selves, then against each opponent.
 
     Shares are rounded to whole arenas, and those that come last to what is left.
     """

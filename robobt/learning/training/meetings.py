@@ -1,8 +1,8 @@
-"""Policies and scripts against each other in a task in which both teams learn."""
+"""Policies, scripts and plays against each other in a task in which both teams learn."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -10,13 +10,16 @@ from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from robobt.config.errors import RobobtError
+from robobt.config.validation import first_problem
 from robobt.learning.agents.networks import Actor, policy_of
-from robobt.learning.envs.soccer.settings import Role, SoccerSettings
-from robobt.learning.envs.soccer.suite import against, instead
+from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.envs.soccer.suite import Opponent, against, instead
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
+from robobt.learning.opponents.play_settings import PlaySettings
 from robobt.learning.training.run_folder import ACTOR, PAST, load_actor, read_settings
 from robobt.learning.training.setting_groups import Script
 from robobt.learning.training.settings import environment_of
@@ -31,10 +34,10 @@ class MeetingError(RobobtError, ValueError):
 
 @dataclass(frozen=True)
 class Contender:
-    """Who plays in the places of a team's learners: a policy, or scripted robots of a role."""
+    """Who plays in the places of a team's learners: a policy, scripted robots of a role, or a play's."""
 
     name: str
-    plays: Actor | Role
+    plays: Actor | Opponent
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,19 @@ def script(role: str) -> Contender:
         if known == role:
             return Contender(role, known)
     raise MeetingError(f"there is no script {role!r}; there are {', '.join(get_args(Script))}")
+
+
+def play(text: str, name: str, params: Mapping[str, object]) -> Contender:
+    """Return robots that a play moves as a contender, called ``text``.
+
+    Raises:
+        MeetingError: there is no such play, or it has no such parameters.
+    """
+    try:
+        return Contender(text, PlaySettings(play=name, params=dict(params)))
+    except ValidationError as error:
+        told = [part for part in first_problem(error, PlaySettings) if part]
+        raise MeetingError(f"{text}: {': '.join(told)}") from error
 
 
 def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettings, list[Contender]]:

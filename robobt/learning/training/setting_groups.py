@@ -7,6 +7,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, model_validator
 
 from robobt.config.validation import Settings
+from robobt.learning.opponents.play_settings import GivenPlay, PlaySettings
 
 
 class PrioritySettings(Settings):
@@ -117,18 +118,30 @@ class PoolSettings(Settings):
         (), max_length=8, description="scripted field players in the places of yellow's learners"
     )
     scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
+    plays: tuple[GivenPlay, ...] = Field(
+        (), max_length=8, description="plays that move robots in those places, at their own, slow speed"
+    )
+    played: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
+
+    @property
+    def opponents(self) -> tuple[Script | PlaySettings, ...]:
+        """All but the past selves."""
+        return (*self.scripts, *self.plays)
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Of the learners: against past selves, then against each script."""
-        return (self.share, *(self.scripted / len(self.scripts) for _ in self.scripts))
+        """Of the learners: against past selves, then against each of the opponents."""
+        scripted = [self.scripted / len(self.scripts) for _ in self.scripts]
+        return (self.share, *scripted, *(self.played / len(self.plays) for _ in self.plays))
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.share + self.scripted > 1.0:
-            raise ValueError("share and scripted are more than 1 together")
+        if self.share + self.scripted + self.played > 1.0:
+            raise ValueError("share, scripted and played are more than 1 together")
         if bool(self.scripts) != bool(self.scripted):
             raise ValueError("scripts and their share, scripted, are given together")
+        if bool(self.plays) != bool(self.played):
+            raise ValueError("plays and their share, played, are given together")
         return self
 
 

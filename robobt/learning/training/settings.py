@@ -77,7 +77,7 @@ class TrainSettings(Settings):
     @property
     def changes_on_the_way(self) -> bool:
         """Whether the arenas change as the run goes on."""
-        return bool(self.stages) or self.pool.share > 0.0 or self.pool.scripted > 0.0
+        return bool(self.stages) or any(self.pool.shares)
 
     @property
     def algorithm(self) -> str:
@@ -232,7 +232,7 @@ def _check_rows(
 
 def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) -> None:
     """Raise unless the pool of a stage, if there is one, can play in the run's ``environment``."""
-    if not stage.pool.share and not stage.pool.scripted:
+    if not any(stage.pool.shares):
         return
     if not isinstance(environment, SoccerSettings) or not environment.two_alike:
         raise SettingsError(source, "is for tasks whose two teams are of equal size and learn", "pool")

@@ -11,8 +11,9 @@ from robobt.learning.envs import run_starts
 from robobt.learning.envs.soccer.central import central_view
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
-from robobt.learning.envs.soccer.suite import SUITE, played, scripted
+from robobt.learning.envs.soccer.suite import SUITE, instead, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
+from robobt.learning.opponents.play_settings import PlaySettings
 
 HELD = 0.0968
 SUITED = pytest.mark.parametrize("name", SUITE)
@@ -153,10 +154,10 @@ def test_a_play_in_the_learners_places_starts_where_they_do_and_meets_who_they_m
     settings = SoccerSettings(
         blue=("learner", "play"), yellow=("play", "goalkeeper"), plays=("stand_still", "attack_main")
     )
-    mine = played(settings, "attack_expected")
+    mine = instead(settings, PlaySettings(play="attack_expected"))
     assert (mine.blue, mine.yellow) == (("play", "play"), ("play", "goalkeeper"))
-    assert mine.plays == ("attack_expected", "stand_still", "attack_main")
-    task, theirs = SUITE["Save"](), played(SUITE["Save"](), "team_keeper")
+    assert [one.play for one in mine.plays] == ["attack_expected", "stand_still", "attack_main"]
+    task, theirs = SUITE["Save"](), instead(SUITE["Save"](), PlaySettings(play="team_keeper"))
     starts = [SoccerTask(each).sample_starts(5, 10) for each in (task, theirs)]
     np.testing.assert_array_equal(*starts)
 

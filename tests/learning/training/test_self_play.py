@@ -86,19 +86,25 @@ def test_against_others_blues_learners_alone_have_rows() -> None:
 
 
 def test_the_pools_shares_are_shares_of_the_learners() -> None:
-    pool = PoolSettings(share=0.25, scripts=("attack", "press"), scripted=0.5)
+    team = {"play": "team_player", "params": {"without": "score"}}
+    pool = PoolSettings.model_validate(
+        {"share": 0.25, "scripts": ["attack", "press"], "scripted": 0.5, "plays": [team], "played": 0.1}
+    )
     made = opposed_arenas(SUITE["Small3v3"](), pool, lambda seen: seen, 48, central=False)
     assert isinstance(made, SeveralWorlds)
-    itself, past, attack, press = made.parts
-    assert [part.n for part in made.parts] == [12, 12, 12, 12]
+    itself, past, attack, press, play = made.parts
+    assert [part.n for part in made.parts] == [8, 12, 12, 12, 4]
     assert isinstance(itself, PerRobot)
     assert isinstance(past, OneSide)
     assert isinstance(attack, PerRobot)
     assert isinstance(press, PerRobot)
     # An arena has four learners in self-play, else two.
-    assert [part.task.n for part in (itself, attack, press)] == [3, 6, 6]
+    assert isinstance(play, PerRobot)
+    assert [part.task.n for part in (itself, attack, press, play)] == [2, 6, 6, 2]
     assert attack.task.settings.yellow == ("goalkeeper", "attack", "attack")
     assert press.task.settings.yellow == ("goalkeeper", "press", "press")
+    assert play.task.settings.yellow == ("goalkeeper", "play", "play")
+    assert [one.model_dump() for one in play.task.settings.plays] == [team, team]
 
 
 @pytest.mark.parametrize("scripts", [("attack", "press"), ("still", "press", "mark", "wall", "attack")])
@@ -171,7 +177,9 @@ def test_a_stage_begins_after_its_share_of_the_steps() -> None:
         ("attack3v2", {"pool.share": 0.5}, "pool: is for tasks whose two teams"),
         ("duel", {"pool.share": 0.5, "worlds": [{}, {}]}, "pool: there is none with several worlds"),
         ("duel", {"pool.share": 0.7, "pool.scripts": ["attack"], "pool.scripted": 0.7}, "more than 1"),
-        ("duel", {"pool.scripts": ["attack"]}, "given together"),
+        ("duel", {"pool.scripts": ["attack"]}, "scripted, are given together"),
+        ("duel", {"pool.plays": ["attack_main"]}, "played, are given together"),
+        ("duel", {"pool.plays": ["nobody"], "pool.played": 0.1}, r"pool\.plays\.0\.play: no play is called"),
         ("duel", {"pool.every": 1, "pool.share": 0.5}, "multiple of rebuild_every"),
         ("duel", {"stages": [{"share": 1, "environment": {"yellow": ["wall"] * 2}}]}, r"stages\[0\].* 27 "),
         ("duel", {"stages": [{"share": 1, "pool": {"sizes": 3}}]}, r"pool with stages\[0\]"),

@@ -10,8 +10,8 @@ from robobt.config.validation import Settings
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings
 from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings
 from robobt.learning.envs.soccer.rewards import SoccerReward
+from robobt.learning.opponents.play_settings import GivenPlay
 from robobt.models.actions import SCORE_ACTION, ActionScaling
-from robobt.plays import PLAYS
 
 Role = Literal[
     "learner",
@@ -113,8 +113,10 @@ class SoccerSettings(TaskSettings):
     decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
     blue: tuple[Role, ...] = Field(("learner",), min_length=1, max_length=11, description="who plays")
     yellow: tuple[Role, ...] = Field((), max_length=11, description="who plays against them")
-    plays: tuple[str, ...] = Field(
-        (), description="what those with the role play are moved by, in order, blue's first: names of plays"
+    plays: tuple[GivenPlay, ...] = Field(
+        (),
+        description="what those with the role play are moved by, in order, blue's first: a play's name, or "
+        "with parameters {play: NAME, params: {...}}",
     )
     aim: Aim = Field(
         "score",
@@ -137,7 +139,7 @@ class SoccerSettings(TaskSettings):
     def keeping(self) -> tuple[bool, ...]:
         """Which robots start in their goals."""
         plays, blue = iter(self.plays), len(self.blue)
-        by_play = [role == PLAY and next(plays) in KEEPING for role in self.roles]
+        by_play = [role == PLAY and next(plays).play in KEEPING for role in self.roles]
         return tuple(
             role == GOALKEEPER or (index >= blue and by_play[index]) for index, role in enumerate(self.roles)
         )
@@ -177,9 +179,6 @@ class SoccerSettings(TaskSettings):
         played = self.roles.count(PLAY)
         if len(self.plays) != played:
             raise ValueError(f"plays: names {len(self.plays)}, for {played} robots with the role play")
-        unknown = [name for name in self.plays if name not in PLAYS]
-        if unknown:
-            raise ValueError(f"plays: no play is called {unknown[0]!r}; there are {', '.join(PLAYS)}")
         if not self.learners:
             raise ValueError("blue, yellow: nobody is a learner")
         if self.blue.count(GOALKEEPER) > 1 or self.yellow.count(GOALKEEPER) > 1:

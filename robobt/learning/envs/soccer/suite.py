@@ -17,6 +17,7 @@ from robobt.learning.envs.soccer.settings import (
     SoccerSettings,
     SoccerStarts,
 )
+from robobt.learning.opponents.play_settings import PlaySettings
 
 _ATTACKED = SoccerStarts(
     blue_x=(0.0, 3.0), yellow_x=(2.0, 3.2), y=(-2.2, 2.2), ball_x=(0.0, 3.0), held=0.5, apart=0.35
@@ -193,24 +194,30 @@ def scripted(settings: SoccerSettings) -> SoccerSettings:
     return against(instead(settings, own), "attack")
 
 
-def played(settings: SoccerSettings, play: str) -> SoccerSettings:
-    """Return the ``settings`` with robots that a play moves in the place of blue's learners."""
-    named, plays = iter(settings.plays), []
+Opponent = Role | PlaySettings
+"""A role, or the play that moves a robot."""
+
+
+def against(settings: SoccerSettings, opponent: Opponent) -> SoccerSettings:
+    """Return the ``settings`` with scripted or played robots in the place of yellow's learners."""
+    return _replaced(settings, len(settings.blue), len(settings.roles), opponent)
+
+
+def instead(settings: SoccerSettings, player: Opponent) -> SoccerSettings:
+    """Return the ``settings`` with scripted or played robots in the place of blue's learners."""
+    return _replaced(settings, 0, len(settings.blue), player)
+
+
+def _replaced(settings: SoccerSettings, begin: int, end: int, player: Opponent) -> SoccerSettings:
+    """Return the ``settings`` with other robots in the place of the learners from ``begin`` up to ``end``."""
+    given, roles, plays = iter(settings.plays), list(settings.roles), []
     for index, role in enumerate(settings.roles):
         if role == PLAY:
-            plays.append(next(named))
-        elif role == LEARNER and index < len(settings.blue):
-            plays.append(play)
-    return instead(settings, PLAY).model_copy(update={"plays": tuple(plays)})
-
-
-def against(settings: SoccerSettings, role: Role) -> SoccerSettings:
-    """Return the ``settings`` with scripted robots of that ``role`` in the place of yellow's learners."""
-    yellow = tuple(role if own == LEARNER else own for own in settings.yellow)
-    return settings.model_copy(update={"yellow": yellow})
-
-
-def instead(settings: SoccerSettings, role: Role) -> SoccerSettings:
-    """Return the ``settings`` with scripted robots of that ``role`` in the place of blue's learners."""
-    blue = tuple(role if own == LEARNER else own for own in settings.blue)
-    return settings.model_copy(update={"blue": blue})
+            plays.append(next(given))
+        elif role == LEARNER and begin <= index < end:
+            roles[index] = PLAY if isinstance(player, PlaySettings) else player
+            if isinstance(player, PlaySettings):
+                plays.append(player)
+    blue = len(settings.blue)
+    changes = {"blue": tuple(roles[:blue]), "yellow": tuple(roles[blue:]), "plays": tuple(plays)}
+    return settings.model_copy(update=changes)
