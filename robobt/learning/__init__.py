@@ -19,6 +19,7 @@ _ROOMS = {
     "ScoreOnGoalkeeper": "score_on_goalkeeper.env",
 }
 TEAMS = (
+    "Soccer",
     "ScoreOnGoalkeeperAndDefenders",
     "ScoreOnGoalkeeperAndTwoDefenders",
     "Save",

@@ -14,10 +14,10 @@ from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.task import ShootTask
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.suite import TASKS
 from robobt.learning.envs.soccer.task import SoccerTask
 
-SEVERAL = {re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower(): model for name, model in SUITE.items()}
+SEVERAL = {re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower(): model for name, model in TASKS.items()}
 """Settings of the tasks of several robots by the names that training has for them."""
 
 ENVIRONMENTS: dict[str, type[TaskSettings]] = {

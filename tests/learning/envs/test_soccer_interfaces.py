@@ -12,7 +12,7 @@ from gymnasium.utils.env_checker import check_env
 
 import robobt.learning
 from robobt.learning.envs.soccer.env import SoccerEnv
-from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.suite import SUITE, TASKS
 from robobt.learning.envs.soccer.task import SoccerTask
 
 RESTARTS = {
@@ -21,16 +21,18 @@ RESTARTS = {
     "time_limit": 100,
 }
 
+ELEVEN = {"blue": ["goalkeeper"] + 10 * ["learner"], "yellow": 11 * ["learner"]}
+
 
 def many(name: str, num_envs: int, **more: Any) -> Any:
     return gymnasium.make_vec(f"{name}-v0", num_envs, vectorization_mode="vector_entry_point", **more)
 
 
 def test_every_task_of_the_suite_has_its_id() -> None:
-    assert set(robobt.learning.TEAMS) == set(SUITE)
-    for name in SUITE:
+    assert set(robobt.learning.TEAMS) == set(TASKS)
+    for name in TASKS:
         assert f"robobt/{name}-v0" in gymnasium.registry
-    with pytest.raises(ValueError, match="there are ScoreOnGoalkeeperAndDefenders"):
+    with pytest.raises(ValueError, match="there are Soccer, ScoreOnGoalkeeperAndDefenders"):
         SoccerEnv("Chess")
 
 
@@ -38,8 +40,9 @@ def test_every_task_of_the_suite_has_its_id() -> None:
 @pytest.mark.parametrize(
     ("name", "settings"),
     [
-        *((name, {"noise": {"robot_position": 0.01}}) for name in ("Save", "Duel", "Attack3v2")),
+        *((name, {"noise": {"robot_position": 0.01}}) for name in TASKS),
         ("Duel", RESTARTS),
+        ("Soccer", ELEVEN),
     ],
 )
 def test_gymnasiums_checker_has_nothing_to_say(name: str, settings: Any) -> None:
@@ -48,10 +51,16 @@ def test_gymnasiums_checker_has_nothing_to_say(name: str, settings: Any) -> None
 
 @pytest.mark.parametrize(
     ("name", "more"),
-    [("Save", {}), ("Duel", {}), ("Attack3v2", {}), ("Duel", {"settings": RESTARTS})],
+    [
+        ("Save", {}),
+        ("Duel", {}),
+        ("Attack3v2", {}),
+        ("Duel", {"settings": RESTARTS}),
+        ("Soccer", {"settings": ELEVEN}),
+    ],
 )
 def test_every_learner_is_an_environment_of_the_vector(name: str, more: dict[str, Any]) -> None:
-    each = len(SUITE[name]().learners)
+    each = len(TASKS[name].model_validate(more.get("settings", {})).learners)
     envs, again = (many(name, 2 * each, **more) for _ in range(2))
     seen, _ = envs.reset(seed=3)
     np.testing.assert_array_equal(seen, again.reset(seed=3)[0])
@@ -76,7 +85,7 @@ def test_every_learner_is_an_environment_of_the_vector(name: str, more: dict[str
 
 @pytest.mark.parametrize(
     ("name", "settings"),
-    [("Save", None), ("Duel", None), ("Attack3v2", None), ("Duel", RESTARTS), ("Small3v3", RESTARTS)],
+    [*((name, None) for name in TASKS), ("Duel", RESTARTS), ("Small3v3", RESTARTS), ("Soccer", ELEVEN)],
 )
 def test_pettingzoos_checkers_have_nothing_to_say(name: str, settings: Any) -> None:
     pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")

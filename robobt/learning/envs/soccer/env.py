@@ -13,7 +13,7 @@ from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.suite import TASKS
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.world.scoring import FAR_OFF
 from robobt.world.state import ROBOT_RADIUS
@@ -58,9 +58,9 @@ def kind_of(task: str) -> EnvKind:
     Raises:
         ValueError: there is no such task.
     """
-    if task not in SUITE:
-        raise ValueError(f"no task is called {task!r}; there are {', '.join(SUITE)}")
-    model = SUITE[task]
+    if task not in TASKS:
+        raise ValueError(f"no task is called {task!r}; there are {', '.join(TASKS)}")
+    model = TASKS[task]
     return EnvKind(
         lambda settings, n: SoccerTask(model() if settings is None else settings, n), model, _all_learners
     )
@@ -74,7 +74,7 @@ class SoccerEnv(SingleEnv):
     learner in :class:`~robobt.learning.envs.soccer.parallel.SoccerParallelEnv`.
 
     Args:
-        task: name in :data:`~robobt.learning.envs.soccer.suite.SUITE`, whose class documents it.
+        task: name in :data:`~robobt.learning.envs.soccer.suite.TASKS`, whose class documents it.
         settings: that task's settings, or the mapping that makes them, as out of a YAML file.
         render_mode: None or "rgb_array".
 
@@ -99,7 +99,7 @@ class SoccerVectorEnv(ManyEnv):
     The rest is as for :class:`SoccerEnv`.
 
     Args:
-        task: name in :data:`~robobt.learning.envs.soccer.suite.SUITE`.
+        task: name in :data:`~robobt.learning.envs.soccer.suite.TASKS`.
         num_envs: learners of all arenas together, a multiple of a task's learners.
         settings: as for :class:`SoccerEnv`.
         render_mode: None or "rgb_array", a picture an arena.
@@ -115,7 +115,7 @@ class SoccerVectorEnv(ManyEnv):
         settings: TaskSettings | Mapping[str, object] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        model = SUITE.get(task)
+        model = TASKS.get(task)
         self.kind = EnvKind(_per_robot, model, learner_space) if model else kind_of(task)
         super().__init__(
             num_envs, settings if settings is not None or model is None else model(), render_mode

@@ -31,7 +31,7 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     for all of them together. The last step's infos hold ``is_success``, blue's, and ``time`` [s].
 
     Args:
-        task: name in :data:`~robobt.learning.envs.soccer.suite.SUITE`.
+        task: name in :data:`~robobt.learning.envs.soccer.suite.TASKS`.
         settings: that task's settings, or the mapping that makes them.
         render_mode: None or "rgb_array".
 

@@ -176,7 +176,10 @@ SUITE: dict[str, type[SoccerSettings]] = {
     "Attack3v2": Attack3v2Settings,
     "Small3v3": Small3v3Settings,
 }
-"""The tasks by name; any other mix of robots is a :class:`SoccerSettings` of one's own."""
+"""The tasks by name."""
+
+TASKS: dict[str, type[SoccerSettings]] = {"Soccer": SoccerSettings, **SUITE}
+"""The same, and any mix of robots: ``Soccer`` is one against nobody until its settings say who plays."""
 
 SCRIPTS: dict[str, Role] = {
     "score": "attack",
