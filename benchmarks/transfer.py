@@ -5,8 +5,9 @@
     python benchmarks/transfer.py models/score.pt --address league://grsim
 
 The worlds are presets of the simulator, ``noisy`` the default one with ER-Force's realistic noise and delays.
-With an address it is that world alone, in which a simulator has to run (docs/league.md). A model for Score
-attacks the play ``goalkeeper`` beside ``attack_expected``, one for Goalkeeper keeps goal against
+With an address it is that world alone, in which a simulator has to run (docs/league.md). A model for Score or
+Duel attacks beside ``attack_expected``, in the scenario ``score_on_goalkeeper``, ``score_on_defender``,
+``score_on_two_defenders`` or ``duel``, as it has learned; one for Goalkeeper keeps goal against
 ``attack_expected`` beside ``team_keeper``. Printed are the trials with a goal, with Wilson's 95 % interval,
 then what the model scores more or lets in more than the play in the same world, and than itself in the first,
 in points, paired by trial.
@@ -27,6 +28,8 @@ from robobt.worlds import SIM, world_from
 
 SEED = 3_000_017
 """Of the trials."""
+DEFENDED = {"team_view_0_2": "score_on_defender", "team_view_0_3": "score_on_two_defenders"}
+"""Scenarios for those that learned to score past defenders, by what they observe."""
 
 WORLDS: Mapping[str, object] = {
     "default": "default",
@@ -42,13 +45,13 @@ WORLDS: Mapping[str, object] = {
 def main(words: list[str] | None = None) -> None:
     """Print a line for each world and player."""
     parser = argparse.ArgumentParser(description="a policy in other worlds")
-    parser.add_argument("model", help="name or file of a model for Score or Goalkeeper")
+    parser.add_argument("model", help="name or file of a model for Score, Duel or Goalkeeper")
     parser.add_argument("--trials", type=int, default=200)
     parser.add_argument("--against", default="", help="another opponent: PLAY[:NAME=VALUE,...]")
     parser.add_argument("--only", action="append", choices=list(WORLDS), help="all by default")
     parser.add_argument("--address", default=SIM, help="a world elsewhere, as robobt match --world takes it")
     given = parser.parse_args(words)
-    base = load_scenario("score_on_goalkeeper")
+    base = load_scenario(scenario_of(given.model))
     players = variants(given.model, given.against)
     worlds: dict[str, Scenario] = {given.address: base}
     if given.address == SIM:
@@ -81,17 +84,27 @@ def variants(model: str, against: str = "") -> dict[str, tuple[str, str]]:
     ``against`` is who opposes both; empty for who does in the scenario.
 
     Raises:
-        ModelError: it is no model for Score or Goalkeeper.
+        ModelError: it is no model for Score, Duel or Goalkeeper.
     """
     skill = read_fitting_model(model, kind="policy").card.skill
     if skill == "Goalkeeper":
         keeper = f"team_keeper:policy={model}"
         return {"team_keeper": (against, "team_keeper"), "Goalkeeper": (against, keeper)}
-    read_fitting_model(model, skill="Score")
+    if skill != "Duel":
+        read_fitting_model(model, skill="Score")
     return {
         "attack_expected": ("attack_expected", against),
-        "Score": (f"attack_learned:policy={model}", against),
+        str(skill): (f"attack_learned:policy={model}", against),
     }
+
+
+def scenario_of(model: str) -> str:
+    """Return the scenario in which the model meets what it learned against, with plays as opponents."""
+    card = read_fitting_model(model, kind="policy").card
+    if card.skill == "Duel":
+        return "duel"
+    seen = card.observation.name if card.skill == "Score" and card.observation else ""
+    return DEFENDED.get(seen, "score_on_goalkeeper")
 
 
 def _points(one: Difference) -> str:

@@ -46,6 +46,20 @@ def test_a_model_for_goalkeeper_keeps_goal_beside_the_play(transfer: ModuleType,
         }
 
 
+@pytest.mark.parametrize(
+    ("model", "scenario"),
+    [
+        ("score_on_goalkeeper_ppo", "score_on_goalkeeper"),
+        ("score_on_defender_ppo", "score_on_defender"),
+        ("score_on_two_defenders_ppo", "score_on_two_defenders"),
+        ("duel_ppo", "duel"),
+        ("save_ppo", "score_on_goalkeeper"),
+    ],
+)
+def test_a_model_meets_what_it_has_learned_against(transfer: ModuleType, model: str, scenario: str) -> None:
+    assert transfer.scenario_of(model) == scenario
+
+
 def test_another_model_is_an_error(transfer: ModuleType, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="is a model for GoToBall, not for Score"):
         transfer.variants(str(write_model(tmp_path, network(), go_to_ball_card())))
