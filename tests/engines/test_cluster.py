@@ -92,6 +92,19 @@ def test_tasks_are_asked_for_only_while_there_is_room(engine: RayEngine) -> None
     results.close()
 
 
+def test_seeds_are_trained_on_a_cluster_as_in_this_process(engine: RayEngine, tmp_path: Path) -> None:
+    from robobt.learning.training.seeds import train_seeds
+    from robobt.learning.training.settings import load_settings
+    from tests.learning.training.test_several_robots import TINY
+
+    settings = load_settings("duel", "fast", TINY)
+    here = train_seeds(settings, [3, 4], tmp_path / "here")
+    with running_on(engine):
+        there = train_seeds(settings, [3, 4], tmp_path / "there", workers=2)
+    assert [run.figures["weights"] for run in there] == [run.figures["weights"] for run in here]
+    assert here[0].figures["weights"] != here[1].figures["weights"]
+
+
 def test_work_that_cannot_be_sent_is_told(engine: RayEngine) -> None:
     with pytest.raises(SquareError, match=r"square ofs cannot be sent"):
         list(engine.run(Work(lambda task, _: task, "square of", SquareError), [1], 2))
