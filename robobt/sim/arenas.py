@@ -1,17 +1,19 @@
-"""N independent fields, each a pymunk space of its own, stepped and read together."""
+"""N independent fields, stepped and read together."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
+from typing import Literal
 
 import numpy as np
 import pymunk
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.sim.bodies import fill, moment_of_inertia, walls_of
-from robobt.sim.chipmunk import BodyBuffer
+from robobt.sim.bodies import SLOP, fill, moment_of_inertia, walls_of
+from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
+from robobt.sim.contacts import Contacts
 from robobt.sim.kernels import control_tick
 from robobt.sim.reports import IntArray, report
 from robobt.sim.settings import SimSettings
@@ -19,6 +21,10 @@ from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
+from robobt.world.state import ROBOT_RADIUS
+
+Solver = Literal["compiled", "pymunk"]
+"""What moves the bodies and resolves contacts."""
 
 
 class Arenas:
@@ -33,6 +39,9 @@ class Arenas:
         settings: of the simulator.
         period: control period [s].
         n: number of arenas.
+        keep_history: whether to keep what is in ``history``.
+        solver: ``pymunk`` has a space for each arena, in which a match is played; ``compiled`` does the same
+            over arrays (:mod:`robobt.sim.contacts`), for arenas by the hundred.
 
     Attributes:
         robots: (n, R, 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
@@ -62,6 +71,7 @@ class Arenas:
         period: float,
         n: int = 1,
         keep_history: bool = False,
+        solver: Solver = "compiled",
     ) -> None:
         self.field = field
         self.settings = settings
@@ -71,12 +81,20 @@ class Arenas:
         count = len(limits)
         walls = walls_of(field)
         self._walls = np.array([box for box, _ in walls])
-        self._spaces = [pymunk.Space() for _ in range(n)]
-        for space in self._spaces:
-            # Chipmunk's default slop is made for pixels; ours is a tenth of a millimetre.
-            space.collision_slop = 1e-4
-        self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
-        self._buffer = BodyBuffer(self._spaces, count + 1)
+        self._contacts = Contacts(settings, count, walls, n)
+        self._spaces: list[pymunk.Space] = []
+        self._bodies: list[list[pymunk.Body]] = []
+        if solver == "pymunk":
+            self._spaces = [pymunk.Space() for _ in range(n)]
+            for space in self._spaces:
+                space.collision_slop = SLOP
+            self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
+        self._buffer = BodyBuffer(self._spaces, count + 1) if self._spaces else None
+        self._rows = np.zeros((n * (count + 1), ROW)) if self._buffer is None else self._buffer.rows
+        self._arena_rows = self._rows.reshape(n, -1, ROW)
+        # Somewhere of their own until placed, so that no two start inside each other.
+        self._arena_rows[:, :count, 1] = 3 * ROBOT_RADIUS * np.arange(1, count + 1)
+        self._calls = NO_CALLS if self._buffer is None else self._buffer.calls
         self.robots = np.zeros((n, count, 6))
         self.balls = np.zeros((n, 4))
         self.flight = np.zeros((n, FLIGHT))
@@ -114,14 +132,13 @@ class Arenas:
             balls: (m, 4) x, y, vx, vy; a moving ball rolls, or slides if the settings have it so.
             arenas: indices of the m arenas; all of them without.
         """
-        n = len(self._spaces)
-        which = np.arange(n) if arenas is None else np.atleast_1d(np.asarray(arenas))
+        which = np.arange(len(self.balls)) if arenas is None else np.atleast_1d(np.asarray(arenas))
         count = self.contact.shape[1]
         poses = np.asarray(robots, dtype=np.float64)
         poses = poses.reshape(len(which), count, poses.shape[-1])
         ball = np.asarray(balls, dtype=np.float64).reshape(len(which), 4)
-        rows = self._buffer.rows.reshape(n, self._buffer.stride, 6)
-        self._buffer.read()
+        rows = self._arena_rows
+        self._read()
         rows[which] = 0.0
         rows[which, :count, : poses.shape[-1]] = poses
         rows[which, count, :2] = ball[:, :2]
@@ -136,8 +153,8 @@ class Arenas:
         self.kicked[which] = False
         for commands in self._pipeline:
             commands[which] = 0.0
-        self._buffer.write()
-        self._refresh()
+        self._contacts.forget(which)
+        self._write()
 
     def place_ball(
         self,
@@ -164,8 +181,8 @@ class Arenas:
         """
         count = self.contact.shape[1]
         self._wheels[arena, :, HELD] = 0.0
-        self._buffer.read()
-        row = self._buffer.rows[arena * self._buffer.stride + count]
+        self._read()
+        row = self._arena_rows[arena, count]
         row[:] = 0.0
         row[:2] = x, y
         row[3:5] = vx, vy
@@ -173,8 +190,8 @@ class Arenas:
         self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
         self._twist[arena] = 0.0
         self.flight[arena] = z, vz, 0.0
-        self._buffer.write()
-        self._refresh()
+        self._contacts.forget(arena)
+        self._write()
 
     def place_robot(self, arena: int | IntArray, robot: int | IntArray, state: ArrayLike) -> None:
         """Put one robot of an arena somewhere; the ball and the others go on as they were.
@@ -184,18 +201,20 @@ class Arenas:
             robot: the robot's index in it; likewise.
             state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s]; likewise (m, 6).
         """
-        self._buffer.read()
-        self._buffer.rows[arena * self._buffer.stride + robot] = state
+        self._read()
+        self._arena_rows[arena, robot] = state
         self._cooldown[arena, robot] = 0.0
         self._wheels[arena, robot] = 0.0
-        self._buffer.write()
-        self._refresh()
+        self._contacts.forget(arena)
+        self._write()
 
     def weigh(self, arena: int, mass: float) -> None:
         """Give the robots of one arena another mass [kg]."""
-        for body in self._bodies[arena][:-1]:
-            body.mass = mass
-            body.moment = moment_of_inertia(mass)
+        self._contacts.weigh(arena, mass)
+        if self._bodies:
+            for body in self._bodies[arena][:-1]:
+                body.mass = mass
+                body.moment = moment_of_inertia(mass)
 
     def step(self, commands: FloatArray) -> None:
         """Let one control period pass under ``commands``.
@@ -213,13 +232,18 @@ class Arenas:
             oldest[..., :-1] = commands
             oldest[..., -1] = 0.0
         self._pipeline.append(oldest)
-        buffer = self._buffer
+        contacts = self._contacts
         control_tick(
-            buffer.calls,
-            buffer.handles,
-            buffer.bodies,
-            buffer.cursors,
-            buffer.rows,
+            *self._calls,
+            contacts.numbers,
+            contacts.walls,
+            contacts.edges,
+            contacts.parts,
+            contacts.inverse,
+            contacts.bias,
+            contacts.memory,
+            contacts.clock,
+            self._rows,
             self._walls,
             self.arena_parameters,
             self.robot_parameters,
@@ -244,14 +268,20 @@ class Arenas:
         )
 
     def step_bare(self) -> None:
-        """Step the spaces alone, by pymunk's own call: what benchmarks compare with."""
+        """Step pymunk's spaces alone, by its own call: what benchmarks compare with."""
         for space in self._spaces:
             for _ in range(self.sub_steps):
                 space.step(self.dt)
 
-    def _refresh(self) -> None:
+    def _read(self) -> None:
+        if self._buffer is not None:
+            self._buffer.read()
+
+    def _write(self) -> None:
+        if self._buffer is not None:
+            self._buffer.write()
         report(
-            self._buffer.rows,
+            self._rows,
             self.arena_parameters,
             self._velocity,
             self.flight,

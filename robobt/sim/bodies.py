@@ -1,15 +1,16 @@
-"""The bodies and walls of a field in its pymunk space."""
+"""The bodies and walls of a field: their outlines and materials, and how they come into a pymunk space."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import acos, cos, pi, sin
+from typing import NamedTuple
 
 import pymunk
 
 from robobt.sim.columns import SOFT
 from robobt.sim.robot_settings import BodySettings
-from robobt.sim.settings import SimSettings
+from robobt.sim.settings import ContactSettings, SimSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -18,6 +19,9 @@ _WALL = 0.02
 
 BEYOND = 0.5
 """Thickness of the walls around the field [m]."""
+
+SLOP = 1e-4
+"""Overlap that is left as it is [m]; Chipmunk's default is made for pixels."""
 
 _HULL_CORNERS = 24
 _PLATE = 0.006
@@ -30,6 +34,18 @@ _RECESS = 0.025
 _DISC, _HULL, _BALL, _STATIC = 1, 2, 4, 8
 
 Box = tuple[float, float, float, float]
+
+
+class Outline(NamedTuple):
+    """A convex part of a robot's hull, which meets the ball.
+
+    ``corners`` in the robot's frame, counter-clockwise, one for a disc [m]; ``rounding`` their radius [m];
+    ``material`` restitution and friction.
+    """
+
+    corners: list[tuple[float, float]]
+    rounding: float
+    material: tuple[float, float]
 
 
 def walls_of(field: FieldGeometry) -> list[tuple[Box, str]]:
@@ -61,14 +77,7 @@ def fill(
     walls: Sequence[tuple[Box, str]],
 ) -> list[pymunk.Body]:
     """Add the walls, robots and the ball; return the bodies, the ball last."""
-    contact, body = settings.contact, settings.body
-    material = {
-        "wall": (contact.wall_restitution, contact.wall_friction),
-        "goal": (contact.goal_restitution, contact.goal_friction),
-        "goal_back": (contact.goal_back_restitution, contact.goal_friction),
-    }
-    hull = _hull(body.face - (_PLATE if body.jaws is None else _RECESS))
-    plate = _plate(body.face, body.mouth_width / 2 if body.jaws is not None else None)
+    body, material = settings.body, material_of(settings.contact)
     bodies = []
     for (x0, y0, x1, y1), kind in walls:
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -79,22 +88,18 @@ def fill(
         robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
         # Somewhere of their own until placed, so that no two start inside each other.
         robot.position = (0.0, 3 * ROBOT_RADIUS * (i + 1))
-        hull_parts: list[pymunk.Shape]
-        if settings.shell is None:
-            hull_parts = [pymunk.Poly(robot, hull), *_jaws(robot, body)]
-            for part in hull_parts:
-                _finish(part, contact.hull_restitution, contact.hull_friction, _HULL, _BALL)
-            hull_parts.append(pymunk.Poly(robot, plate))
-            _finish(hull_parts[-1], contact.front_restitution, contact.front_friction, _HULL, _BALL)
-        else:
-            # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
-            hull_parts = [pymunk.Circle(robot, settings.shell.core - SOFT)]
-            _finish(hull_parts[0], 0.0, contact.hull_friction, _HULL, _BALL)
-        # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
-        share = contact.robot_restitution**0.5, contact.robot_friction**0.5
+        shapes: list[pymunk.Shape] = []
+        for part in outlines(settings):
+            if len(part.corners) == 1:
+                shapes.append(pymunk.Circle(robot, part.rounding))
+            else:
+                shapes.append(pymunk.Poly(robot, part.corners, radius=part.rounding))
+            _finish(shapes[-1], *part.material, _HULL, _BALL)
         disc = pymunk.Circle(robot, ROBOT_RADIUS)
-        _finish(disc, *share, _DISC, _DISC | _STATIC)
-        space.add(robot, disc, *hull_parts)
+        bounce, rub = disc_material(settings.contact)
+        # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
+        _finish(disc, bounce**0.5, rub**0.5, _DISC, _DISC | _STATIC)
+        space.add(robot, disc, *shapes)
         bodies.append(robot)
     # Spin about the vertical axis matters to nobody: the ball cannot turn.
     ball = pymunk.Body(settings.ball.mass, float("inf"))
@@ -104,6 +109,36 @@ def fill(
     space.add(ball, round_)
     bodies.append(ball)
     return bodies
+
+
+def material_of(contact: ContactSettings) -> dict[str, tuple[float, float]]:
+    """Return restitution and friction of each kind of wall."""
+    return {
+        "wall": (contact.wall_restitution, contact.wall_friction),
+        "goal": (contact.goal_restitution, contact.goal_friction),
+        "goal_back": (contact.goal_back_restitution, contact.goal_friction),
+    }
+
+
+def disc_material(contact: ContactSettings) -> tuple[float, float]:
+    """Return restitution and friction of two robots."""
+    return contact.robot_restitution, contact.robot_friction
+
+
+def outlines(settings: SimSettings) -> list[Outline]:
+    """Return the parts of a robot's hull."""
+    contact, body = settings.contact, settings.body
+    material = contact.hull_restitution, contact.hull_friction
+    if settings.shell is not None:
+        # Plate and wheels push the ball in the kernels; this only keeps it from being squeezed in.
+        return [Outline([(0.0, 0.0)], settings.shell.core - SOFT, (0.0, contact.hull_friction))]
+    hull = _hull(body.face - (_PLATE if body.jaws is None else _RECESS))
+    plate = _plate(body.face, body.mouth_width / 2 if body.jaws is not None else None)
+    return [
+        Outline(hull, 0.0, material),
+        *_jaws(body, material),
+        Outline(plate, 0.0, (contact.front_restitution, contact.front_friction)),
+    ]
 
 
 def moment_of_inertia(mass: float) -> float:
@@ -137,7 +172,7 @@ def _plate(face: float, half: float | None) -> list[tuple[float, float]]:
     return [(face - 2 * _PLATE, -half), (face, -half), (face, half), (face - 2 * _PLATE, half)]
 
 
-def _jaws(robot: pymunk.Body, body: BodySettings) -> list[pymunk.Shape]:
+def _jaws(body: BodySettings, material: tuple[float, float]) -> list[Outline]:
     """Return what stands beside a mouth that lies back, with rounded corners: one part a side, or none."""
     if body.jaws is None:
         return []
@@ -147,4 +182,5 @@ def _jaws(robot: pymunk.Body, body: BodySettings) -> list[pymunk.Shape]:
     first, last = acos(front / radius), acos(back / radius)
     angles = [first + (last - first) * i / 5 for i in range(6)]
     outline = [(back, inner), (front, inner), *[(radius * cos(a), radius * sin(a)) for a in angles]]
-    return [pymunk.Poly(robot, [(x, side * y) for x, y in outline], radius=rounding) for side in (1, -1)]
+    mirrored = [(x, -y) for x, y in reversed(outline)]
+    return [Outline(corners, rounding, material) for corners in (outline, mirrored)]

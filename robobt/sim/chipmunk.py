@@ -136,6 +136,18 @@ def store_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
         store(bodies[i] + np.uint64(_SPIN), rows[i, 5])
 
 
+Calls = tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64], NDArray[np.int32]]
+"""What compiled code needs to call pymunk; see :class:`BodyBuffer`."""
+
+NO_CALLS: Calls = (
+    np.zeros(0, dtype=np.uint64),
+    np.zeros((0, 2), dtype=np.uint64),
+    np.zeros((0, 0), dtype=np.uint64),
+    np.zeros((0, 1), dtype=np.int32),
+)
+"""The same where there is no space to step."""
+
+
 class BodyBuffer:
     """The bodies of equal spaces as rows of one numpy array, shared with the C library.
 
@@ -147,11 +159,10 @@ class BodyBuffer:
         rows: (spaces * stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
             the order in which they were added, then spare rows [m, rad, m/s, rad/s].
         stride: rows of a space.
-        calls: addresses for compiled code: step, each-body and the writing callback.
-        bodies: (spaces, bodies) addresses of the bodies.
-        handles: (spaces, 2) addresses of each space and its batch descriptor.
-        cursors: (spaces, k); where in its rows a space's next batched call starts is the first number of
-            a row, to be set to 0 before each.
+        calls: what compiled code needs to call pymunk: the addresses of step, each-body and the writing
+            callback; (spaces, 2) of each space and its batch descriptor; (spaces, bodies) of the bodies;
+            and (spaces, k) cursors: where in its rows a space's next batched call starts is the first
+            number of a row, to be set to 0 before each.
     """
 
     def __init__(self, spaces: Sequence[pymunk.Space], bodies: int) -> None:
@@ -175,8 +186,8 @@ class BodyBuffer:
             batch.floatArray = self._floats + k
             batch.intArray = self._ints
         every = np.frombuffer(ffi.buffer(self._floats), dtype=np.int32)
-        self.cursors: NDArray[np.int32] = every.reshape(count, -1)
-        self.calls: NDArray[np.uint64] = np.array(
+        self._cursors: NDArray[np.int32] = every.reshape(count, -1)
+        functions: NDArray[np.uint64] = np.array(
             [
                 _address(ffi.addressof(lib, "cpSpaceStep")),
                 _address(ffi.addressof(lib, "cpSpaceEachBody")),
@@ -184,13 +195,14 @@ class BodyBuffer:
             ],
             dtype=np.uint64,
         )
-        self.bodies: NDArray[np.uint64] = np.array(
+        places: NDArray[np.uint64] = np.array(
             [[_address(body._body) for body in space.bodies] for space in spaces], dtype=np.uint64
         )
-        self.handles: NDArray[np.uint64] = np.array(
+        handles: NDArray[np.uint64] = np.array(
             [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)],
             dtype=np.uint64,
         )
+        self.calls: Calls = functions, handles, places, self._cursors
         self._check_order()
         _check_places()
 
@@ -203,7 +215,7 @@ class BodyBuffer:
         self._each(ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched"))
 
     def _each(self, callback: object) -> None:
-        self.cursors[:, 0] = 0
+        self._cursors[:, 0] = 0
         for k, space in enumerate(self._spaces):
             lib.cpSpaceEachBody(space._space, callback, self._batches + k)
 
@@ -211,7 +223,7 @@ class BodyBuffer:
         self.read()
         rows = self.rows.reshape(len(self._spaces), self.stride, ROW)
         for k, space in enumerate(self._spaces):
-            found = self.cursors[k, 0] // ROW
+            found = self._cursors[k, 0] // ROW
             expected = [tuple(body.position) for body in space.bodies]
             if found != self._bodies + 1 or [tuple(row[:2]) for row in rows[k, : self._bodies]] != expected:
                 raise RuntimeError(

@@ -1,6 +1,7 @@
 """One control tick of the league's physics, over arrays and any number of arenas.
 
-pymunk moves the bodies and resolves contacts; what it does not know is written once,
+What moves the bodies and resolves contacts is pymunk, or in many arenas what does the same over arrays
+(:mod:`robobt.sim.contacts`); what neither knows is written once,
 compiled: how robots and ball move (:mod:`robobt.sim.motion`), a ball in the air
 (:mod:`robobt.sim.flight`), dribbler and kicker (:mod:`robobt.sim.mouth`), and contacts
 within a step (:mod:`robobt.sim.sweep`).
@@ -34,6 +35,7 @@ from robobt.sim.columns import (
     SENSOR,
     Z,
 )
+from robobt.sim.contacts import collide, scratch
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
 from robobt.sim.motion import drive, friction
@@ -63,6 +65,14 @@ def control_tick(
     handles: NDArray[np.uint64],
     bodies: NDArray[np.uint64],
     cursors: NDArray[np.int32],
+    solver: FloatArray,
+    materials: FloatArray,
+    edges: FloatArray,
+    parts: FloatArray,
+    inverse: FloatArray,
+    bias: FloatArray,
+    memory: FloatArray,
+    clock: IntArray,
     rows: FloatArray,
     walls: FloatArray,
     arena_parameters: FloatArray,
@@ -90,10 +100,18 @@ def control_tick(
 
     Args:
         calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`.
-        handles: of the same.
+        handles: of the same, none if no pymunk is to be called.
         bodies: of the same.
         cursors: of the same.
-        rows: of the same.
+        solver: numbers of the :class:`~robobt.sim.contacts.Contacts`, which take pymunk's place then.
+        materials: walls of the same.
+        edges: of the same.
+        parts: of the same.
+        inverse: of the same.
+        bias: of the same.
+        memory: of the same.
+        clock: of the same.
+        rows: of robots and balls, an arena's one after the other.
         walls: (W, 4) boxes x0, y0, x1, y1 relative to an arena's centre [m].
         arena_parameters: (N, ARENA_PARAMETERS).
         robot_parameters: (N, R, ROBOT_PARAMETERS).
@@ -129,6 +147,8 @@ def control_tick(
     target = np.zeros(2)
     # Where a ball is that passes over everything, for the time of a step.
     aloft = np.zeros(2)
+    by_pymunk = handles.shape[0] > 0
+    meetings, who, speeds = scratch(memory.shape[1], robots)
     kicked[:] = False
     for a in range(arenas):
         first = a * stride
@@ -253,9 +273,28 @@ def control_tick(
                     ball[1] -= y * dt * back
             ball[3] = target[0] = move[0]
             ball[4] = target[1] = move[1]
-            store_bodies(bodies[a], rows[first : first + width])
-            call_step(calls[0], handles[a, 0], dt)
-            load_bodies(bodies[a], rows[first : first + width])
+            if by_pymunk:
+                store_bodies(bodies[a], rows[first : first + width])
+                call_step(calls[0], handles[a, 0], dt)
+                load_bodies(bodies[a], rows[first : first + width])
+            else:
+                clock[a] += 1
+                collide(
+                    rows[first : first + width],
+                    walls,
+                    solver,
+                    materials,
+                    edges,
+                    parts,
+                    inverse[a],
+                    bias[a],
+                    memory[a],
+                    clock[a],
+                    meetings,
+                    who,
+                    speeds,
+                    dt,
+                )
             if high:
                 ball[0], ball[1] = aloft[0], aloft[1]
                 ball[3], ball[4] = velocity[0], velocity[1]
@@ -273,7 +312,7 @@ def control_tick(
                 history[step, a, robots, 4] = velocity[1]
                 history[step, a, robots, 2] = air[Z]
                 history[step, a, robots, 5] = air[RISE]
-        if high:
+        if high and by_pymunk:
             # Its body is still elsewhere.
             cursors[a, 0] = 0
             call_each_body(calls[1], handles[a, 0], calls[2], handles[a, 1])

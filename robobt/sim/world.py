@@ -189,7 +189,9 @@ class SimWorld(World):
         self._taken.add(robot)
 
     def _make_arenas(self) -> Arenas:
-        return Arenas(self.field, self._limits, self.settings, self.period, keep_history=self._delayed)
+        return Arenas(
+            self.field, self._limits, self.settings, self.period, keep_history=self._delayed, solver="pymunk"
+        )
 
     def _rows(self) -> FloatArray:
         """Return robots (x, y, heading, vx, vy, omega) and, last, the ball (x, y, z, vx, vy, vz)."""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from robobt.sim import Arenas, preset
+from robobt.sim.arenas import Solver
 from robobt.world import DIVISION_B
 
 
@@ -29,15 +30,16 @@ def commands(n: int, rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.integration
+@pytest.mark.parametrize("solver", ["compiled", "pymunk"])
 @pytest.mark.parametrize("name", ["default", "grsim"])
-def test_each_of_many_arenas_moves_as_it_would_alone_bit_for_bit(name: str) -> None:
+def test_each_of_many_arenas_moves_as_it_would_alone_bit_for_bit(name: str, solver: Solver) -> None:
     rng = np.random.default_rng(5)
     n, steps = 9, 80
     robots, balls = placed(n, rng)
     orders = [commands(n, rng) for _ in range(steps)]
-    many = Arenas(DIVISION_B, [None] * 4, preset(name), 0.025, n)
+    many = Arenas(DIVISION_B, [None] * 4, preset(name), 0.025, n, solver=solver)
     many.place(robots, balls)
-    alone = [Arenas(DIVISION_B, [None] * 4, preset(name), 0.025) for _ in range(n)]
+    alone = [Arenas(DIVISION_B, [None] * 4, preset(name), 0.025, solver=solver) for _ in range(n)]
     for i, arena in enumerate(alone):
         arena.place(robots[i], balls[i])
     for order in orders:
@@ -97,4 +99,4 @@ def test_the_parameters_of_one_arena_can_differ() -> None:
 def test_a_pymunk_that_keeps_bodies_otherwise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("robobt.sim.chipmunk._PLACES", (64, 72, 112, 88, 80, 120))
     with pytest.raises(RuntimeError, match="its structures have changed"):
-        Arenas(DIVISION_B, [None] * 4, preset("default"), 0.025)
+        Arenas(DIVISION_B, [None] * 4, preset("default"), 0.025, solver="pymunk")

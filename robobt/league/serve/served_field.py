@@ -80,7 +80,7 @@ class ServedField:
         self._ticks = 0
         self.kicked: list[RobotId] = []
         self.chipped: list[RobotId] = []
-        self._arenas = Arenas(field, self._limits, self.settings, self.period)
+        self._arenas = Arenas(field, self._limits, self.settings, self.period, solver="pymunk")
         self._start(placement)
 
     @property
