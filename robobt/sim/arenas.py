@@ -14,7 +14,7 @@ from robobt.sim.bodies import SLOP, fill, moment_of_inertia, walls_of
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.contacts import Contacts
-from robobt.sim.kernels import control_tick
+from robobt.sim.kernels import control_tick, scratch
 from robobt.sim.reports import IntArray, report
 from robobt.sim.settings import SimSettings
 from robobt.sim.wheels import HELD, WHEEL_STATE
@@ -111,6 +111,7 @@ class Arenas:
         )
         self.wheel_parameters = np.tile(wheel_row(settings.wheels), (n, 1))
         self._wheels = np.zeros((n, count, WHEEL_STATE))
+        self._scratch = scratch(count, self._contacts.memory.shape[1])
         self._velocity = np.zeros((n, 2))
         self._spin = np.zeros((n, 2))
         self._twist = np.zeros((n, 1))
@@ -234,6 +235,7 @@ class Arenas:
         self._pipeline.append(oldest)
         contacts = self._contacts
         control_tick(
+            *self._scratch,
             *self._calls,
             contacts.numbers,
             contacts.walls,

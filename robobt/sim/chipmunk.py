@@ -25,7 +25,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 ROW = 6
@@ -108,7 +108,7 @@ call_step = cast(Callable[..., None], _call_step)
 call_each_body = cast(Callable[..., None], _call_each_body)
 
 
-@compiled
+@compiled_lean
 def load_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
     """Fill ``rows`` (k, 6) from the bodies at the addresses ``bodies`` (k,), after a step."""
     for i in range(bodies.shape[0]):
@@ -121,7 +121,7 @@ def load_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
         rows[i, 5] = load(bodies[i] + np.uint64(_SPIN))
 
 
-@compiled
+@compiled_lean
 def store_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
     """Set the bodies at the addresses ``bodies`` (k,) from ``rows`` (k, 6), right before a step.
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from robobt.sim.bodies import SLOP, Box, disc_material, material_of, moment_of_inertia, outlines
 from robobt.sim.settings import SimSettings
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -30,7 +30,7 @@ _SETTLED = 1e-12
 """After a pass over the contacts that changed no impulse by more than this there is no other [N s]."""
 
 # Columns of the numbers of the solver, and of what all robots are as discs.
-_ITERATIONS, _BIAS, _SLOP, _PERSISTENCE, _BOUNCE, _RUB, _CLEAR_X, _CLEAR_Y, _REACH = range(9)
+_ITERATIONS, _BIAS, _SLOP, _PERSISTENCE, _BOUNCE, _RUB, CLEAR_X, CLEAR_Y, _REACH = range(9)
 
 # Columns of a part of a hull: its edges, the radius of its rounded corners, restitution and friction.
 _FIRST, _LAST, _ROUNDING, _PART_BOUNCE, _PART_RUB = range(5)
@@ -46,7 +46,7 @@ _ALONG, _ACROSS, _WHEN = range(3)
 # last step.
 # Where a contact is found, its gap and restitution stand where those velocities will.
 _NX, _NY, _R1X, _R1Y, _R2X, _R2Y, _NM, _TM, _PUSH, _BACK, _MU, _JN, _JT, _JB, _WARM = range(15)
-_CONTACT = 15
+CONTACT = 15
 
 _LONG_AGO = -1e9
 
@@ -114,13 +114,7 @@ class Contacts:
         self.inverse[arena, :_BALL] = 1.0 / mass, 1.0 / moment_of_inertia(mass)
 
 
-@compiled
-def scratch(pairs: int, robots: int) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
-    """Return what :func:`collide` works with: contacts, their bodies and pairs, and velocities."""
-    return np.empty((pairs, _CONTACT)), np.empty((pairs, 3), dtype=np.int64), np.zeros((robots + 2, 8))
-
-
-@compiled
+@compiled_lean
 def collide(
     rows: FloatArray,
     boxes: FloatArray,
@@ -150,9 +144,9 @@ def collide(
         bias: (R + 1, 3), changed.
         memory: (pairs, 3), changed.
         clock: which step of the arena's it is.
-        contacts: of :func:`scratch`.
-        who: likewise.
-        speeds: likewise.
+        contacts: (pairs, CONTACT) scratch.
+        who: (pairs, 3) scratch.
+        speeds: (R + 2, 8) scratch.
         dt: time step [s].
     """
     robots = len(rows) - 1
@@ -174,7 +168,7 @@ def collide(
             seen[_WHEN] = clock
 
 
-@compiled
+@compiled_lean
 def _find(
     rows: FloatArray,
     boxes: FloatArray,
@@ -193,7 +187,7 @@ def _find(
     for i in range(robots + 1):
         x, y = rows[i, 0], rows[i, 1]
         radius = BALL_RADIUS if i == robots else ROBOT_RADIUS
-        if abs(x) + radius < numbers[_CLEAR_X] and abs(y) + radius < numbers[_CLEAR_Y]:
+        if abs(x) + radius < numbers[CLEAR_X] and abs(y) + radius < numbers[CLEAR_Y]:
             continue
         bounce = 1.0 if i == robots else sqrt(numbers[_BOUNCE])
         rub = 1.0 if i == robots else sqrt(numbers[_RUB])
@@ -246,7 +240,7 @@ def _find(
     return count
 
 
-@compiled
+@compiled_lean
 def _to_box(x: float, y: float, box: FloatArray) -> tuple[float, float, float]:
     """Return the direction from a point to the nearest one of a box, and how far it is.
 
@@ -267,7 +261,7 @@ def _to_box(x: float, y: float, box: FloatArray) -> tuple[float, float, float]:
     return 0.0, -1.0, most
 
 
-@compiled
+@compiled_lean
 def _to_outline(x: float, y: float, edges: FloatArray, first: int, last: int) -> tuple[float, float, float]:
     """Return the same for a convex outline, which may have no more than one corner."""
     inside = last > first + 1
@@ -293,7 +287,7 @@ def _to_outline(x: float, y: float, edges: FloatArray, first: int, last: int) ->
     return bx / away, by / away, away
 
 
-@compiled
+@compiled_lean
 def _prepare(
     rows: FloatArray,
     numbers: FloatArray,
@@ -338,7 +332,7 @@ def _prepare(
             _push(speeds[who[j, 0]], speeds[who[j, 1]], row, row[_JN], row[_JT])
 
 
-@compiled
+@compiled_lean
 def _push(a: FloatArray, b: FloatArray, row: FloatArray, along: float, across: float) -> None:
     """Apply an impulse to both bodies of a contact."""
     jx, jy = row[_NX] * along - row[_NY] * across, row[_NY] * along + row[_NX] * across
@@ -350,7 +344,7 @@ def _push(a: FloatArray, b: FloatArray, row: FloatArray, along: float, across: f
     b[2] += b[7] * (row[_R2X] * jy - row[_R2Y] * jx)
 
 
-@compiled
+@compiled_lean
 def _solve(
     numbers: FloatArray, contacts: FloatArray, who: NDArray[np.int64], speeds: FloatArray, count: int
 ) -> None:

@@ -17,7 +17,7 @@ from math import sqrt
 from robobt.sim.columns import BALL_R, BOUNCE_WALL, HOP_FIRST, HOP_OTHER, HOP_UP, HOPS, RISE, ROBOT_R, Z
 from robobt.sim.sweep import in_a_wall
 from robobt.world.ball_model import GRAVITY
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import ROBOT_HEIGHT
 
@@ -28,7 +28,7 @@ _STADIUM = 4
 """How many of an arena's walls surround the field; the others are the goals'."""
 
 
-@compiled
+@compiled_lean
 def _above_something(
     rows: FloatArray, first: int, robots: int, x: float, y: float, walls: FloatArray, p: FloatArray
 ) -> bool:
@@ -42,7 +42,7 @@ def _above_something(
     return in_a_wall(x, y, walls[_STADIUM:], p[BALL_R])
 
 
-@compiled
+@compiled_lean
 def fly(
     air: FloatArray,
     velocity: FloatArray,
@@ -104,7 +104,7 @@ def fly(
     return floor > 0.0
 
 
-@compiled
+@compiled_lean
 def pass_over(
     ball: FloatArray,
     velocity: FloatArray,

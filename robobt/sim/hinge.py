@@ -10,7 +10,7 @@ from math import cos, sin
 
 from robobt.sim.columns import INERTIA, MASS
 from robobt.sim.wheels import AHEAD, ASIDE, HELD
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 _SWEEPS = 4
@@ -20,7 +20,7 @@ _SOFTNESS = 0.2
 """Share of a gap between two hinges that is closed in a step, as ODE does by default."""
 
 
-@compiled
+@compiled_lean
 def take_hold(ball: FloatArray, robot: FloatArray, state: FloatArray) -> None:
     """Hinge the ball to a robot where it lies."""
     c, s = cos(robot[2]), sin(robot[2])
@@ -28,7 +28,7 @@ def take_hold(ball: FloatArray, robot: FloatArray, state: FloatArray) -> None:
     state[HELD], state[AHEAD], state[ASIDE] = 1.0, c * px + s * py, c * py - s * px
 
 
-@compiled
+@compiled_lean
 def tie(rows: FloatArray, first: int, carrier: int, wheels: FloatArray, w: FloatArray, dt: float) -> None:
     """Let no robot that holds the ball leave the one that carries it.
 
@@ -68,7 +68,7 @@ def tie(rows: FloatArray, first: int, carrier: int, wheels: FloatArray, w: Float
             other[5] += (bx * jy - by * jx) * inertia
 
 
-@compiled
+@compiled_lean
 def _arm(robot: FloatArray, state: FloatArray) -> tuple[float, float]:
     """Return from the robot's centre to its hinge [m]."""
     c, s = cos(robot[2]), sin(robot[2])

@@ -35,7 +35,7 @@ from robobt.sim.columns import (
     SENSOR,
     Z,
 )
-from robobt.sim.contacts import collide, scratch
+from robobt.sim.contacts import CLEAR_X, CLEAR_Y, CONTACT, collide
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
 from robobt.sim.motion import drive, friction
@@ -45,7 +45,7 @@ from robobt.sim.roller import CONTACTS, SCRATCH, roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import HELD, drive_wheels
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT
 
@@ -59,8 +59,29 @@ _ELSEWHERE = 1e4
 """Coordinate of the place, clear of the arena, where its space has the balls that fly high [m]."""
 
 
-@compiled
+Scratch = tuple[FloatArray, FloatArray, FloatArray, FloatArray, NDArray[np.int64], FloatArray]
+
+
+def scratch(robots: int, pairs: int) -> Scratch:
+    """Return what :func:`control_tick` works with, for arenas of so many robots and pairs that may touch."""
+    return (
+        np.zeros((6, 3)),
+        np.zeros(robots),
+        np.zeros((robots, CONTACTS, SCRATCH)),
+        np.zeros((pairs, CONTACT)),
+        np.zeros((pairs, 3), dtype=np.int64),
+        np.zeros((robots + 2, 8)),
+    )
+
+
+@compiled_lean
 def control_tick(
+    small: FloatArray,
+    driven: FloatArray,
+    contacts: FloatArray,
+    meetings: FloatArray,
+    who: NDArray[np.int64],
+    speeds: FloatArray,
     calls: NDArray[np.uint64],
     handles: NDArray[np.uint64],
     bodies: NDArray[np.uint64],
@@ -99,6 +120,12 @@ def control_tick(
     """Advance every arena by one control period of ``sub_steps`` physics steps.
 
     Args:
+        small: of :func:`scratch`.
+        driven: likewise.
+        contacts: likewise.
+        meetings: likewise.
+        who: likewise.
+        speeds: likewise.
         calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`.
         handles: of the same, none if no pymunk is to be called.
         bodies: of the same.
@@ -138,17 +165,9 @@ def control_tick(
     """
     arenas, robots = contact.shape
     width, stride = robots + 1, len(rows) // arenas
-    move = np.zeros(2)
-    pull = np.zeros(2)
-    met = np.zeros(2)
-    hit = np.zeros(3)
-    driven = np.zeros(robots)
-    contacts = np.zeros((robots, CONTACTS, SCRATCH))
-    target = np.zeros(2)
-    # Where a ball is that passes over everything, for the time of a step.
-    aloft = np.zeros(2)
+    # ``aloft`` is where a ball is that passes over everything, for the time of a step.
+    move, pull, met, hit, target, aloft = small[0], small[1], small[2], small[3], small[4], small[5]
     by_pymunk = handles.shape[0] > 0
-    meetings, who, speeds = scratch(memory.shape[1], robots)
     kicked[:] = False
     for a in range(arenas):
         first = a * stride
@@ -264,7 +283,7 @@ def control_tick(
                 ball[0], ball[1] = _ELSEWHERE, _ELSEWHERE
                 move[0] = move[1] = 0.0
             elif glued < 0 and hypot(move[0], move[1]) * dt > 0.05 * p[BALL_R]:
-                share = sweep(rows, first, robots, walls, move, p, dt, met)
+                share = sweep(rows, first, robots, walls, move, p, dt, met, solver[CLEAR_X], solver[CLEAR_Y])
                 if share < 1.0:
                     # From then on it goes with what it met, which may move away from it.
                     x, y = move[0] - met[0], move[1] - met[1]

@@ -26,11 +26,11 @@ from robobt.sim.columns import (
     VX,
     VY,
 )
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 
-@compiled
+@compiled_lean
 def drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> None:
     """Move a robot's velocity towards its command within its limits."""
     c, s = cos(row[2]), sin(row[2])
@@ -61,7 +61,7 @@ def drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> Non
     row[5] += min(max(turn, -most), most)
 
 
-@compiled
+@compiled_lean
 def friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
     """Let a free ball slide and roll for ``dt``; ``move`` receives its mean velocity."""
     start_x, start_y = velocity[0], velocity[1]

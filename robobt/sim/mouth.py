@@ -21,7 +21,7 @@ from robobt.sim.columns import (
     SENSOR,
     SIDE,
 )
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 _CLEAR = 2e-4
@@ -31,7 +31,7 @@ _GLUE_GAP = 2e-4
 """Gap at which a glued ball is carried, so that no contact brakes the robot [m]."""
 
 
-@compiled
+@compiled_lean
 def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -> bool:
     """Return whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
     px, py = ball[0] - robot[0], ball[1] - robot[1]
@@ -44,7 +44,7 @@ def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -
     return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
 
 
-@compiled
+@compiled_lean
 def let_in(ball: FloatArray, velocity: FloatArray, robot: FloatArray, p: FloatArray, dt: float) -> None:
     """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
 
@@ -64,7 +64,7 @@ def let_in(ball: FloatArray, velocity: FloatArray, robot: FloatArray, p: FloatAr
         ball[1] += vy * time
 
 
-@compiled
+@compiled_lean
 def keeps(ball: FloatArray, robot: FloatArray, p: FloatArray, held: bool) -> bool:
     """Return whether grSim's dribbler holds the ball from now on, as it decides once a frame.
 
@@ -77,7 +77,7 @@ def keeps(ball: FloatArray, robot: FloatArray, p: FloatArray, held: bool) -> boo
     return held or ahead >= p[FACE] + p[BALL_R] + _CLEAR
 
 
-@compiled
+@compiled_lean
 def hold(
     ball: FloatArray,
     velocity: FloatArray,
@@ -111,7 +111,7 @@ def hold(
     pull[1] += s * want_along + c * want_across
 
 
-@compiled
+@compiled_lean
 def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
     """Compute the velocity that keeps the ball where it sits in the mouth while the robot moves."""
     c, s = cos(robot[2]), sin(robot[2])
@@ -128,7 +128,7 @@ def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: F
     move[1] = (y - ball[1]) / dt
 
 
-@compiled
+@compiled_lean
 def kick(
     velocity: FloatArray,
     spin: FloatArray,

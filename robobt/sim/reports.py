@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from robobt.sim.columns import BALL_R, JAW, ROBOT_R, SENSOR, Z
 from robobt.sim.mouth import in_mouth
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RECEIVED_HEIGHT
 
@@ -20,7 +20,7 @@ _TOUCH = 2e-3
 """Gap between ball and robot that still counts as a touch [m]."""
 
 
-@compiled
+@compiled_lean
 def note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: IntArray, a: int) -> None:
     """Remember who touches the ball; of several, one that did not touch it before."""
     ball = rows[first + robots]
@@ -39,7 +39,7 @@ def note_touch(rows: FloatArray, first: int, robots: int, p: FloatArray, touch: 
         touch[a] = found
 
 
-@compiled
+@compiled_lean
 def _report(row: FloatArray, out: FloatArray) -> None:
     """Copy a robot's row, heading in (-pi, pi]."""
     out[0] = row[0]
@@ -51,7 +51,7 @@ def _report(row: FloatArray, out: FloatArray) -> None:
     out[5] = row[5]
 
 
-@compiled
+@compiled_lean
 def report(
     rows: FloatArray,
     arena_parameters: FloatArray,

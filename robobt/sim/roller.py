@@ -35,7 +35,7 @@ from robobt.sim.columns import (
     STOP_SPEED,
 )
 from robobt.world.ball_model import GRAVITY
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 # Columns of a contact, kept for the length of a step: whether there is one, its normal towards the ball, the
@@ -61,7 +61,7 @@ _IDLE = -1.0
 """Marks a surface that moves up and down with the ball."""
 
 
-@compiled
+@compiled_lean
 def _meet(
     ball: FloatArray,
     velocity: FloatArray,
@@ -89,7 +89,7 @@ def _meet(
     return float(max(gap, 0.0) / -apart)
 
 
-@compiled
+@compiled_lean
 def _arrives(
     ball: FloatArray,
     velocity: FloatArray,
@@ -150,7 +150,7 @@ def _arrives(
     return bounce
 
 
-@compiled
+@compiled_lean
 def _press(velocity: FloatArray, spin: FloatArray, twist: FloatArray, row: FloatArray, radius: float) -> None:
     """Improve the impulses of one contact and apply what changed."""
     nx, ny = row[_NX], row[_NY]
@@ -174,7 +174,7 @@ def _press(velocity: FloatArray, spin: FloatArray, twist: FloatArray, row: Float
     spin[1] += _TURN * up * ny
 
 
-@compiled
+@compiled_lean
 def roll(
     ball: FloatArray,
     velocity: FloatArray,

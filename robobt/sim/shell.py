@@ -31,7 +31,7 @@ from robobt.sim.columns import (
     WHEEL_COS,
     WHEEL_SIN,
 )
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 _DEEP = 0.03
@@ -44,7 +44,7 @@ _BALL_INERTIA = 0.4
 """Moment of inertia of a solid ball over its mass and radius squared."""
 
 
-@compiled
+@compiled_lean
 def _out_of_box(
     x: float, y: float, low: float, high: float, half: float, radius: float, hit: FloatArray
 ) -> None:
@@ -65,7 +65,7 @@ def _out_of_box(
         hit[0], hit[1] = 1.0, 0.0
 
 
-@compiled
+@compiled_lean
 def meet(
     ball: FloatArray,
     velocity: FloatArray,
@@ -147,7 +147,7 @@ def meet(
         spin[1] -= loss * ny
 
 
-@compiled
+@compiled_lean
 def drag(
     ball: FloatArray,
     velocity: FloatArray,

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin, sqrt
+from math import cos, sin, sqrt
 
 from robobt.sim.columns import BALL_R, FACE, HALF_OPENING, JAW, ROBOT_R, SOLID
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 
-@compiled
+@compiled_lean
 def _enters(
     start: float, step: float, low: float, high: float, t_in: float, t_out: float
 ) -> tuple[float, float]:
@@ -24,7 +24,7 @@ def _enters(
     return max(t_in, first), min(t_out, second)
 
 
-@compiled
+@compiled_lean
 def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tuple[float, float]:
     """Return when p + t * d enters and leaves the disc of radius ``reach`` at the origin, else (2, -1)."""
     a = dx * dx + dy * dy
@@ -36,7 +36,7 @@ def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tup
     return (-b - root) / a, (-b + root) / a
 
 
-@compiled
+@compiled_lean
 def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius: float) -> float:
     """Return when in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
     first = 1.0
@@ -57,7 +57,7 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
     return first
 
 
-@compiled
+@compiled_lean
 def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
     """Return when in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
     radius, round_, face, inner = p[BALL_R], p[ROBOT_R], p[JAW], p[HALF_OPENING]
@@ -87,7 +87,7 @@ def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> flo
     return first
 
 
-@compiled
+@compiled_lean
 def sweep(
     rows: FloatArray,
     first: int,
@@ -97,10 +97,13 @@ def sweep(
     p: FloatArray,
     dt: float,
     met: FloatArray,
+    clear_x: float,
+    clear_y: float,
 ) -> float:
     """Return the share of the step after which a fast ball first meets a robot or a wall, 1 if none.
 
-    ``met`` (2,) takes the velocity of what it meets [m/s].
+    ``met`` (2,) takes the velocity of what it meets [m/s]; ``clear_x`` and ``clear_y`` are how far from the
+    field's centre the nearest wall is [m].
 
     At 6.5 m/s and 5 ms the ball moves 33 mm a step, more than its radius and
     than the goal's walls are thick: a solver that looks only at where the ball
@@ -113,8 +116,8 @@ def sweep(
         row = rows[first + i]
         px, py = ball[0] - row[0], ball[1] - row[1]
         dx, dy = (move[0] - row[3]) * dt, (move[1] - row[4]) * dt
-        reach = p[ROBOT_R] + radius + hypot(dx, dy)
-        if px * px + py * py > reach * reach or px * dx + py * dy >= 0.0:
+        reach = p[ROBOT_R] + radius + abs(dx) + abs(dy)
+        if px * dx + py * dy >= 0.0 or px * px + py * py > reach * reach:
             continue
         c, s = cos(row[2]), sin(row[2])
         when = _meets_robot(c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, p)
@@ -123,6 +126,8 @@ def sweep(
             met[0], met[1] = row[3], row[4]
     x, y = ball[0], ball[1]
     dx, dy = move[0] * dt, move[1] * dt
+    if max(abs(x), abs(x + dx)) + radius < clear_x and max(abs(y), abs(y + dy)) + radius < clear_y:
+        return share
     for k in range(walls.shape[0]):
         when = _meets_box(x, y, dx, dy, walls[k], radius)
         if when < share:
@@ -131,7 +136,7 @@ def sweep(
     return share
 
 
-@compiled
+@compiled_lean
 def in_a_wall(x: float, y: float, walls: FloatArray, radius: float) -> bool:
     """Return whether a disc reaches into one of the boxes."""
     for k in range(walls.shape[0]):

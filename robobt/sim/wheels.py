@@ -47,7 +47,7 @@ from robobt.sim.columns import (
     WHEEL_COS,
     WHEEL_SIN,
 )
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
 # Columns of a robot's state: speeds of the rims, where they are to go, what comes after
@@ -60,7 +60,7 @@ _SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""
 
 
-@compiled
+@compiled_lean
 def _plan(row: FloatArray, command: FloatArray, p: FloatArray, w: FloatArray, state: FloatArray) -> None:
     """Turn the command into the wheel speeds after the next, from how fast the robot is now."""
     vx, vy, turn = command[VX], command[VY], command[OMEGA]
@@ -88,7 +88,7 @@ def _plan(row: FloatArray, command: FloatArray, p: FloatArray, w: FloatArray, st
         state[_NEXT + i] = w[COMMAND_RADIUS] * turn - vx * w[WHEEL_SIN + i] + vy * w[WHEEL_COS + i]
 
 
-@compiled
+@compiled_lean
 def drive_wheels(
     row: FloatArray, command: FloatArray, p: FloatArray, w: FloatArray, state: FloatArray, dt: float
 ) -> bool:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -32,11 +32,24 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 def compiled(function: Function) -> Function:
     """Compile on first use, and keep what was compiled where a folder can be written to."""
+    return _compiled(function)
+
+
+def compiled_lean(function: Function) -> Function:
+    """Compile a function that makes no arrays and returns none, without counting references to those it sees.
+
+    Each view of an array that compiled code looks at is counted, atomically, which costs more than most of
+    what an inner loop does with it. Numba refuses to compile a function so that makes an array after all.
+    """
+    return _compiled(function, _nrt=False)
+
+
+def _compiled(function: Function, **options: Any) -> Function:
     try:
-        return cast(Function, njit(cache=True)(function))
+        return cast(Function, njit(cache=True, **options)(function))
     except RuntimeError:
         # A read-only installation, run by somebody without a home: compile anew each time.
-        return cast(Function, njit(function))
+        return cast(Function, njit(**options)(function))
 
 
 @contextmanager

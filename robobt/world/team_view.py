@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from math import copysign, cos, hypot, sin
+from math import copysign, cos, hypot, inf, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.observation import ObservationSpec, kinematics, motion, observation_spec
 from robobt.world.scoring import FAR_OFF, KICK_SPEED
@@ -122,23 +122,41 @@ def team_view_rows(
         post_y: distance of the posts from the field's long axis [m].
         told: how many entries of restarts follow each, left at 0.
     """
-    seen = _OWN + _EACH * (mates + opponents)
-    size = seen + told
+    size = _OWN + _EACH * (mates + opponents) + told
     rows = np.empty((len(robots), len(who) * size))
+    away = np.empty(mates + opponents)
+    _fill_rows(robots, balls, who, blue, mates, opponents, goal_x, post_y, size, away, rows)
+    return rows
+
+
+@compiled_lean
+def _fill_rows(
+    robots: FloatArray,
+    balls: FloatArray,
+    who: NDArray[np.int64],
+    blue: int,
+    mates: int,
+    opponents: int,
+    goal_x: float,
+    post_y: float,
+    size: int,
+    away: FloatArray,
+    rows: FloatArray,
+) -> None:
+    seen = _OWN + _EACH * (mates + opponents)
     for i in range(len(robots)):
         for k in range(len(who)):
             row = rows[i, k * size : (k + 1) * size]
             index = who[k]
             first, last = (0, blue) if index < blue else (blue, robots.shape[1])
-            _observe(robots[i], balls[i], index, first, last, goal_x, post_y, row)
             row[seen:] = 0.0
-            places = row[_OWN:seen].reshape(mates + opponents, _EACH)
-            _nearest(robots[i], index, first, last, True, places[:mates])
-            _nearest(robots[i], index, first, last, False, places[mates:])
-    return rows
+            middle = _OWN + _EACH * mates
+            c, s = _observe(robots[i], balls[i], index, first, last, goal_x, post_y, row)
+            _nearest(robots[i], index, first, last, True, c, s, away[:mates], row[_OWN:middle])
+            _nearest(robots[i], index, first, last, False, c, s, away[mates:], row[middle:seen])
 
 
-@compiled
+@compiled_lean
 def _observe(
     robots: FloatArray,
     ball: FloatArray,
@@ -148,7 +166,8 @@ def _observe(
     goal_x: float,
     post_y: float,
     row: FloatArray,
-) -> None:
+) -> tuple[float, float]:
+    """Fill in what is no robot; return cosine and sine of the heading."""
     me, sign = robots[index], 1.0 if first == 0 else -1.0
     c, s = cos(me[2]), sin(me[2])
     goal, left = sign * goal_x, sign * post_y
@@ -179,31 +198,45 @@ def _observe(
         if dx * vx + dy * vy > 0.0 and abs(aside) < abs(lane):
             lane = aside
     row[18] = lane
+    return c, s
 
 
-@compiled
-def _nearest(robots: FloatArray, index: int, first: int, last: int, mates: bool, places: FloatArray) -> None:
-    """Fill the places with the nearest mates, or opponents, of a robot."""
+@compiled_lean
+def _nearest(
+    robots: FloatArray,
+    index: int,
+    first: int,
+    last: int,
+    mates: bool,
+    c: float,
+    s: float,
+    away: FloatArray,
+    places: FloatArray,
+) -> None:
+    """Fill the places, one after the other, with the nearest mates, or opponents, of a robot."""
     me = robots[index]
-    c, s = cos(me[2]), sin(me[2])
-    away = np.full(len(places), np.inf)
-    for place in range(len(places)):
-        places[place, 0] = -AWAY
-        places[place, 1:] = 0.0
+    for place in range(len(away)):
+        away[place] = inf
+        places[_EACH * place] = -AWAY
+        for entry in range(1, _EACH):
+            places[_EACH * place + entry] = 0.0
     for r in range(len(robots)):
         if r == index or (first <= r < last) != mates:
             continue
         other = robots[r]
         dx, dy = other[0] - me[0], other[1] - me[1]
-        far = hypot(dx, dy)
+        far = dx * dx + dy * dy
         # Insert it behind those that are as near, and move the farther ones on.
-        place = len(places)
+        place = len(away)
         while place > 0 and far < away[place - 1]:
             place -= 1
-            if place + 1 < len(places):
+            if place + 1 < len(away):
                 away[place + 1] = away[place]
-                places[place + 1] = places[place]
-        if place < len(places):
+                for entry in range(_EACH * place, _EACH * (place + 1)):
+                    places[entry + _EACH] = places[entry]
+        if place < len(away):
             away[place] = far
-            places[place, 0], places[place, 1] = c * dx + s * dy, c * dy - s * dx
-            places[place, 2], places[place, 3] = c * other[3] + s * other[4], c * other[4] - s * other[3]
+            entry = _EACH * place
+            places[entry], places[entry + 1] = c * dx + s * dy, c * dy - s * dx
+            places[entry + 2] = c * other[3] + s * other[4]
+            places[entry + 3] = c * other[4] - s * other[3]

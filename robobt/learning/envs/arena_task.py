@@ -190,6 +190,9 @@ class ArenaTask(ABC):
             self._oppose()
             self.arenas.step(self._randomiser.delayed(self._commands))
             ended = self._judge(given, rewards, ends)
+            if self._perception.follows:
+                final = self._perception.look(self.arenas.robots, self.arenas.balls)
+        if not self._perception.follows:
             final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
         terminated, truncated, success = ends

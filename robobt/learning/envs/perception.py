@@ -18,7 +18,11 @@ Observe = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 class Perception:
-    """How the state of arenas with ``robots`` robots each is observed; noise is drawn by each arena's own."""
+    """How the state of arenas with ``robots`` robots each is observed; noise is drawn by each arena's own.
+
+    Attributes:
+        follows: whether it has to look after every tick, for what it sees depends on what was before.
+    """
 
     def __init__(
         self,
@@ -41,6 +45,7 @@ class Perception:
         self._late = np.zeros((settings.latency + 1, n, size))
         self._newest = 0
         self._all = np.arange(n)
+        self.follows = self._noisy or self._differenced or settings.latency > 0
 
     def look(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """Return the observations after a tick, (n, O)."""

@@ -130,6 +130,7 @@ def test_stable_baselines3_learns_on_it() -> None:
     from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
 
     envs = ArenasVecEnv(many("Duel", 8, settings={"time_limit": 40}))
+    envs.seed(0)
     seen = envs.reset()
     for _ in range(25):
         seen, _, done, infos = envs.step(np.zeros((8, 4), dtype=np.float32))

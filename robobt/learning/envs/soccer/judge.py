@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, inf, isnan, nan
+from math import hypot, inf, isnan, nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.soccer.rewards import SoccerReward, own_reward, sent, team_reward
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
-from robobt.world.compiled import compilable, compiled, numbers_dtype
+from robobt.world.compiled import compilable, compiled_lean, numbers_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import KEPT_GAP, in_area, is_out
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -34,7 +34,7 @@ _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
 _WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
 
 
-@compiled
+@compiled_lean
 def judge(
     settings_: FloatArray,
     field_: FloatArray,
@@ -53,6 +53,7 @@ def judge(
     stops: NDArray[np.int64],
     minds: FloatArray,
     before: FloatArray,
+    owns: FloatArray,
     shares: FloatArray,
     progress: FloatArray,
     rewards: FloatArray,
@@ -80,6 +81,7 @@ def judge(
             :data:`OUT` and so on, 0 for nothing; filled where the rules have restarts.
         minds: (n, MIND) what is kept of the episodes.
         before: (n, L, 2) what the rewards keep.
+        owns: (L,) scratch.
         shares: (n, L) rewards of the learners, added to.
         progress: (n, ...) rows of ``PROGRESS``.
         rewards: (n,) added to.
@@ -91,7 +93,6 @@ def judge(
     rules: SoccerRules = rules_.view(_RULES)[0]
     episodes = progress.view(PROGRESS)
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
-    owns = np.zeros(len(who))
     any_ended = False
     for i in range(len(balls)):
         if is_over(ends, i):
@@ -146,7 +147,8 @@ def judge(
             failed = failed or side > 0
         success = success and not (failed and aim != _SCORE)
         ball_to_goal = hypot(half_length - ball[0], ball[1]), hypot(half_length + ball[0], ball[1])
-        means, teams = np.zeros(2), np.zeros(2)
+        blues = yellows = 0
+        of_blue = of_yellow = 0.0
         for k in range(len(who)):
             team = 0 if who[k] < blue else 1
             sign = 1.0 if team == 0 else -1.0
@@ -154,8 +156,8 @@ def judge(
             nearest = inf
             for r in range(robots.shape[1]):
                 if r != who[k]:
-                    away = hypot(robots[i, r, 0] - robot[0], robots[i, r, 1] - robot[1])
-                    nearest = min(nearest, away)
+                    x, y = robots[i, r, 0] - robot[0], robots[i, r, 1] - robot[1]
+                    nearest = min(nearest, x * x + y * y)
             owns[k] = own_reward(
                 weights,
                 sign * half_length,
@@ -163,14 +165,18 @@ def judge(
                 robot,
                 ball,
                 kicked[i, who[k]],
-                nearest - 2.0 * ROBOT_RADIUS,
+                sqrt(nearest) - 2.0 * ROBOT_RADIUS,
                 before[i, k],
             )
             if weights.sent > 0.0 and kicked[i, who[k]]:
                 first, last = (0, blue) if team == 0 else (blue, robots.shape[1])
                 owns[k] += weights.sent * sent(ball, robots[i], first, last, rules.pass_length)
-            means[team] += owns[k]
-            teams[team] += 1.0
+            if team == 0:
+                of_blue += owns[k]
+                blues += 1
+            else:
+                of_yellow += owns[k]
+                yellows += 1
         total = 0.0
         for k in range(len(who)):
             team = 0 if who[k] < blue else 1
@@ -185,7 +191,8 @@ def judge(
                 ball_to_goal[team],
                 before[i, k],
             )
-            earned += (1.0 - weights.shared) * owns[k] + weights.shared * means[team] / teams[team]
+            mean_own = of_blue / blues if team == 0 else of_yellow / yellows
+            earned += (1.0 - weights.shared) * owns[k] + weights.shared * mean_own
             shares[i, k] += earned
             total += earned
         mean = total / max(len(who), 1)
@@ -202,7 +209,7 @@ def _at_least(ticks: float, most: int | None) -> bool:
     return most is not None and ticks >= most
 
 
-@compiled
+@compiled_lean
 def _possession(
     rules: SoccerRules,
     robots: FloatArray,

@@ -61,6 +61,7 @@ class SoccerTask(ArenaTask):
         self._rules = numbers_of(settings.rules)
         self._aim = AIMS.index(settings.aim)
         self.shares = np.zeros((n, len(self.learners)))
+        self._owns = np.zeros(len(self.learners))
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.soccer.starts.soccer_starts`."""
@@ -187,6 +188,7 @@ class SoccerTask(ArenaTask):
             restarts.stops,
             self._minds,
             self._before,
+            self._owns,
             self.shares,
             self._progress_rows,
             rewards,
