@@ -18,7 +18,7 @@ from pydantic import Field, model_validator
 
 from robobt.config.validation import Settings
 from robobt.world.command import KickTrigger, RobotCommand
-from robobt.world.compiled import compiled, numbers_dtype
+from robobt.world.compiled import compiled_lean, numbers_dtype
 from robobt.world.geometry import FloatArray
 
 ACTION_ENTRIES: dict[str, tuple[str, ...]] = {
@@ -89,7 +89,7 @@ SCORE_ACTION = ActionScaling(
 _SCALING = numbers_dtype(ActionScaling)
 
 
-@compiled
+@compiled_lean
 def fill_commands(
     actions: FloatArray,
     numbers: FloatArray,

@@ -29,33 +29,38 @@ from robobt.sim.columns import (
 from robobt.world.compiled import compiled_lean
 from robobt.world.geometry import FloatArray
 
+_SURE = 1.0 - 1e-9
+"""Rounding may not make more of a change of velocity than it is."""
+
 
 @compiled_lean
 def drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> None:
     """Move a robot's velocity towards its command within its limits."""
     c, s = cos(row[2]), sin(row[2])
     target_vx, target_vy = command[VX], command[VY]
-    speed = hypot(target_vx, target_vy)
-    if speed > p[MAX_SPEED]:
-        target_vx *= p[MAX_SPEED] / speed
-        target_vy *= p[MAX_SPEED] / speed
+    if abs(target_vx) + abs(target_vy) > p[MAX_SPEED]:
+        speed = hypot(target_vx, target_vy)
+        if speed > p[MAX_SPEED]:
+            target_vx *= p[MAX_SPEED] / speed
+            target_vy *= p[MAX_SPEED] / speed
     dx = c * target_vx - s * target_vy - row[3]
     dy = s * target_vx + c * target_vy - row[4]
-    step = hypot(dx, dy)
-    if step > 0.0:
+    if dx * row[3] + dy * row[4] < 0.0:
+        along, across = p[FORWARD_DOWN], p[SIDE_DOWN]
+    else:
+        along, across = p[FORWARD_UP], p[SIDE_UP]
+    # What the weaker limit allows needs no longer look.
+    if abs(dx) + abs(dy) > _SURE * min(along, across) * dt:
+        step = hypot(dx, dy)
         ahead = (c * dx + s * dy) / step
         aside = (c * dy - s * dx) / step
-        if dx * row[3] + dy * row[4] < 0.0:
-            along, across = p[FORWARD_DOWN], p[SIDE_DOWN]
-        else:
-            along, across = p[FORWARD_UP], p[SIDE_UP]
         # The wheels' limits form an ellipse in the robot's frame.
         most = dt / sqrt((ahead / along) ** 2 + (aside / across) ** 2)
         if step > most:
             dx *= most / step
             dy *= most / step
-        row[3] += dx
-        row[4] += dy
+    row[3] += dx
+    row[4] += dy
     turn = min(max(command[OMEGA], -p[MAX_TURN]), p[MAX_TURN]) - row[5]
     most = p[TURN_RATE] * dt
     row[5] += min(max(turn, -most), most)
@@ -68,7 +73,7 @@ def friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, m
     left = dt
     moved_x = moved_y = 0.0
     slip_x, slip_y = velocity[0] - spin[0], velocity[1] - spin[1]
-    slip = hypot(slip_x, slip_y)
+    slip = hypot(slip_x, slip_y) if slip_x != 0.0 or slip_y != 0.0 else 0.0
     if slip > 1e-9:
         slip_x /= slip
         slip_y /= slip
@@ -93,7 +98,7 @@ def friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, m
             velocity[1] *= keep
         spin[0] = velocity[0]
         spin[1] = velocity[1]
-        if hypot(velocity[0], velocity[1]) < p[STOP_SPEED]:
+        if abs(velocity[0]) < p[STOP_SPEED] and hypot(velocity[0], velocity[1]) < p[STOP_SPEED]:
             velocity[0] = velocity[1] = spin[0] = spin[1] = 0.0
     move[0] = moved_x / dt
     move[1] = moved_y / dt

@@ -44,8 +44,12 @@ def _report(row: FloatArray, out: FloatArray) -> None:
     """Copy a robot's row, heading in (-pi, pi]."""
     out[0] = row[0]
     out[1] = row[1]
-    heading = row[2] % (2.0 * pi)
-    out[2] = heading - 2.0 * pi if heading > pi else heading
+    heading = row[2]
+    if not 0.0 <= heading <= pi:
+        heading = heading + 2.0 * pi if -pi <= heading < 0.0 else heading % (2.0 * pi)
+        if heading > pi:
+            heading -= 2.0 * pi
+    out[2] = heading
     out[3] = row[3]
     out[4] = row[4]
     out[5] = row[5]
