@@ -36,10 +36,12 @@ def compiled(function: Function) -> Function:
 
 
 def compiled_lean(function: Function) -> Function:
-    """Compile a function that makes no arrays and returns none, without counting references to those it sees.
+    """Compile a function that makes no arrays, without counting references to those it sees.
 
     Each view of an array that compiled code looks at is counted, atomically, which costs more than most of
-    what an inner loop does with it. Numba refuses to compile a function so that makes an array after all.
+    what an inner loop does with it. Numba refuses to compile a function so that makes an array after all, or
+    one that it calls. An array that such a function is given by another would never be freed: a test looks
+    for such calls.
     """
     return _compiled(function, _nrt=False)
 

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 from collections.abc import Iterator
 from math import inf
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import TypingError, njit
 from numba.core.event import install_listener, register, unregister
 from pydantic import BaseModel
 
-from robobt.world.compiled import TOLD, CompilingTold, compiled, numbers_dtype, numbers_of, timing_compilation
+import robobt
+from robobt.world.compiled import (
+    TOLD,
+    CompilingTold,
+    compiled,
+    compiled_lean,
+    numbers_dtype,
+    numbers_of,
+    timing_compilation,
+)
 
 
 def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
@@ -21,6 +32,39 @@ def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
     words: dict[str, Any] = {}
     exec("def double(x): return 2 * x", words)
     assert compiled(words["double"])(3) == 6
+
+
+def test_code_without_counted_references_makes_no_arrays() -> None:
+    words: dict[str, Any] = {"np": np}
+    exec("def make(n): return np.zeros(n).sum()", words)
+    with pytest.raises(TypingError):
+        compiled_lean(words["make"])(3)
+
+
+def test_nor_does_it_call_what_returns_some() -> None:
+    """It would never free them."""
+    trees = [ast.parse(file.read_text()) for file in Path(robobt.__file__).parent.rglob("*.py")]
+    functions = [
+        (node, [ast.unparse(each) for each in node.decorator_list])
+        for tree in trees
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef)
+    ]
+    making = {
+        node.name
+        for node, decorators in functions
+        if node.returns and "Array" in ast.unparse(node.returns) and "compiled" in decorators
+    }
+    lean = [node for node, decorators in functions if "compiled_lean" in decorators]
+    called = {
+        each.func.id
+        for node in lean
+        for each in ast.walk(node)
+        if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
+    }
+    assert len(lean) > 40
+    assert "team_view_rows" in making
+    assert not called & making
 
 
 class _Limits(BaseModel):
