@@ -29,6 +29,9 @@ LAG = 0.15
 FIRST_WAY = 6
 """Where they begin in an observation."""
 
+VECTORS = (0, 3)
+"""Where its vectors in the robot's frame begin: to the ball, and the robot's velocity."""
+
 GO_TO_BALL_AMONG_ROBOTS: ObservationSpec = observation_spec(
     "go_to_ball_among_robots",
     2,

@@ -25,11 +25,13 @@ SCALE = (1.0, 1.0, 3.0, 1.5, 1.5, 1.4)
 
 
 @pytest.mark.integration
-@pytest.mark.parametrize("layer_norm", [False, True])
+@pytest.mark.parametrize(("layer_norm", "vectors"), [(False, ()), (True, ()), (False, (0, 3))])
 @pytest.mark.parametrize("format_", ["torchscript", "onnx"])
-def test_file_and_network_agree_on_random_inputs(tmp_path: Path, format_: Format, layer_norm: bool) -> None:
+def test_file_and_network_agree_on_random_inputs(
+    tmp_path: Path, format_: Format, layer_norm: bool, vectors: tuple[int, ...]
+) -> None:
     generator = torch.Generator().manual_seed(3)
-    actor = Actor(SCALE, 3, (256, 256), layer_norm, generator)
+    actor = Actor(SCALE, 3, (256, 256), layer_norm, generator, vectors=vectors)
     (path,) = export_model(actor, go_to_ball_card(), tmp_path, (format_,))
     loaded = load_policy(path)
     inputs = np.random.default_rng(9).normal(0.0, 2.0, (1000, 6)).astype(np.float32)

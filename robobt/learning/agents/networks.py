@@ -44,6 +44,7 @@ class ActorBuild(TypedDict):
     hidden: list[int]
     layer_norm: bool
     activation: NotRequired[Activation]
+    vectors: NotRequired[list[int]]
 
 
 class Actor(nn.Module):
@@ -54,6 +55,11 @@ class Actor(nn.Module):
 
     ``scale`` (observation,) is the typical size of each entry in its SI unit, ``hidden`` the sizes of the
     hidden layers; ``layer_norm``, ``generator`` and ``activation`` are as for :func:`mlp`.
+
+    ``vectors`` are the observation's entries at which vectors in the robot's frame begin, x and then y. With
+    any, the network sees them all, and answers the velocity that the action begins with, in the frame in
+    which the first one points ahead: what it does in one heading it does in all. The velocity is then at
+    most 1 long in any direction.
 
     Attributes:
         build: the arguments that make an actor of the same shape.
@@ -69,6 +75,7 @@ class Actor(nn.Module):
         layer_norm: bool = False,
         generator: torch.Generator | None = None,
         activation: Activation = "relu",
+        vectors: Sequence[int] = (),
     ) -> None:
         super().__init__()
         self.build: ActorBuild = {
@@ -78,12 +85,43 @@ class Actor(nn.Module):
             "layer_norm": layer_norm,
             "activation": activation,
         }
+        if vectors:
+            self.build["vectors"] = list(vectors)
+        self._vectors = list(vectors)
         self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
         self.body = mlp([len(scale), *hidden, actions], layer_norm, generator, activation)
 
     def forward(self, observation: Tensor) -> Tensor:
         """Map (..., observation) in SI units to (..., action) in [-1, 1]."""
-        return torch.tanh(self.body(observation * self.inverse_scale))
+        output = self.body(self.turned(observation) * self.inverse_scale)
+        return self.turned_back(observation, torch.tanh(output))
+
+    def turned(self, observation: Tensor) -> Tensor:
+        """Return the observation (..., observation) as the network sees it, but for its scale."""
+        if not self._vectors:
+            return observation
+        c, s = self._ahead(observation)
+        parts, done = [], 0
+        for k in self._vectors:
+            x, y = observation[..., k], observation[..., k + 1]
+            parts += [observation[..., done:k], torch.stack([c * x + s * y, c * y - s * x], -1)]
+            done = k + 2
+        return torch.cat([*parts, observation[..., done:]], -1)
+
+    def turned_back(self, observation: Tensor, action: Tensor) -> Tensor:
+        """Return the action (..., action) that the network's answer stands for."""
+        if not self._vectors:
+            return action
+        c, s = self._ahead(observation)
+        x, y = action[..., 0], action[..., 1]
+        shortened = 1.0 / torch.sqrt((x * x + y * y).clamp(min=1.0))
+        turned = torch.stack([(c * x - s * y) * shortened, (s * x + c * y) * shortened], -1)
+        return torch.cat([turned, action[..., 2:]], -1)
+
+    def _ahead(self, observation: Tensor) -> tuple[Tensor, Tensor]:
+        x, y = observation[..., self._vectors[0]], observation[..., self._vectors[0] + 1]
+        length = torch.sqrt((x * x + y * y).clamp(min=1e-12))
+        return x / length, y / length
 
 
 class Critic(nn.Module):

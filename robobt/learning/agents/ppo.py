@@ -106,6 +106,7 @@ class PPO(Learner):
         smooth: (action,) which entries are normal; the others are thresholds at 0.
         seed: of the initial weights.
         state_scale: (state,) typical sizes of what follows the observation for the value alone.
+        vectors: of the observation, where the policy is asked in another frame; see :class:`Actor`.
     """
 
     def __init__(
@@ -115,13 +116,14 @@ class PPO(Learner):
         smooth: Sequence[bool],
         seed: int,
         state_scale: Sequence[float] = (),
+        vectors: Sequence[int] = (),
     ) -> None:
         super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
-        self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh")
+        self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh", vectors)
         self.critic = Value([*scale, *state_scale], settings.hidden, generator)
-        self._own = len(scale)
+        self._own, self._turns = len(scale), bool(vectors)
         self._smooth = torch.tensor(list(smooth))
         self._gamma = settings.gamma
         self._spread = nn.ParameterDict(
@@ -143,16 +145,16 @@ class PPO(Learner):
         noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._spread["log"])), np.float32))
         toss = torch.from_numpy(rng.random((len(seen), int((~self._smooth).sum())), np.float32))
         action = torch.empty_like(output)
-        action[:, self._smooth] = torch.tanh(output[:, self._smooth]) + self._spread["log"].exp() * noise
+        action[:, self._smooth] = output[:, self._smooth] + self._spread["log"].exp() * noise
         kicks = toss < torch.sigmoid(output[:, ~self._smooth])
         action[:, ~self._smooth] = torch.where(kicks, 1.0, -1.0)
         log_probability, _ = self._weigh(output, action)
-        return (_doubles(action), _doubles(log_probability), _doubles(self.critic(seen)))
+        return (_doubles(action), _doubles(log_probability), _doubles(self._valued(seen)))
 
     @torch.no_grad()
     def worth(self, observation: Floats) -> Floats:
         """Return V of (n, observation and state), (n,)."""
-        return _doubles(self.critic(torch.from_numpy(observation.astype(np.float32))))
+        return _doubles(self._valued(torch.from_numpy(observation.astype(np.float32))))
 
     def look_ahead(self, share: float) -> None:
         """Discount as after a ``share`` of the steps: patience is learned after what pays at once."""
@@ -192,7 +194,7 @@ class PPO(Learner):
 
     def _fit(self, seen: Tensor, target: Tensor) -> None:
         """Take a step of (4)."""
-        value = self.critic(seen)
+        value = self._valued(seen)
         loss = (value - target).square().mean()
         weights = self._critic_adam.weights
         self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.longest_step)
@@ -200,14 +202,23 @@ class PPO(Learner):
         self.value += value.detach().mean()
 
     def _decided(self, seen: Tensor) -> Tensor:
-        """Return the policy's outputs (m, action) on (m, observation and state)."""
-        output: Tensor = self.actor.body(seen[:, : self._own] * self.actor.inverse_scale)
-        return output
+        """Return the means of normal entries and log-odds of the others, (m, action)."""
+        own = seen[:, : self._own]
+        output: Tensor = self.actor.body(self.actor.turned(own) * self.actor.inverse_scale)
+        return torch.where(self._smooth, self.actor.turned_back(own, torch.tanh(output)), output)
+
+    def _valued(self, seen: Tensor) -> Tensor:
+        """Return V (m,) of (m, observation and state)."""
+        if self._turns:
+            own = self.actor.turned(seen[:, : self._own])
+            seen = torch.cat([own, seen[:, self._own :]], -1)
+        value: Tensor = self.critic(seen)
+        return value
 
     def _weigh(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the log-probability and the entropy of actions (m, action), both (m,), given the outputs."""
+        """Return log-probability and entropy, both (m,), of actions (m, action), given what was decided."""
         log_spread = self._spread["log"]
-        off = (action[:, self._smooth] - torch.tanh(output[:, self._smooth])) * (-log_spread).exp()
+        off = (action[:, self._smooth] - output[:, self._smooth]) * (-log_spread).exp()
         normal = -0.5 * off.square() - log_spread - _LOG_ROOT
         odds, kicks = output[:, ~self._smooth], action[:, ~self._smooth]
         # log sigmoid(x) = -softplus(-x), and 1 - sigmoid(x) = sigmoid(-x).

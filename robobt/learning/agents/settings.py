@@ -63,6 +63,12 @@ class PPOSettings(Settings):
         description="what the value is estimated from: what the robot sees, or besides the true state of all "
         "robots, as its team sees the field; for tasks of several robots",
     )
+    frame: Literal["robot", "ball"] = Field(
+        "robot",
+        description="in which vectors are seen and a velocity is answered: the robot's, or that in which the "
+        "ball lies ahead, by which what is learned in one heading is learned in all; for "
+        "go_to_ball_among_robots",
+    )
     gamma: float = Field(0.985, gt=0, lt=1, description="discount a decision, at first")
     final_gamma: float | None = Field(
         None, gt=0, lt=1, description="discount at the last step, towards which 1 / (1 - gamma) moves evenly"

@@ -33,7 +33,12 @@ class OnPolicyRun(Run):
     ) -> None:
         super().__init__(settings, problem, folder, clock, on_progress)
         self._agent = PPO(
-            settings.ppo, problem.scale, problem.smoothed, self._agent_seed, problem.state_scale
+            settings.ppo,
+            problem.scale,
+            problem.smoothed,
+            self._agent_seed,
+            problem.state_scale,
+            problem.vectors if settings.ppo.frame == "ball" else (),
         )
 
         self._past = PastSelves(settings.pool.size)

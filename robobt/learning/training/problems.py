@@ -30,6 +30,7 @@ from robobt.learning.training.settings import (
     stage_after,
     stages_of,
     validated_on,
+    vectors_of,
     worlds_of,
 )
 from robobt.world.avoiding import SLOW_WAYS, WAYS
@@ -58,6 +59,8 @@ class Problem:
             a central critic; empty without one.
         later: the arenas after so many steps, where others play the part of a pool; None where they are
             always ``make``'s.
+        vectors: entries at which the observation's vectors begin, that to the ball first; none where the
+            policy cannot be asked in the ball's frame.
     """
 
     make: Callable[[int], VectorTask]
@@ -66,6 +69,7 @@ class Problem:
     smoothed: tuple[bool, ...]
     state_scale: tuple[float, ...] = ()
     later: Callable[[int, Others], VectorTask] | None = None
+    vectors: tuple[int, ...] = ()
 
 
 def problem_for(settings: TrainSettings) -> Problem:
@@ -145,6 +149,7 @@ def problem_of(
         scale,
         smoothed,
         state_scale,
+        vectors=vectors_of(environment),
     )
 
 

@@ -44,10 +44,9 @@ class Validation:
     critic_loss: float | None
     value: float | None
 
-    @property
-    def score(self) -> tuple[float, float]:
-        """What policies are ranked by: successes, then speed. Never by the return."""
-        return (self.success, float("-inf") if self.mean_time is None else -self.mean_time)
+    def score(self, enough: float = 1.0) -> tuple[float, float]:
+        """What policies are ranked by: successes up to ``enough``, then speed. Never by the return."""
+        return (min(self.success, enough), float("-inf") if self.mean_time is None else -self.mean_time)
 
     def reaches(self, success: float, time: float = float("inf")) -> bool:
         """Return whether so many starts succeeded in that time (over the optimum where that is known)."""
@@ -171,14 +170,15 @@ def title_of(settings: TrainSettings) -> str:
 def summary_of(results: Sequence[TrainResult]) -> Summary:
     """Compute medians and ranges over the seeds of a run."""
     first = results[0].settings
-    bar = BARS.get(first.task, (0.99, float("inf")))
+    bar, enough = BARS.get(first.task, (0.99, float("inf"))), first.evaluation.enough
     figures = [result.figures for result in results]
     held_out = [each["held_out"] for each in figures]
+    best = max(results, key=lambda result: max(v.score(enough) for v in result.validations))
     return {
         "task": first.task,
         "preset": first.preset,
         "seeds": [result.settings.seed for result in results],
-        "best_seed": max(results, key=lambda result: max(v.score for v in result.validations)).settings.seed,
+        "best_seed": best.settings.seed,
         "to_99": _reached([first_reaching(result.validations, 0.99) for result in results]),
         "to_bar": _reached([first_reaching(result.validations, *bar) for result in results]),
         "success": _spread([each["success"] for each in held_out]),

@@ -33,7 +33,7 @@ class Selection:
     def add(self, validation: Validation, actor: Actor) -> None:
         """Add an evaluation, and keep its actor if it is the best yet."""
         self.validations.append(validation)
-        if self.best is None or validation.score > self.best.score:
+        if self.best is None or self._score(validation) > self._score(self.best):
             self.best = validation
             self.weights = {key: value.numpy().copy() for key, value in actor.state_dict().items()}
 
@@ -48,6 +48,9 @@ class Selection:
             return all(validation.success >= success for validation in latest)
         return all(validation.reaches(success, time) for validation in latest)
 
+    def _score(self, validation: Validation) -> tuple[float, float]:
+        return validation.score(self._settings.enough)
+
     def actor(self, build: ActorBuild) -> Actor:
         """Return the best actor, frozen; ``build`` is that of the agent's."""
         actor = Actor(**build)
@@ -61,5 +64,5 @@ class Selection:
     def restore(self, validations: Sequence[Mapping[str, float | None]], weights: Arrays) -> None:
         """Take over another selection's :meth:`state` and weights."""
         self.validations = [Validation(**validation) for validation in validations]  # type: ignore[arg-type]
-        self.best = max(self.validations, key=lambda validation: validation.score, default=None)
+        self.best = max(self.validations, key=self._score, default=None)
         self.weights = weights

@@ -85,6 +85,12 @@ class EvaluationSettings(Settings):
         default_factory=dict,
         description="further ones for the held-out starts, such as opponents never met",
     )
+    enough: float = Field(
+        1.0,
+        gt=0,
+        le=1,
+        description="share of successes from which on time alone says which weights are the best",
+    )
     target_actor: bool = Field(
         False, description="evaluate and ship the slow actor instead of the online one"
     )

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from robobt.config.validation import Settings, first_problem
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
-from robobt.learning.envs import TaskSettings
+from robobt.learning.envs import GoToBallSettings, TaskSettings
 from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of, make_rows
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import opposed
@@ -22,6 +22,7 @@ from robobt.learning.training.setting_groups import (
     ReplaySettings,
     StageSettings,
 )
+from robobt.world.avoiding import VECTORS
 
 _M = TypeVar("_M", bound=BaseModel)
 
@@ -143,6 +144,8 @@ def load_settings(
     if settings.central and settings.task not in SEVERAL:
         problem = f"a central critic is for tasks of several robots, such as {next(iter(SEVERAL))}"
         raise SettingsError(source, problem, "ppo.critic")
+    if settings.ppo.frame == "ball" and not vectors_of(environment):
+        raise SettingsError(source, "the ball's frame is for go_to_ball_among_robots", "ppo.frame")
     for index, stage in enumerate(stages_of(settings, source)):
         place = f"environment with stages[{index}]" if settings.stages else "environment"
         worlds = worlds_of(stage, source)
@@ -169,6 +172,12 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
     """Return the environment's settings."""
     return _validated(ENVIRONMENTS[settings.task], settings.environment, source, "environment")
+
+
+def vectors_of(environment: TaskSettings) -> tuple[int, ...]:
+    """Return where an observation's vectors begin, that to the ball first; none where that is not told."""
+    among = isinstance(environment, GoToBallSettings) and environment.others.count > 0
+    return VECTORS if among else ()
 
 
 def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSettings:

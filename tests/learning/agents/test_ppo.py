@@ -64,7 +64,7 @@ def test_actions_are_weighed_as_a_normal_and_a_coin_are():
         taken = torch.from_numpy(action.astype(np.float32))
         normal, coin = Normal(torch.tanh(output[:, 0]), 0.7), Bernoulli(logits=output[:, 1])
         expected = normal.log_prob(taken[:, 0]) + coin.log_prob((taken[:, 1] > 0).float())
-        _, entropy = it._weigh(output, taken)
+        _, entropy = it._weigh(it._decided(torch.from_numpy(seen.astype(np.float32))), taken)
         assert torch.allclose(entropy, normal.entropy() + coin.entropy(), atol=1e-5)
     np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-5)
 
@@ -87,7 +87,7 @@ def test_a_first_step_follows_the_policy_gradient():
     it._improve(*tensors)
     weights = same._actor_adam.weights
     standard = (tensors[3] - tensors[3].mean()) / (tensors[3].std() + 1e-8)
-    log_now, _ = same._weigh(same.actor.body(tensors[0] * same.actor.inverse_scale), tensors[1])
+    log_now, _ = same._weigh(same._decided(tensors[0]), tensors[1])
     expected = torch.autograd.grad(-(standard * log_now).mean(), weights)
     for found, wanted in zip(it._actor_adam.weights, expected, strict=True):
         torch.testing.assert_close(found.grad, wanted, atol=1e-6, rtol=1e-4)
@@ -96,8 +96,7 @@ def test_a_first_step_follows_the_policy_gradient():
 def test_what_has_moved_far_enough_is_not_moved_on():
     it = agent(entropy=0.0)
     seen, action = torch.zeros(4, 2), torch.tensor([[0.3, -1.0], [-0.3, -1.0]] * 2)
-    output = it.actor.body(seen)
-    now, _ = it._weigh(output, action)
+    now, _ = it._weigh(it._decided(seen), action)
     # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
     advantage = torch.tensor([1.0, -1.0] * 2)
     old = now.detach() - 0.5 * advantage
@@ -140,6 +139,43 @@ def test_a_central_value_knows_what_the_policy_does_not():
     assert it.actor.build["scale"] == [1.0]
     first, second = (it.act(both[[k]], np.random.default_rng(9))[0] for k in range(2))
     np.testing.assert_array_equal(first, second)
+
+
+def turned(seen: np.ndarray, angle: float, first: tuple[int, ...]) -> np.ndarray:
+    """Rows of which the vectors that begin there are turned by an angle."""
+    found, (c, s) = seen.copy(), (np.cos(angle), np.sin(angle))
+    for k in first:
+        found[:, k], found[:, k + 1] = (
+            c * seen[:, k] - s * seen[:, k + 1],
+            s * seen[:, k] + c * seen[:, k + 1],
+        )
+    return found
+
+
+def test_in_the_balls_frame_it_does_in_every_heading_what_it_does_in_one():
+    it = PPO(PPOSettings(hidden=(16,)), (1.0, 1.0, 3.0, 2.0, 2.0), (True,) * 3, 0, vectors=(0, 3))
+    with torch.no_grad():
+        it.actor.body[-1].weight.mul_(300.0)
+    seen = np.random.default_rng(1).normal(size=(200, 5))
+    plain = policy_of(it.actor)(seen)
+    assert np.hypot(*plain[:, :2].T).max() == pytest.approx(1.0)
+    assert np.abs(np.hypot(*plain[:, :2].T) - 1.0).max() > 0.1
+    for angle in (0.3, 2.0, -1.2):
+        other = turned(seen, angle, (0, 3))
+        np.testing.assert_allclose(policy_of(it.actor)(other), turned(plain, angle, (0,)), atol=1e-4)
+        np.testing.assert_allclose(it.worth(other), it.worth(seen), atol=1e-5)
+
+
+def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
+    it = PPO(PPOSettings(hidden=(16,), spread=0.5), (1.0,) * 4, (True,) * 3, 0, vectors=(0, 2))
+    with torch.no_grad():
+        it.actor.body[-1].weight.mul_(300.0)
+    seen = np.tile(np.random.default_rng(1).normal(size=(1, 4)), (8000, 1))
+    action, log_probability, _ = it.act(seen, np.random.default_rng(2))
+    mean = policy_of(it.actor)(seen[:1])[0]
+    np.testing.assert_allclose(action.mean(axis=0), mean, atol=0.03)
+    expected = Normal(torch.from_numpy(mean), 0.5).log_prob(torch.from_numpy(action)).sum(-1)
+    np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-4)
 
 
 @pytest.mark.parametrize(("share", "horizon"), [(0.0, 10.0), (0.5, 30.0), (1.0, 50.0)])

@@ -4,10 +4,13 @@ import json
 
 import pytest
 
+from robobt.learning.agents.networks import Actor
 from robobt.learning.training.compare import compare, table_of
 from robobt.learning.training.results import Validation, first_reaching, summary_of
 from robobt.learning.training.run_folder import load_run
 from robobt.learning.training.seeds import train_seeds
+from robobt.learning.training.selection import Selection
+from robobt.learning.training.setting_groups import EvaluationSettings
 from robobt.learning.training.settings import SettingsError, load_settings
 
 SHORT = {
@@ -39,6 +42,18 @@ def test_the_first_evaluation_at_the_bar_is_found():
     assert first_reaching(run, 0.99, 1.04) == run[2]
     assert first_reaching(run, 1.0, 1.005) is None
     assert first_reaching([at(1, 1.0, None, 0.6), at(2, 1.0, None, 0.4)], 0.98, 0.45).steps == 2
+
+
+@pytest.mark.parametrize(("enough", "best"), [(1.0, 1), (0.99, 3)])
+def test_of_those_that_succeed_often_enough_the_quickest_is_the_best(enough, best):
+    run = [at(1, 1.0, None, 3.3), at(2, 0.98, None, 3.0), at(3, 0.994, None, 3.1), at(4, 0.996, None, 3.2)]
+    selection = Selection(EvaluationSettings(enough=enough))
+    for validation in run:
+        selection.add(validation, Actor([1.0], 1, [2]))
+    assert selection.best == run[best - 1]
+    again = Selection(EvaluationSettings(enough=enough))
+    again.restore(selection.state(), selection.weights)
+    assert again.best == selection.best
 
 
 @pytest.mark.slow

@@ -113,6 +113,7 @@ def test_settings_survive_being_written_and_read():
             {"environment.simulator": "gazebo"},
             r"environment\.simulator: no simulator preset is called 'gazebo'",
         ),
+        ({"ppo.frame": "ball"}, r"ppo\.frame: the ball's frame is for go_to_ball_among_robots"),
         ({"environment.periodd": 1}, r"environment\.periodd: there is no such field"),
         ({"replay.demonstrations.bonus": 1.0}, r"replay: demonstrations get a bonus only with"),
         ({"seed.x": 1}, r"there is no such field|seed: .*integer"),
