@@ -186,14 +186,13 @@ class ArenaTask(ABC):
         self._commands[:, self.learners] = filled.reshape(self.n, each, COMMAND)
         rewards = np.zeros(self.n)
         ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
-        for _ in range(self.settings.decide_every):
+        last = self.settings.decide_every - 1
+        for tick in range(self.settings.decide_every):
             self._oppose()
             self.arenas.step(self._randomiser.delayed(self._commands))
             ended = self._judge(given, rewards, ends)
-            if self._perception.follows:
+            if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
-        if not self._perception.follows:
-            final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
         terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
