@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 import pymunk
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.sim.bodies import SLOP, fill, moment_of_inertia, walls_of
+from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls_of
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
-from robobt.sim.contacts import Contacts
+from robobt.sim.contacts.solver import Contacts
 from robobt.sim.kernels import control_tick, scratch
 from robobt.sim.reports import IntArray, report
 from robobt.sim.settings import SimSettings
@@ -21,7 +21,6 @@ from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
-from robobt.world.state import ROBOT_RADIUS
 
 Solver = Literal["compiled", "pymunk"]
 """What moves the bodies and resolves contacts."""
@@ -41,7 +40,10 @@ class Arenas:
         n: number of arenas.
         keep_history: whether to keep what is in ``history``.
         solver: ``pymunk`` has a space for each arena, in which a match is played; ``compiled`` does the same
-            over arrays (:mod:`robobt.sim.contacts`), for arenas by the hundred.
+            over arrays (:mod:`robobt.sim.contacts.solver`), for arenas by the hundred.
+
+    Raises:
+        ValueError: no such solver.
 
     Attributes:
         robots: (n, R, 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
@@ -73,6 +75,8 @@ class Arenas:
         keep_history: bool = False,
         solver: Solver = "compiled",
     ) -> None:
+        if solver not in get_args(Solver):
+            raise ValueError(f"solver must be one of {', '.join(get_args(Solver))}, not {solver!r}")
         self.field = field
         self.settings = settings
         self.period = period
@@ -92,8 +96,7 @@ class Arenas:
         self._buffer = BodyBuffer(self._spaces, count + 1) if self._spaces else None
         self._rows = np.zeros((n * (count + 1), ROW)) if self._buffer is None else self._buffer.rows
         self._arena_rows = self._rows.reshape(n, -1, ROW)
-        # Somewhere of their own until placed, so that no two start inside each other.
-        self._arena_rows[:, :count, 1] = 3 * ROBOT_RADIUS * np.arange(1, count + 1)
+        self._arena_rows[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
         self._calls = NO_CALLS if self._buffer is None else self._buffer.calls
         self.robots = np.zeros((n, count, 6))
         self.balls = np.zeros((n, 4))

@@ -77,7 +77,7 @@ def fill(
     walls: Sequence[tuple[Box, str]],
 ) -> list[pymunk.Body]:
     """Add the walls, robots and the ball; return the bodies, the ball last."""
-    body, material = settings.body, material_of(settings.contact)
+    body, material, places = settings.body, material_of(settings.contact), until_placed(robots)
     bodies = []
     for (x0, y0, x1, y1), kind in walls:
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -86,8 +86,7 @@ def fill(
         space.add(box)
     for i in range(robots):
         robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
-        # Somewhere of their own until placed, so that no two start inside each other.
-        robot.position = (0.0, 3 * ROBOT_RADIUS * (i + 1))
+        robot.position = places[i]
         shapes: list[pymunk.Shape] = []
         for part in outlines(settings):
             if len(part.corners) == 1:
@@ -109,6 +108,11 @@ def fill(
     space.add(ball, round_)
     bodies.append(ball)
     return bodies
+
+
+def until_placed(robots: int) -> list[tuple[float, float]]:
+    """Return where robots are until they are placed, each somewhere of its own, so that none overlap [m]."""
+    return [(0.0, 3 * ROBOT_RADIUS * (i + 1)) for i in range(robots)]
 
 
 def material_of(contact: ContactSettings) -> dict[str, tuple[float, float]]:

@@ -1,7 +1,7 @@
 """One control tick of the league's physics, over arrays and any number of arenas.
 
 What moves the bodies and resolves contacts is pymunk, or in many arenas what does the same over arrays
-(:mod:`robobt.sim.contacts`); what neither knows is written once,
+(:mod:`robobt.sim.contacts.solver`); what neither knows is written once,
 compiled: how robots and ball move (:mod:`robobt.sim.motion`), a ball in the air
 (:mod:`robobt.sim.flight`), dribbler and kicker (:mod:`robobt.sim.mouth`), and contacts
 within a step (:mod:`robobt.sim.sweep`).
@@ -35,7 +35,8 @@ from robobt.sim.columns import (
     SENSOR,
     Z,
 )
-from robobt.sim.contacts import CLEAR_X, CLEAR_Y, CONTACT, collide
+from robobt.sim.contacts.solver import collide
+from robobt.sim.contacts.touching import CLEAR_X, CLEAR_Y, CONTACT
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
 from robobt.sim.motion import drive, friction
@@ -130,7 +131,7 @@ def control_tick(
         handles: of the same, none if no pymunk is to be called.
         bodies: of the same.
         cursors: of the same.
-        solver: numbers of the :class:`~robobt.sim.contacts.Contacts`, which take pymunk's place then.
+        solver: numbers of the :class:`~robobt.sim.contacts.solver.Contacts`, which take pymunk's place then.
         materials: walls of the same.
         edges: of the same.
         parts: of the same.

@@ -142,3 +142,8 @@ def test_what_an_arena_was_before_does_not_matter() -> None:
             arenas.step(commands)
         states.append(arenas.robots.copy())
     np.testing.assert_array_equal(*states)
+
+
+def test_a_solver_that_there_is_not_is_refused() -> None:
+    with pytest.raises(ValueError, match="solver must be one of compiled, pymunk, not 'box2d'"):
+        Arenas(DIVISION_B, [None], preset("default"), PERIOD, solver="box2d")  # type: ignore[arg-type]
