@@ -76,6 +76,8 @@ class OnPolicyRun(Run):
         if not (folder / ACTOR).is_file():
             raise TrainError(f"init: {folder} is not the folder of a run that has ended")
         given, own = load_actor(folder / ACTOR), self._agent.actor
+        if given.build.get("vectors") != own.build.get("vectors"):
+            raise TrainError(f"init: the policy of {folder} was asked in another frame, see ppo.frame")
         seen, sees = _seen(read_settings(folder)), _seen(self._settings)
         known = [k for k, name in enumerate(sees) if name in seen]
         scale = [own.build["scale"][k] for k in known]

@@ -192,3 +192,11 @@ def test_a_stage_begins_after_its_share_of_the_steps() -> None:
 def test_what_makes_no_self_play_is_refused(task: str, changes: dict[str, Any], said: str) -> None:
     with pytest.raises(SettingsError, match=said):
         load_settings(task, "fast", changes)
+
+
+def test_a_run_does_not_begin_with_a_policy_that_was_asked_in_another_frame(tmp_path: Path) -> None:
+    robot = {**TINY, "stages": [], "ppo.frame": "robot"}
+    train(load_settings("go_to_ball_among_robots", "fast", robot), tmp_path / "robot")
+    ball = {**robot, "ppo.frame": "ball", "init": str(tmp_path / "robot")}
+    with pytest.raises(TrainError, match=r"init: the policy of .* was asked in another frame, see ppo.frame"):
+        train(load_settings("go_to_ball_among_robots", "fast", ball), tmp_path / "ball")
