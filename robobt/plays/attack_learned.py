@@ -3,27 +3,45 @@
 from __future__ import annotations
 
 from robobt.models.fitting import read_fitting_model
-from robobt.plays.base import PLAYS
+from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.ball.duel import Duel
+from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.learned_skill import LearnedSkill
+from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.score import Score
+from robobt.skills.base import Skill
+from robobt.skills.conditions.is_closest_to_ball import IsClosestToBall
+from robobt.skills.conditions.stuck_at_ball import StuckAtBall
 from robobt.tree import Behaviour
 
 
 @PLAYS.register("attack_learned")
-def attack_learned(*, policy: str = "") -> Behaviour:
+def attack_learned(*, policy: str = "", patience: float = 0.6) -> Behaviour:
     """Get the ball and score by one learned policy, from first touch to goal.
 
     It knows of other robots what it was trained to see, and of rules nothing: it carries the ball as far as
     it likes, so that it is for scenarios without a referee. ``score_on_goalkeeper_ppo`` ships for one
     goalkeeper, others for its defenders and for a duel: docs/several_robots.md says what they can do.
 
+    Where robots and ball are others than in training, a policy may stop at a ball that it does not get into
+    its mouth. Then the written skills get the ball, and it goes on from there.
+
     Args:
         policy: name or file of a model for Score or Duel, or of another task of several robots; without one
             the robot stands still.
+        patience: how long it may be at the ball without getting it [s].
     """
     if not policy:
         return Score()
+    return first_of(
+        "attack",
+        when("stuck", StuckAtBall(patience=patience), IsClosestToBall(), GoToBall(), PickUpBall()),
+        learned(policy),
+    )
+
+
+def learned(policy: str) -> Skill:
+    """Return the leaf for which the model was trained."""
     skill = read_fitting_model(policy, kind="policy").card.skill
     if skill == "Duel":
         return Duel(policy=policy)

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+import torch
 
 from robobt.experiments.deployed import Situation, deployed_scenario
 from robobt.match import run_trials, summarise
@@ -8,9 +9,10 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.plays import attack_learned
 from robobt.skills import Duel, LearnedSkill, Score, Skill
 from robobt.tree import Status
+from robobt.world import Frame
 from robobt.worlds import sim_world
 from tests.models.made_models import network, team_card, write_model
-from tests.simulation import Trial, blue, eventually, goal_for_us
+from tests.simulation import Trial, blue, eventually, goal_for_us, never
 from tests.skills.fixed_world import Alone, frame, robot
 
 
@@ -47,5 +49,23 @@ def test_without_patience_it_takes_what_there_is():
 @pytest.mark.parametrize("leaf", [Score, Duel, LearnedSkill])
 def test_any_policy_attacks_as_the_leaf_that_it_is_for(leaf: type[Skill], tmp_path: Path):
     model = write_model(tmp_path, network(27, 4), team_card(leaf.__name__, 0, 2))
-    assert type(attack_learned(policy=str(model))) is leaf
+    leaves = [type(node) for node in attack_learned(policy=str(model)).iterate()]
+    assert [kind for kind in leaves if kind in (Score, Duel, LearnedSkill)] == [leaf]
     assert Alone(attack_learned()).tick(frame(robot())) is Status.FAILURE
+
+
+def test_a_policy_that_stops_at_the_ball_gets_it_from_the_written_skills(tmp_path: Path):
+    lazy = torch.nn.Linear(27, 4)
+    torch.nn.init.zeros_(lazy.weight)
+    torch.nn.init.zeros_(lazy.bias)
+    model = str(write_model(tmp_path, lazy, team_card("Score", 0, 2)))
+
+    def has_it(frame: Frame) -> bool:
+        return frame.own[0].ball_contact
+
+    def beside(patience: float) -> Trial:
+        tree = attack_learned(policy=model, patience=patience)
+        return Trial({blue(0): tree}, {blue(0): (0.0, 0.0, 0.0)}, ball=(0.093, -0.07))
+
+    beside(0.6).run(3.0, eventually("the ball is in the mouth", has_it))
+    beside(60.0).run(3.0, never("the ball is in the mouth", has_it))
