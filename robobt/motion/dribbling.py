@@ -37,6 +37,13 @@ def settle(me: RobotState, period: float) -> RobotCommand:
     return turn_with_ball(me, me.heading, limits, period)
 
 
+def carry(chosen: RobotCommand, me: RobotState) -> None:
+    """Slow a command down sideways, if the robot has the ball, to what its dribbler bears."""
+    aside = me.limits.carry_aside
+    if aside is not None and me.ball_contact:
+        chosen.vy = min(aside, max(-aside, chosen.vy))
+
+
 def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: float) -> RobotCommand:
     """Turn on the spot to ``heading`` [rad] with the ball in the dribbler."""
     turn = command(me, 0.0, 0.0, turn_rate(me, heading, limits, period), limits, period)

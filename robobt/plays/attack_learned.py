@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from robobt.models.fitting import read_fitting_model
-from robobt.plays.base import PLAYS, first_of, when
+from robobt.plays.base import PLAYS, first_of
+from robobt.plays.stuck import get_where_stuck
 from robobt.skills.ball.duel import Duel
-from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.learned_skill import LearnedSkill
-from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.score import Score
 from robobt.skills.base import Skill
-from robobt.skills.conditions.is_closest_to_ball import IsClosestToBall
-from robobt.skills.conditions.stuck_at_ball import StuckAtBall
 from robobt.tree import Behaviour
 
 
@@ -35,7 +32,7 @@ def attack_learned(*, policy: str = "", patience: float = 0.6) -> Behaviour:
         return Score()
     return first_of(
         "attack",
-        when("stuck", StuckAtBall(patience=patience), IsClosestToBall(), GoToBall(), PickUpBall()),
+        get_where_stuck(patience),
         learned(policy),
     )
 

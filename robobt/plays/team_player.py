@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.penalty_kick import penalty_kick
+from robobt.plays.stuck import get_where_stuck
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
 from robobt.skills.aim.shot_is_open import ShotIsOpen
@@ -133,7 +134,7 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
 
 def play_on(model: str) -> Behaviour:
     """Play by a model, which is not told how far it may carry the ball."""
-    return first_of("open play", let_go(), LearnedSkill(model=model))
+    return first_of("open play", let_go(), get_where_stuck(), LearnedSkill(model=model))
 
 
 def let_go() -> Behaviour:

@@ -138,6 +138,7 @@ _GRSIM = SimSettings(
         catch_speed=0.6,
         receive_speed=3.0,
         hold_acceleration=50.0,
+        carry_aside=1.1,
         reaction=1 / 60,
         kick_rebound=0.2,
     ),

@@ -33,6 +33,9 @@ class RobotLimits(Settings):
     hold_acceleration: float = Field(
         3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"
     )
+    carry_aside: float | None = Field(
+        None, gt=0, le=10, description="speed sideways at which it keeps it; None: any [m/s]"
+    )
     reaction: float = Field(
         0.0, ge=0, le=0.05, description="time that the robot itself takes from a command to its effect [s]"
     )

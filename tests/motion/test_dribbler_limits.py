@@ -5,16 +5,19 @@ from __future__ import annotations
 from math import hypot, sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from torch import Tensor, nn
 
+from robobt.learning.envs.soccer.suite import SUITE
+from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.models.actions import ActionScaling
 from robobt.models.card import action_outputs
-from robobt.skills import GoToBall, Shoot
+from robobt.skills import GoToBall, Score, Shoot
 from robobt.world import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
-from tests.models.made_models import Straight, go_to_ball_card, shoot_card, write_model
+from tests.models.made_models import Straight, go_to_ball_card, shoot_card, team_card, write_model
 from tests.skills.fixed_world import Alone, frame, held, moved, robot
 
 PERIOD = 0.03
@@ -27,6 +30,14 @@ class Spinning(nn.Module):
     def forward(self, observation: Tensor) -> Tensor:
         one = 0.0 * observation[:, :1] + 1.0
         return torch.cat([one, -one], 1)
+
+
+class Aside(nn.Module):
+    """Drives ahead and to the left, as fast as it can, and never kicks."""
+
+    def forward(self, observation: Tensor) -> Tensor:
+        one = 0.0 * observation[:, :1] + 1.0
+        return torch.cat([0.6 * one, 0.8 * one, 0.0 * one, -one], 1)
 
 
 def approach(folder: Path) -> GoToBall:
@@ -93,3 +104,27 @@ def test_a_shot_brakes_no_harder_than_the_ball_is_held(tmp_path: Path, heading: 
     slow = robot(2.0, heading=heading, velocity=(0.01, 0.0, 0.0), contact=True, limits=limits)
     alone.tick(frame(slow, ball=held(slow), period=PERIOD))
     assert hypot(alone.command.vx, alone.command.vy) == 0.0
+
+
+@pytest.mark.parametrize(("contact", "aside"), [(True, 1.1), (False, 2.4)])
+def test_a_policy_carries_the_ball_no_faster_sideways_than_it_is_held(
+    tmp_path: Path, contact: bool, aside: float
+) -> None:
+    alone = Alone(Score(policy=str(write_model(tmp_path, Aside(), team_card("Score", 0, 2)))))
+    me = robot(2.0, contact=contact, limits=RobotLimits(carry_aside=1.1))
+    alone.tick(frame(me, ball=held(me), period=PERIOD))
+    assert (alone.command.vx, alone.command.vy) == pytest.approx((1.8, aside))
+
+
+def test_an_environment_carries_it_as_the_policy_does() -> None:
+    """In grSim's preset: learners slow down with the ball, and without it they do not."""
+    task = SoccerTask(SUITE["Duel"].model_validate({"simulator": "grsim"}), n=1, seed=0)
+    start = np.zeros(len(task.start_columns))
+    blue, yellow, ball = (0.0, 0.0, 0.0, 0, 0, 0), (-2.0, 0.0, 0.0, 0, 0, 0), (0.092, 0.0, 0, 0)
+    start[:16] = (*blue, *yellow, *ball)
+    task.reset_to(start, seed=0)
+    for _ in range(12):
+        task.advance(np.tile([0.0, 1.0, 0.0, -1.0], 2)[None])
+    assert task.arenas.contact[0].tolist() == [True, False]
+    assert task.arenas.robots[0, 0, 4] == pytest.approx(1.1, abs=0.02)
+    assert task.arenas.robots[0, 1, 4] > 1.5

@@ -189,7 +189,7 @@ class ArenaTask(ABC):
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
             self._oppose()
-            self.arenas.step(self._randomiser.delayed(self._commands))
+            self.arenas.step(self._randomiser.delayed(self._carried()))
             ended = self._judge(given, rewards, ends)
             if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
@@ -197,6 +197,17 @@ class ArenaTask(ABC):
         terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
         return StepResult(final.copy(), rewards, terminated, truncated, final, success)
+
+    def _carried(self) -> FloatArray:
+        """Return the commands, with the ball slowed down sideways as skills do, for the dribbler's sake."""
+        limits = self.settings.robot_limits
+        if limits.carry_aside is None:
+            return self._commands
+        commands, learners = self._commands.copy(), self.learners
+        aside = np.clip(commands[:, learners, 1], -limits.carry_aside, limits.carry_aside)
+        carrying = self.arenas.contact[:, learners]
+        commands[:, learners, 1] = np.where(carrying, aside, commands[:, learners, 1])
+        return commands
 
     def _seed_all(self, seed: int | None) -> None:
         seeds = [arena.spawn(3) for arena in np.random.SeedSequence(seed).spawn(self.n)]

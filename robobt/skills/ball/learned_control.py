@@ -16,6 +16,7 @@ from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
 from robobt.models.fitting import read_fitting_model
 from robobt.models.policy import load_policy
+from robobt.motion.dribbling import carry
 from robobt.skills.store import TeamStore
 from robobt.skills.team.teamwork import has_kicked
 from robobt.tree import Registry
@@ -157,6 +158,8 @@ def load_shipped_policies() -> None:
 class PacedControl:
     """A trained policy that decides as often as it did in training; what it decided holds between.
 
+    With the ball in its mouth the robot drives no faster sideways than its dribbler bears.
+
     Args:
         model: as for :class:`LearnedControl`.
         skill: as for :class:`LearnedControl`.
@@ -194,7 +197,9 @@ class PacedControl:
             self._decided = -inf
             self._command = self._control.decide(frame, me, sketch, barred)
             self._decided = frame.time
-        return replace(self._command)
+        command = replace(self._command)
+        carry(command, me)
+        return command
 
 
 def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
