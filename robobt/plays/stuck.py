@@ -6,6 +6,7 @@ from robobt.plays.base import when
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.is_closest_to_ball import IsClosestToBall
+from robobt.skills.conditions.may_touch_ball import MayTouchBall
 from robobt.skills.conditions.stuck_at_ball import StuckAtBall
 from robobt.tree import Behaviour
 
@@ -15,4 +16,6 @@ def get_where_stuck(patience: float = 0.6) -> Behaviour:
 
     Where robots and ball are others than in training, a policy may come to rest at a ball beside its mouth.
     """
-    return when("stuck", StuckAtBall(patience=patience), IsClosestToBall(), GoToBall(), PickUpBall())
+    return when(
+        "stuck", StuckAtBall(patience=patience), MayTouchBall(), IsClosestToBall(), GoToBall(), PickUpBall()
+    )

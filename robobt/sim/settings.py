@@ -233,7 +233,13 @@ PRESETS: dict[str, SimSettings] = {
         ball=_GRSIM_BALL,
         body=BodySettings(mass=2.8, face=0.0795, mouth_width=0.08, sensor_depth=0.011),
         limits=_GRSIM.limits.model_copy(
-            update={"braking": 4.6, "catch_speed": 4.0, "receive_speed": 4.0, "reaction": 0.0}
+            update={
+                "braking": 4.6,
+                "catch_speed": 4.0,
+                "receive_speed": 4.0,
+                "carry_aside": None,
+                "reaction": 0.0,
+            }
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
         kicker=KickerSettings(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from typing import Literal
 
+from robobt.motion.dribbling import carry
 from robobt.motion.path_planner import allowed_target, travel
 from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
@@ -205,6 +206,7 @@ class LearnedApproach:
             command.vx *= fastest / speed
             command.vy *= fastest / speed
         command.omega = min(limits.max_turn, max(-limits.max_turn, command.omega))
+        carry(command, store.me)
         return command
 
 

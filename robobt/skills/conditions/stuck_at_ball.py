@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, inf
 
 from robobt.skills.base import Condition, skill
 from robobt.skills.debounce import Debounce
@@ -18,14 +18,14 @@ class StuckAtBall(Condition):
 
     Near is within ``distance`` between centres, and what says that it has the ball is the sensor in its
     mouth: a ball at the hull beside the mouth is what it is most often stuck at. Being away from the ball for
-    0.1 s ends it, as having it does.
+    0.1 s ends it, as having it does. To be ticked every tick; after a pause it counts anew.
 
     Args:
         distance: [m].
         patience: [s].
 
     Raises:
-        ValueError: ``patience`` is negative.
+        ValueError: ``distance`` or ``patience`` is negative.
     """
 
     distance: float = 0.4
@@ -33,14 +33,23 @@ class StuckAtBall(Condition):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.patience < 0.0:
-            raise ValueError(f"patience must be 0 or more, not {self.patience:g}")
+        for name in ("distance", "patience"):
+            value = getattr(self, name)
+            if not value >= 0.0:
+                raise ValueError(f"{name} must be 0 or more, not {value:g}")
+        self._restart()
+
+    def _restart(self) -> None:
         self._stuck = Debounce(rise=self.patience, fall=HELD, on=False)
+        self._seen = -inf
 
     def on_running(self) -> Status:
         """Count the time."""
-        me, ball = self.me, self.ball
+        me, ball, now = self.me, self.ball, self.frame.time
+        if not 0.0 <= now - self._seen < 2.5 * self.frame.period:
+            self._restart()
+        self._seen = now
         free = hypot(ball.x - me.x, ball.y - me.y) <= self.distance and not me.ball_contact
-        if self._stuck.update(free, self.frame.time):
+        if self._stuck.update(free, now):
             return self.succeed("it does not get the ball")
         return self.fail("it is not stuck")

@@ -18,6 +18,9 @@ class Robot:
         self._alone = Alone(StuckAtBall(distance=0.4, patience=patience))
         self._tick = 0
 
+    def pauses(self, seconds: float) -> None:
+        self._tick += round(seconds / PERIOD)
+
     def looks(self, seconds: float, ball: tuple[float, float], contact: bool = False) -> Status:
         status = Status.INVALID
         for _ in range(round(seconds / PERIOD)):
@@ -53,6 +56,15 @@ def test_who_has_had_it_for_long_counts_anew() -> None:
     assert mine.looks(0.3, BESIDE) is Status.FAILURE
 
 
-def test_no_negative_patience() -> None:
-    with pytest.raises(ValueError, match="patience must be 0 or more, not -1"):
-        StuckAtBall(patience=-1.0)
+def test_time_in_which_it_was_not_asked_does_not_count() -> None:
+    mine = Robot()
+    assert mine.looks(0.3, BESIDE) is Status.FAILURE
+    mine.pauses(10.0)
+    assert mine.looks(0.3, BESIDE) is Status.FAILURE
+    assert mine.looks(0.3, BESIDE) is Status.SUCCESS
+
+
+@pytest.mark.parametrize("parameter", ["distance", "patience"])
+def test_nothing_negative(parameter: str) -> None:
+    with pytest.raises(ValueError, match=f"{parameter} must be 0 or more, not -1"):
+        StuckAtBall(**{parameter: -1.0})
