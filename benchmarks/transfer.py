@@ -57,7 +57,8 @@ def main(words: list[str] | None = None) -> None:
     if given.address == SIM:
         worlds = {name: changed(base, {"simulator": WORLDS[name]}) for name in given.only or WORLDS}
     first: list[MatchResult] | None = None
-    print(f"{'world':17}{'player':27}{'goals':>6} of {given.trials}   95 % interval    less play, less first")
+    head = f"{'world':17}{'player':27}{'goals':>6} of {given.trials}   95 % interval"
+    print(f"{head}    more than the play, than in the first world")
     for name, scenario in worlds.items():
         results = {
             label: list(
