@@ -30,11 +30,7 @@ def attack_learned(*, policy: str = "", patience: float = 0.6) -> Behaviour:
     """
     if not policy:
         return Score()
-    return first_of(
-        "attack",
-        get_where_stuck(patience),
-        learned(policy),
-    )
+    return first_of("attack", get_where_stuck(patience), learned(policy))
 
 
 def learned(policy: str) -> Skill:

@@ -11,7 +11,7 @@ from robobt.skills.conditions.stuck_at_ball import StuckAtBall
 from robobt.tree import Behaviour
 
 
-def get_where_stuck(patience: float = 0.6) -> Behaviour:
+def get_where_stuck(patience: float = StuckAtBall.patience) -> Behaviour:
     """Get a ball at which a policy stops; ``patience`` is how long it may be there without getting it [s].
 
     Where robots and ball are others than in training, a policy may come to rest at a ball beside its mouth.
