@@ -91,6 +91,12 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--only", action="append", choices=list(WORLDS), help="all by default")
     parser.add_argument("--address", default=SIM, help="a world elsewhere, as robobt match --world takes it")
     given = parser.parse_args(words)
+    if given.starts < 1:
+        parser.error(f"--starts: at least 1, not {given.starts}")
+    try:
+        GoToBall(policy=given.model)
+    except ValueError as error:
+        parser.error(str(error))
     worlds = {given.address: WORLDS["default"]}
     if given.address == SIM:
         worlds = {name: WORLDS[name] for name in given.only or WORLDS}

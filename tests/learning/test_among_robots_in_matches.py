@@ -31,6 +31,22 @@ def test_planner_and_model_play_the_same_starts(
     assert later.endswith("later where both reach it")
 
 
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (["save_ppo"], "is a model for Goalkeeper, not for GoToBall"),
+        (["nobody"], "no go-to-ball policy is called 'nobody'"),
+        (["go_to_ball_ddpg", "--starts", "0"], "--starts: at least 1, not 0"),
+    ],
+)
+def test_what_cannot_be_judged_is_one_line(
+    judged: ModuleType, words: list[str], problem: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        judged.main([*words, "--only", "default"])
+    assert problem in capsys.readouterr().err.splitlines()[-1]
+
+
 def test_the_ball_lies_where_a_field_player_may_go(judged: ModuleType) -> None:
     for start in islice(judged.starts(), 100):
         assert not any(
