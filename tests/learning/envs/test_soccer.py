@@ -64,6 +64,19 @@ def test_a_goal_is_earned_by_one_team_and_paid_for_by_the_other() -> None:
     assert even[0] + even[1] == pytest.approx(earned[0] + earned[1])
 
 
+def test_nobody_lives_on_shots_at_the_goalkeeper() -> None:
+    nothing = dict.fromkeys(("approach", "advance", "goal", "fault", "time", "crash"), 0.0)
+    made = playing([*at(2, 0), *in_mouth(2, 0)], blue=["learner"], reward={**nothing, "shot": 1.0})
+    earned, kicks = 0.0, 0
+    for _ in range(40):
+        made.arenas.place([[at(2, 0)]], [in_mouth(2, 0)])
+        made.advance(np.array([KICK]))
+        kicks += int(made.arenas.balls[0, 2] > 3.0)
+        earned += made.shares[0, 0]
+    assert kicks > 4
+    assert earned == pytest.approx(4.0)
+
+
 @pytest.mark.parametrize(
     ("mate", "opponent", "earned"),
     [

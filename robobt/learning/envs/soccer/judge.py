@@ -80,7 +80,7 @@ def judge(
         stops: (n,) what stops play without ending the episode, of
             :data:`OUT` and so on, 0 for nothing; filled where the rules have restarts.
         minds: (n, MIND) what is kept of the episodes.
-        before: (n, L, 2) what the rewards keep.
+        before: (n, L, 3) what the rewards keep.
         owns: (L,) scratch.
         shares: (n, L) rewards of the learners, added to.
         progress: (n, ...) rows of ``PROGRESS``.

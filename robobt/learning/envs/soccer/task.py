@@ -131,7 +131,7 @@ class SoccerTask(ArenaTask):
             settings.field, limits, settings.roles, self.blue, settings.player_speed
         )
         self._minds = np.zeros((n, MIND))
-        self._before = np.zeros((n, len(self.learners), 2))
+        self._before = np.zeros((n, len(self.learners), 3))
         super()._build()
 
     def _starting(self, starts: FloatArray, which: IntArray) -> None:
