@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from math import inf
 from typing import Any, TypeVar, cast
 
@@ -17,6 +17,8 @@ from numba.core.event import Event, TimingListener, install_listener, register
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
+
+from robobt.world.compiled_key import DeepCache
 
 _log = logging.getLogger(__name__)
 
@@ -47,11 +49,11 @@ def compiled_lean(function: Function) -> Function:
 
 
 def _compiled(function: Function, **options: Any) -> Function:
-    try:
-        return cast(Function, njit(cache=True, **options)(function))
-    except RuntimeError:
-        # A read-only installation, run by somebody without a home: compile anew each time.
-        return cast(Function, njit(**options)(function))
+    made = njit(**options)(function)
+    # A read-only installation, run by somebody without a home, keeps nothing: compile anew each time.
+    with suppress(RuntimeError):
+        made._cache = DeepCache(function)  # type: ignore[no-untyped-call]
+    return cast(Function, made)
 
 
 @contextmanager

@@ -1,0 +1,70 @@
+"""What compiled code was made of: the key under which numba keeps it.
+
+Numba looks at the file of the function that it compiles alone. One that was changed elsewhere, and which the
+function calls, would go on as it was compiled before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from hashlib import sha256
+from types import CodeType, FunctionType
+
+import numpy as np
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
+
+_CONSTANTS = (bool, int, float, str, tuple, frozenset, np.generic, np.dtype)
+
+
+class DeepCache(FunctionCache):
+    """Numba's cache of a function's compiled code, which also asks what the function calls."""
+
+    def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
+        own: tuple[object, ...] = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]
+        return (*own, self._key)
+
+    @cached_property
+    def _key(self) -> str:
+        # Not before it is asked: what a function calls may stand behind it in its module.
+        return key_of(self._py_func)
+
+
+def key_of(function: Callable[..., object]) -> str:
+    """Return what changes with the code of a function, of those it calls, and of the constants they read."""
+    found = sha256()
+    for part in _parts(function, set()):
+        found.update(part.encode())
+    return found.hexdigest()
+
+
+def _parts(function: object, seen: set[int]) -> Iterator[str]:
+    if isinstance(function, Dispatcher):
+        function = function.py_func
+    if not isinstance(function, FunctionType) or id(function) in seen:
+        return
+    seen.add(id(function))
+    yield from _code(function.__code__)
+    for name in sorted(_names(function.__code__)):
+        value = function.__globals__.get(name)
+        if isinstance(value, np.ndarray):
+            yield f"{name}={value.tolist()!r}"
+        elif isinstance(value, _CONSTANTS):
+            yield f"{name}={value!r}"
+        elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
+            yield from _parts(value, seen)
+
+
+def _names(code: CodeType) -> set[str]:
+    inner = (_names(constant) for constant in code.co_consts if isinstance(constant, CodeType))
+    return {*code.co_names, *(name for names in inner for name in names)}
+
+
+def _code(code: CodeType) -> Iterator[str]:
+    yield f"{code.co_name}{code.co_code.hex()}{code.co_names}{code.co_varnames}"
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _code(constant)
+        elif not isinstance(constant, frozenset):
+            yield repr(constant)

@@ -1,0 +1,64 @@
+"""Compiled code is kept for what it was made of, and for nothing else."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robobt.world.compiled_key import key_of
+
+INNER = """
+from robobt.world.compiled import compilable
+from constants import FACTOR
+@compilable
+def inner(x):
+    return FACTOR * x + {added}
+"""
+OUTER = """
+from robobt.world.compiled import compiled
+from inner import inner
+@compiled
+def outer(x):
+    return inner(x)
+if __name__ == "__main__":
+    print(outer(10.0), *outer.stats.cache_hits)
+"""
+
+
+def answer(folder: Path, factor: float, added: float) -> list[str]:
+    (folder / "constants.py").write_text(f"FACTOR = {factor}\n")
+    (folder / "inner.py").write_text(INNER.format(added=added))
+    (folder / "outer.py").write_text(OUTER)
+    run = [sys.executable, "-B", "outer.py"]
+    done = subprocess.run(run, cwd=folder, capture_output=True, text=True, check=True, timeout=120)
+    return done.stdout.split()
+
+
+def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(tmp_path: Path) -> None:
+    assert answer(tmp_path, 2.0, 0.5) == ["20.5"]
+    # From the cache.
+    value, hit = answer(tmp_path, 2.0, 0.5)[:1], answer(tmp_path, 2.0, 0.5)[1:]
+    assert value == ["20.5"]
+    assert len(hit) == 1
+    assert answer(tmp_path, 2.0, 0.75) == ["20.75"]
+    assert answer(tmp_path, 3.0, 0.75) == ["30.75"]
+    # And what was there before is there still.
+    assert len(answer(tmp_path, 2.0, 0.5)) == 2
+
+
+FACTOR = np.array([1.0, 2.0])
+
+
+def scaled(x: float) -> float:
+    return float(FACTOR[0] * x)
+
+
+def test_a_key_follows_constants(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(scaled)
+    assert key_of(scaled) == before
+    monkeypatch.setitem(scaled.__globals__, "FACTOR", np.array([1.0, 3.0]))
+    assert key_of(scaled) != before
