@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import sys
+from collections.abc import Iterator
 from itertools import islice
 from math import hypot
 from pathlib import Path
@@ -10,15 +12,21 @@ from types import ModuleType
 
 import pytest
 
+from robobt.plays import PLAYS
+from robobt.skills import SKILLS
 from robobt.world import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.rules import in_defense_area
+from tests.registries import temporarily
 
 
 @pytest.fixture
-def judged(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+def judged(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
     monkeypatch.syspath_prepend(Path(__file__).parents[2] / "benchmarks")
-    return importlib.import_module("among_robots_in_matches")
+    # It enters a skill and plays, which other tests are not to see.
+    with temporarily(PLAYS), temporarily(SKILLS):
+        yield importlib.import_module("among_robots_in_matches")
+        del sys.modules["among_robots_in_matches"]
 
 
 def test_planner_and_model_play_the_same_starts(
