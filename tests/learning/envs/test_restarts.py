@@ -294,3 +294,19 @@ def test_a_skill_is_told_of_restarts_what_learners_are_told(tmp_path: Path, doub
         np.testing.assert_array_equal(own, result.observation[0, : made.observation.size])
     assert {each[0] for each in heard} == {-1.0, 0.0, 1.0}
     assert ((0.0, 1.0) in heard) == double_touch
+
+
+def test_shots_before_a_restart_count_after_it() -> None:
+    nothing = dict.fromkeys(("approach", "advance", "goal", "fault", "time", "crash"), 0.0)
+    given = {"blue": ["learner"], "rules": {"restarts": True}, "reward": {**nothing, "shot": 1.0}}
+    task = SoccerTask(SoccerSettings.model_validate(given))
+    task.reset_to([*at(2, 0), *in_mouth(2, 0)], seed=0)
+    earned, stops = 0.0, 0
+    for tick in range(60):
+        task.arenas.place([[at(2, 0)]], [[2, 3.2, 0, 0] if tick % 10 == 9 else in_mouth(2, 0)])
+        task.advance(np.array([KICK]))
+        stops += int(2.5 < task.arenas.balls[0, 1] < 3.0)
+        earned += task.shares[0, 0]
+        assert task.ended is None
+    assert stops > 2
+    assert earned == pytest.approx(4.0)

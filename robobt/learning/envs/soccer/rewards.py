@@ -17,9 +17,11 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _WITHIN = 0.4
 """From here on a kick is not at a mate [m]."""
-_SHOTS = 4
+_REWARDED = 4
 """So many shots of an episode are rewarded. If all were, shooting at the goalkeeper and fetching the ball
 could pay more than a goal, and in one seed of five did; if the first alone is, learning takes far longer."""
+SHOTS = 2
+"""Index of how many have been, in what is kept for a robot's reward."""
 _BLOCKED = 0.2
 """An opponent nearer than this to its way gets a pass [m]."""
 
@@ -47,7 +49,7 @@ class SoccerReward(Settings):
         0.5,
         ge=0,
         le=100,
-        description="own: on a kick in play that will go between the posts, the first four times",
+        description="own: on a kick that will go between the posts, its first four of an episode",
     )
     sent: float = Field(
         0.0, ge=0, le=100, description="own: on a kick at a mate, less beside it and none past an opponent"
@@ -121,12 +123,12 @@ def own_reward(
     if not isnan(before[1]):
         total += weights.approach * (before[1] - far)
     before[1] = far
-    shots = 0.0 if isnan(before[2]) else before[2]
-    if fired and shots < _SHOTS and (goal_x - ball[0]) * ball[2] > 0.0:
+    shots = 0.0 if isnan(before[SHOTS]) else before[SHOTS]
+    if fired and shots < _REWARDED and (goal_x - ball[0]) * ball[2] > 0.0:
         crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
         if abs(crosses) < post_y - BALL_RADIUS:
             total += weights.shot
-            before[2] = shots + 1.0
+            before[SHOTS] = shots + 1.0
     if gap < 0.005:
         total -= weights.crash
     return total

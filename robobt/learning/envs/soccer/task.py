@@ -18,6 +18,7 @@ from robobt.learning.envs.soccer.judge import (
 )
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
+from robobt.learning.envs.soccer.rewards import SHOTS
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.task import TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
@@ -208,7 +209,7 @@ class SoccerTask(ArenaTask):
         # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
         minds[which, LAST] = -1.0
         minds[which, BLUE_TICKS : YELLOW_TICKS + 1] = 0.0
-        self._before[which] = np.nan
+        self._before[which, :, :SHOTS] = np.nan
         self._progress["ball_x"][which], self._progress["ball_y"][which] = rows[which][:, [SPOT_X, SPOT_Y]].T
 
     def _announce(self, seen: FloatArray, which: IntArray) -> None:
