@@ -46,12 +46,13 @@ def _parts(function: object, seen: set[int]) -> Iterator[str]:
         return
     seen.add(id(function))
     yield from _code(function.__code__)
+    yield _told(function.__defaults__)
     for name in sorted(_names(function.__code__)):
         value = function.__globals__.get(name)
         if isinstance(value, np.ndarray):
             yield f"{name}={value.tolist()!r}"
         elif isinstance(value, _CONSTANTS):
-            yield f"{name}={value!r}"
+            yield f"{name}={_told(value)}"
         elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
             yield from _parts(value, seen)
 
@@ -66,5 +67,10 @@ def _code(code: CodeType) -> Iterator[str]:
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield from _code(constant)
-        elif not isinstance(constant, frozenset):
-            yield repr(constant)
+        else:
+            yield _told(constant)
+
+
+def _told(constant: object) -> str:
+    # The order of a set differs from process to process.
+    return repr(sorted(map(repr, constant)) if isinstance(constant, frozenset) else constant)

@@ -40,25 +40,35 @@ def answer(folder: Path, factor: float, added: float) -> list[str]:
 
 def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(tmp_path: Path) -> None:
     assert answer(tmp_path, 2.0, 0.5) == ["20.5"]
-    # From the cache.
-    value, hit = answer(tmp_path, 2.0, 0.5)[:1], answer(tmp_path, 2.0, 0.5)[1:]
-    assert value == ["20.5"]
-    assert len(hit) == 1
+    value, *hits = answer(tmp_path, 2.0, 0.5)
+    assert value == "20.5"
+    assert len(hits) == 1
     assert answer(tmp_path, 2.0, 0.75) == ["20.75"]
     assert answer(tmp_path, 3.0, 0.75) == ["30.75"]
     # And what was there before is there still.
     assert len(answer(tmp_path, 2.0, 0.5)) == 2
 
 
-FACTOR = np.array([1.0, 2.0])
+FACTORS = np.array([1.0, 2.0])
 
 
-def scaled(x: float) -> float:
-    return float(FACTOR[0] * x)
+def scaled(x: float, by: float = 1.0) -> float:
+    return float(FACTORS[0] * x * by)
 
 
-def test_a_key_follows_constants(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_key_follows_the_constants_that_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
     before = key_of(scaled)
     assert key_of(scaled) == before
-    monkeypatch.setitem(scaled.__globals__, "FACTOR", np.array([1.0, 3.0]))
+    monkeypatch.setitem(scaled.__globals__, "FACTORS", np.array([1.0, 3.0]))
     assert key_of(scaled) != before
+
+
+def test_a_key_follows_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(scaled)
+    monkeypatch.setattr(scaled, "__defaults__", (2.0,))
+    assert key_of(scaled) != before
+
+
+def test_a_key_follows_sets() -> None:
+    one, other = (eval(f"lambda x: x in {{{values}}}") for values in ("1, 2", "1, 3"))
+    assert key_of(one) != key_of(other)
