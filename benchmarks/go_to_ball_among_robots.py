@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
@@ -48,19 +49,23 @@ def main() -> None:
     for name, policy in policies.items():
         episodes = run_starts(task, policy, starts, SEED)
         reached, touched = episodes.success, ~(episodes.success | episodes.truncated)
-        shares = " ".join(
-            f"{label} {count.sum()} ({low:.1%} to {high:.1%})"
-            for label, count in (("reached", reached), ("touched", touched))
-            for low, high in (wilson_interval(int(count.sum()), len(count)),)
-        )
         time = f"{episodes.time[reached].mean():.2f} s" if reached.any() else "-"
-        line = f"{name}: of {given.starts} {shares}, {time}"
+        line = f"{name}: of {given.starts} {shares(reached, touched)}, {time}"
         if planner is not None and name in given.models:
             both = planner.success & reached
             later = mean_interval(episodes.time[both] - planner.time[both])
             line += f"; {later.low:+.2f} to {later.high:+.2f} s beside the planner where both reach it"
         planner = planner or episodes
         print(line, flush=True)
+
+
+def shares(reached: NDArray[np.bool_], touched: NDArray[np.bool_]) -> str:
+    """Return how many of the starts ended so, (n,) each, with intervals."""
+    return " ".join(
+        f"{label} {count.sum()} ({low:.1%} to {high:.1%})"
+        for label, count in (("reached", reached), ("touched", touched))
+        for low, high in (wilson_interval(int(count.sum()), len(count)),)
+    )
 
 
 if __name__ == "__main__":

@@ -44,7 +44,9 @@ def test_planner_and_model_play_the_same_starts(
     [
         (["save_ppo"], "is a model for Goalkeeper, not for GoToBall"),
         (["nobody"], "no go-to-ball policy is called 'nobody'"),
-        (["go_to_ball_ddpg", "--starts", "0"], "--starts: at least 1, not 0"),
+        (["go_to_ball_ddpg", "--starts", "0"], "--starts: 1 to 3523, not 0"),
+        (["go_to_ball_ddpg", "--starts", "5000"], "--starts: 1 to 3523, not 5000"),
+        (["go_to_ball_ddpg", "--address", "league://grsim"], "--only: with --address there is one world"),
     ],
 )
 def test_what_cannot_be_judged_is_one_line(
@@ -53,6 +55,22 @@ def test_what_cannot_be_judged_is_one_line(
     with pytest.raises(SystemExit):
         judged.main([*words, "--only", "default"])
     assert problem in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_a_wrong_address_is_one_line(judged: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        judged.main(["go_to_ball_ddpg", "--address", "league://nowhere"])
+    assert "league://nowhere" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_where_nobody_arrives_there_is_no_gap(
+    judged: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(judged, "played", lambda *_: (0.0, 1.0, 1.0))
+    judged.main(["go_to_ball_ddpg", "--starts", "3", "--only", "default", "--only", "grsim"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2] == "default: - later where both reach it"
+    assert lines[5] == "grsim: - later where both reach it"
 
 
 def test_the_ball_lies_where_a_field_player_may_go(judged: ModuleType) -> None:
@@ -79,8 +97,8 @@ def test_a_robot_in_the_way_drives_between_its_two_places(judged: ModuleType) ->
 
 def test_whoever_comes_too_near_has_touched(judged: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = judged.scenario("default", "geometric", next(judged.starts()))
-    reached, touched, time = judged.played(scenario, 0, "sim")
+    reached, touched, time = judged.played(scenario, 0, judged.world_from("sim"))
     assert (reached, touched) == (1.0, 0.0)
-    monkeypatch.setattr(judged, "TOUCHED", 12.0)
-    assert judged.played(scenario, 0, "sim")[:2] == (0.0, 1.0)
+    monkeypatch.setattr(judged, "TOUCHING", 12.0)
+    assert judged.played(scenario, 0, judged.world_from("sim"))[:2] == (0.0, 1.0)
     assert time > 1.0

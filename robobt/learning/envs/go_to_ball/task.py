@@ -34,7 +34,7 @@ _KICK_SPEED = 6.0
 """Kick that is thought of when the ball is fetched in order to shoot [m/s]; that of the shipped Shoot."""
 _FROM_POST = 0.15
 """How far inside the posts it has to cross the line [m]."""
-_TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
+TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are nearer touch [m]: contact is seen once a tick."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
 _WEIGHTS = numbers_dtype(GoToBallReward)
@@ -184,7 +184,7 @@ def _judge(
         nearest = inf
         for other in range(1, robots.shape[1]):
             nearest = min(nearest, hypot(robots[i, other, 0] - robot[0], robots[i, other, 1] - robot[1]))
-        touched = nearest < _TOUCHING
+        touched = nearest < TOUCHING
         reached = reached and not touched
         gap = nearest - 2.0 * ROBOT_RADIUS
         earned = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing, gap, touched)
