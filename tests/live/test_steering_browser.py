@@ -127,6 +127,28 @@ document.querySelectorAll('#tree .row')[place].click(); return place;"""
     assert live.js("return window.robobt.match.frames") >= 5
 
 
+def test_what_is_typed_stays_whatever_the_match_tells(live: Page, session: Session) -> None:
+    live.find("#picker .pick.blue").click()
+    live.button("Edit play").click()
+    live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
+    live.js("document.querySelector('.forms input[type=number]').value = '0.123'")
+    session.server.say("something else")
+    live.wait("return document.querySelector('.told').textContent === 'something else'")
+    assert live.js("return document.querySelector('.forms input[type=number]').value") == "0.123"
+
+
+def test_a_form_that_is_closed_stays_closed_until_it_is_asked_for(live: Page, session: Session) -> None:
+    live.find("#picker .pick.blue").click()
+    live.button("Edit play").click()
+    live.wait("return document.querySelector('.forms form') !== null")
+    live.button("Close").click()
+    session.server.say("it goes on")
+    live.wait("return document.querySelector('.told').textContent === 'it goes on'")
+    assert live.js("return document.querySelector('.forms form') === null")
+    live.button("Edit play").click()
+    live.wait("return document.querySelector('.forms form') !== null")
+
+
 def test_a_wrong_value_is_told_and_changes_nothing(live: Page, session: Session) -> None:
     live.find("#picker .pick.blue").click()
     live.button("Edit play").click()

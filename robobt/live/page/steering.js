@@ -134,10 +134,12 @@ const inputOf = field => {
   input.value = JSON.stringify(value);
   return [input, () => JSON.parse(input.value)];
 };
-let shownForm = null;
+/* The form that was shown last, as text: it stays as it is, with what was typed, or closed, until another comes. */
+let shownForm = "null";
 const showForm = (form, plays) => {
-  if (form === shownForm) return;
-  shownForm = form;
+  const text = JSON.stringify(form);
+  if (text === shownForm) return;
+  shownForm = text;
   forms.replaceChildren();
   if (!form) return;
   const made = make("form"), reads = [];
@@ -165,7 +167,7 @@ const showForm = (form, plays) => {
   }
   if (!form.fields.length && form.path) made.append(make("p", "dim", "This node has no parameters to change."));
   const actions = make("div", "group"), send = make("button", "toggle", "Apply");
-  actions.append(send, button("Close", "Close this form", () => { shownForm = null; forms.replaceChildren(); }));
+  actions.append(send, button("Close", "Close this form", () => forms.replaceChildren()));
   made.append(actions);
   made.addEventListener("submit", event => {
     event.preventDefault();
