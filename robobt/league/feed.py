@@ -43,6 +43,9 @@ _UNEQUAL = 0.05
 _MAX_READING = 0.004
 """How long useless packets are read at a time: a flood must not delay the commands [s]."""
 
+_BACKLOG = 16
+"""Most batches that are dropped unread: a flood must not hold up the start."""
+
 
 class Feed:
     """Receives from a field and estimates its state.
@@ -185,6 +188,17 @@ class Feed:
         if self.referee is not None:
             for packet in self._sources[1].receive():
                 self.referee.read(packet.data, packet.sender, arrived)
+
+    def skip_backlog(self) -> None:
+        """Drop the frames that have waited unread: when these arrived is not known."""
+        for _ in range(_BACKLOG):
+            waiting = [*self._vision.receive()]
+            if not waiting:
+                return
+            for packet in waiting:
+                seen = self._read(packet.data)
+                if seen is not None:
+                    self._look_around(seen)
 
     def add(self, frame: CameraFrame, arrived: float) -> None:
         """Use a camera's frame that arrived at a time of this machine's clock [s]."""

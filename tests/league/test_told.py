@@ -163,6 +163,21 @@ def test_plays_too_slow_for_this_machine_are_told_once(caplog: pytest.LogCapture
     assert "not 60: this machine is too slow" in told
 
 
+def test_packets_that_waited_before_the_first_look_tell_nothing_of_the_rate(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    with played() as (world, server):
+        # The world is open, and the process that plays in it loads what it needs.
+        for _ in range(150):
+            world._time += server.field.period
+            server.step()
+            server.send_due(world._time)
+        world.reset(START, 0)
+        act(world, 10.0)
+        assert world._feed.rate == pytest.approx(1.0, abs=0.002)
+    assert caplog.messages == []
+
+
 def _address(endpoints: Endpoints, **more: str) -> str:
     ports = {name: str(getattr(endpoints, name)) for name in Endpoints.model_fields}
     return "league://grsim?" + "&".join(f"{name}={value}" for name, value in (ports | more).items())
