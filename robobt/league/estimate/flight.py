@@ -66,6 +66,9 @@ _HIGHEST = 2.0
 _FASTER = 0.3
 """A ball that is seen to gain so much with no robot near does not roll [m/s]."""
 
+_BACK = 1e-6
+"""A ball seen no further than this from where it was kicked has flown nowhere [m]."""
+
 _HOP = (0.05, 0.05, 0.3, 0.3, 0.02, 0.3)
 """The same of a hop, from the one before."""
 
@@ -200,6 +203,9 @@ class FlightWatch:
         flat = flat_misfit(times - before.time, places, self._ball) / self._variance
         rest = 2 * len(self._since) - 5
         if flat < _NOT_FLAT * rest:
+            return
+        last = self._since[-1]
+        if not self._unknown and hypot(last.x - before.x, last.y - before.y) < _BACK:
             return
         hop, misfit = self._launch(before)
         along, rise = hypot(hop.ball.vx, hop.ball.vy), hop.ball.vz

@@ -12,6 +12,7 @@ from robobt.league.estimate.ball_track import BallMotion
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.estimate.flight import FlightWatch
 from robobt.league.estimate.hop import Hop
+from robobt.league.estimate.kicks import Kick
 from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame
@@ -104,6 +105,16 @@ def test_no_ball_is_taken_to_fall_from_higher_than_robots_chip(height: float, fl
         watch.update(tick * PERIOD, 0, x, y)
         seen = seen or watch.hop is not None
     assert seen is flies
+
+
+def test_a_ball_that_is_back_exactly_where_it_was_kicked_has_not_flown() -> None:
+    """As one between two dribblers is, seen without noise, in the real grSim."""
+    watch = FlightWatch(preset("grsim").ball, 0.002, {0: CameraPlace(2.25, 1.5, 4.0)})
+    watch.update(0.0, 0, 0.0, 0.0)
+    kick = Kick(ME, PERIOD)
+    for tick, x in enumerate([0.05, 0.1, 0.15, 0.1, 0.05, 0.0, 0.0], 1):
+        watch.update(tick * PERIOD, 0, x, 0.0, kick if tick == 1 else None)
+    assert watch.hop is None
 
 
 @pytest.mark.integration
