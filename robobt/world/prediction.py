@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
-from math import ceil, cos, hypot, sin, sqrt
+from math import ceil, cos, exp, hypot, sin, sqrt
 
 from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
@@ -31,6 +31,9 @@ _CARRIED = 0.03
 
 _FRONT = 0.08
 """Centre to the flat front, where nothing better is known [m]."""
+
+_FADES = 0.04
+"""How a ball was seen to move that several robots hold counts for a third after so long [s]."""
 
 
 class PredictedWorld(WrappedWorld):
@@ -105,21 +108,21 @@ class PredictedWorld(WrappedWorld):
         return state
 
     def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
-        ball = seen.ball
-        for before, after in zip(seen.own + seen.opponents, now, strict=True):
-            if after.ball_contact:
-                c, s = cos(before.heading), sin(before.heading)
-                dx, dy = ball.x - before.x, ball.y - before.y
-                ahead, aside = c * dx + s * dy, c * dy - s * dx
-                place = _FRONT + BALL_RADIUS
-                if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
-                    ahead, aside = place, 0.0
-                c, s = cos(after.heading), sin(after.heading)
-                dx, dy = c * ahead - s * aside, s * ahead + c * aside
-                return BallState(
-                    after.x + dx, after.y + dy, after.vx - after.omega * dy, after.vy + after.omega * dx
-                )
-        age = self.vision_delay + self.command_delay
+        ball, age = seen.ball, self.vision_delay + self.command_delay
+        both = zip(seen.own + seen.opponents, now, strict=True)
+        holding = [(before, after) for before, after in both if after.ball_contact]
+        if len(holding) > 1:
+            return _torn(ball, holding, age)
+        for before, after in holding:
+            c, s = cos(before.heading), sin(before.heading)
+            dx, dy = ball.x - before.x, ball.y - before.y
+            ahead, aside = c * dx + s * dy, c * dy - s * dx
+            place = _FRONT + BALL_RADIUS
+            if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
+                ahead, aside = place, 0.0
+            c, s = cos(after.heading), sin(after.heading)
+            x, y = after.x + c * ahead - s * aside, after.y + s * ahead + c * aside
+            return BallState(x, y, *_velocity(after, x, y))
         rolled = BallState(ball.x + ball.vx * age, ball.y + ball.vy * age, ball.vx, ball.vy)
         if ball.z > 0.0 or ball.vz > 0.0:
             rolled.z = max(ball.z + (ball.vz - 0.5 * GRAVITY * age) * age, 0.0)
@@ -134,6 +137,26 @@ class PredictedWorld(WrappedWorld):
 
 
 _STILL = RobotCommand()
+
+
+def _torn(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
+    """Return the ball that several robots hold, given as they were seen and as they are now.
+
+    Each would have it go its own way, and it goes between. How it was seen to move besides counts for
+    the less the longer ago that is.
+    """
+    fresh = exp(-age / _FADES)
+    vx, vy = fresh * ball.vx, fresh * ball.vy
+    for before, after in holding:
+        seen, now = _velocity(before, ball.x, ball.y), _velocity(after, ball.x, ball.y)
+        vx += (now[0] - fresh * seen[0]) / len(holding)
+        vy += (now[1] - fresh * seen[1]) / len(holding)
+    return BallState(ball.x + vx * age, ball.y + vy * age, vx, vy)
+
+
+def _velocity(robot: RobotState, x: float, y: float) -> tuple[float, float]:
+    """Return how fast a place that goes with the robot moves [m/s]."""
+    return robot.vx - robot.omega * (y - robot.y), robot.vy + robot.omega * (x - robot.x)
 
 
 def _same(one: RobotState, other: RobotState) -> bool:

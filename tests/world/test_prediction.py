@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -82,6 +83,21 @@ def test_a_ball_in_the_mouth_goes_with_its_robot() -> None:
     assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.01
     late = made.world.observe()
     assert math.hypot(late.ball.x - real.ball.x, late.ball.y - real.ball.y) > 0.03
+
+
+@pytest.mark.parametrize("command", [RobotCommand(-1.0), RobotCommand(omega=3.0)])
+def test_a_ball_that_two_robots_hold_goes_between_them(command: RobotCommand) -> None:
+    late = RealismSettings(vision_delay=0.035)
+    sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, preset("grsim", realism=late), PERIOD)
+    made = PredictedWorld(sim, late.vision_delay)
+    start = {BLUE: (-0.1015, 0.0, 0.0), YELLOW: (0.1015, 0.0, math.pi)}
+    made.reset(Placement(start, (0.0, 0.0, 0.0, 0.0)), 1)
+    for _ in range(9):
+        shown, real = made.observe(), made.truth()
+        assert [robot.ball_contact for robot in real.own + real.opponents] == [True, True]
+        assert math.hypot(shown.ball.vx - real.ball.vx, shown.ball.vy - real.ball.vy) < 0.12
+        assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.005
+        made.act({BLUE: replace(command, dribbler=True), YELLOW: RobotCommand(dribbler=True)})
 
 
 def test_a_detection_that_is_missing_is_bridged() -> None:
