@@ -125,7 +125,7 @@ class VisionFilter:
         if self.captured is not None:
             self._ball = BallTrack(x, y, self.captured, self.settings.ball, self._ball_noise)
             self._ball_seen = self.captured
-            self.possession.hold = None
+            self.possession.holds = []
             self._flights.clear()
             self._outliers.forget(None)
 
@@ -251,12 +251,11 @@ class VisionFilter:
         motions = {robot: self._robot_at(robot, time) for robot in self._robots}
         kickable = False
         if time > track.time:
-            hold = self.possession.hold
-            carried = hold is not None and hold.robot in motions
-            kickable = carried or near_robot(track.motion, motions)
+            carried = self.possession.carried(motions)
+            kickable = carried is not None or near_robot(track.motion, motions)
             track.advance(time, kickable)
-            if hold is not None and carried:
-                track.carry(hold.ball(motions[hold.robot]), time)
+            if carried is not None:
+                track.carry(carried, time)
         nearest = min(balls, key=lambda ball: track.deviation(ball.x, ball.y))
         gate = min(_MAX_GATE, _BALL_GATE + _MAX_BALL_SPEED * max(0.0, time - self._ball_seen))
         if track.deviation(nearest.x, nearest.y) <= gate:
@@ -299,21 +298,22 @@ class VisionFilter:
         if flights.hop is None:
             self.possession.update(track.motion, motions)
         else:
-            self.possession.hold = None
+            self.possession.holds = []
 
     def _robot_at(self, robot: RobotId, time: float) -> RobotMotion:
         track = self._robots[robot]
         return predict_robot(track.motion, track.time, time, self._sent.get(robot, []), track.limits)
 
     def _ball_at(self, time: float, motions: Mapping[RobotId, RobotMotion]) -> BallMotion:
-        track, hold = self._ball, self.possession.hold
+        track = self._ball
         if track is None:
             return BallMotion(0.0, 0.0)
         flying = self._flights.at(time)
         if flying is not None:
             return flying
-        if hold is not None and hold.robot in motions:
-            return hold.ball(motions[hold.robot])
+        carried = self.possession.carried(motions)
+        if carried is not None:
+            return carried
         if time <= track.time:
             return track.motion
         ball = predict_ball(track.motion, time - track.time, self.settings.ball)

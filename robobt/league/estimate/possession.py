@@ -30,7 +30,7 @@ _FEEDBACK_REACH = 0.05
 
 @dataclass(slots=True)
 class Hold:
-    """The robot that carries the ball, and the ball's place in that robot's frame [m]."""
+    """A robot that carries the ball, and the ball's place in that robot's frame [m]."""
 
     robot: RobotId
     ahead: float
@@ -47,20 +47,20 @@ class Possession:
     """Decides who has the ball.
 
     Attributes:
-        hold: who carries the ball, None when nobody does.
+        holds: who carries the ball: nobody, one, or several that hold it at once.
         last_touch: who touched it last, None before the first touch.
         feedback: last report of each robot's break-beam sensor.
     """
 
     def __init__(self, body: BodySettings) -> None:
         self._body = body
-        self.hold: Hold | None = None
+        self.holds: list[Hold] = []
         self.last_touch: RobotId | None = None
         self.feedback: dict[RobotId, bool] = {}
 
     def update(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> None:
         """Judge anew from the estimates at the ball's last detection."""
-        self.hold = None
+        self.holds = []
         reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
         for robot, m in motions.items():
             if hypot(ball.x - m.x, ball.y - m.y) > reach:
@@ -71,7 +71,21 @@ class Possession:
             vx, vy = m.vx - m.omega * (ball.y - m.y), m.vy + m.omega * (ball.x - m.x)
             slow = hypot(ball.vx - vx, ball.vy - vy) < _HOLD_SPEED
             if slow and self._in_mouth(ahead, aside, _HOLD_SLACK):
-                self.hold = Hold(robot, ahead, aside)
+                self.holds.append(Hold(robot, ahead, aside))
+
+    def carried(self, motions: Mapping[RobotId, RobotMotion]) -> BallMotion | None:
+        """Return the motion of the ball given those of the robots, None where nobody carries it.
+
+        Several would each have it go their own way: it goes between.
+        """
+        balls = [hold.ball(motions[hold.robot]) for hold in self.holds if hold.robot in motions]
+        if len(balls) < 2:
+            return balls[0] if balls else None
+        x, y, vx, vy = (
+            sum(part) / len(balls)
+            for part in zip(*((ball.x, ball.y, ball.vx, ball.vy) for ball in balls), strict=True)
+        )
+        return BallMotion(x, y, vx, vy)
 
     def has_ball(self, robot: RobotId, m: RobotMotion, ball: BallMotion) -> bool:
         """Return whether a robot has the ball, by its sensor where that is plausible."""

@@ -288,6 +288,20 @@ def test_a_hidden_ball_goes_with_the_robot_that_has_it(watched: Watched) -> None
     assert watched.filter.ball_unseen() == pytest.approx(1.0, abs=0.02)
 
 
+def test_a_ball_that_two_robots_hold_goes_between_them(watched: Watched) -> None:
+    mouth = REALISTIC.body.face + 0.0215
+    for _ in range(30):
+        watched.see([(ME, -mouth, 0.0, 0.0), (HER, mouth, 0.0, pi)], [(0.0, 0.0)])
+    watched.filter.sent(watched.time, {HER: RobotCommand(-1.0)})
+    frame = watched.frame(0.05)
+    me, her = frame.own[0], frame.opponents[0]
+    assert me.ball_contact
+    assert her.ball_contact
+    assert her.vx - me.vx > 0.1
+    assert frame.ball.vx == pytest.approx((me.vx + her.vx) / 2, abs=0.01)
+    assert frame.ball.x == pytest.approx((me.x + her.x) / 2, abs=0.001)
+
+
 def test_a_hidden_ball_that_nobody_has_rolls_on_to_rest(watched: Watched) -> None:
     watched.see_for(0.5, ball=lambda t: (0.4 * t, 0.0))
     for _ in range(120):
