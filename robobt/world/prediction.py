@@ -111,18 +111,8 @@ class PredictedWorld(WrappedWorld):
         ball, age = seen.ball, self.vision_delay + self.command_delay
         both = zip(seen.own + seen.opponents, now, strict=True)
         holding = [(before, after) for before, after in both if after.ball_contact]
-        if len(holding) > 1:
-            return _torn(ball, holding, age)
-        for before, after in holding:
-            c, s = cos(before.heading), sin(before.heading)
-            dx, dy = ball.x - before.x, ball.y - before.y
-            ahead, aside = c * dx + s * dy, c * dy - s * dx
-            place = _FRONT + BALL_RADIUS
-            if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
-                ahead, aside = place, 0.0
-            c, s = cos(after.heading), sin(after.heading)
-            x, y = after.x + c * ahead - s * aside, after.y + s * ahead + c * aside
-            return BallState(x, y, *_velocity(after, x, y))
+        if holding:
+            return _held(ball, holding, age)
         rolled = BallState(ball.x + ball.vx * age, ball.y + ball.vy * age, ball.vx, ball.vy)
         if ball.z > 0.0 or ball.vz > 0.0:
             rolled.z = max(ball.z + (ball.vz - 0.5 * GRAVITY * age) * age, 0.0)
@@ -139,19 +129,33 @@ class PredictedWorld(WrappedWorld):
 _STILL = RobotCommand()
 
 
-def _torn(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
-    """Return the ball that several robots hold, given as they were seen and as they are now.
+def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
+    """Return a ball that robots hold, which are given as they were seen and as they are now.
 
-    Each would have it go its own way, and it goes between. How it was seen to move besides counts for
-    the less the longer ago that is.
+    Each would have it go its own way: it goes between. How it was seen to move besides counts for the
+    less the longer ago that is.
     """
-    fresh = exp(-age / _FADES)
-    vx, vy = fresh * ball.vx, fresh * ball.vy
+    x = y = vx = vy = 0.0
+    fresh = exp(-age / _FADES) if len(holding) > 1 else 0.0
     for before, after in holding:
-        seen, now = _velocity(before, ball.x, ball.y), _velocity(after, ball.x, ball.y)
-        vx += (now[0] - fresh * seen[0]) / len(holding)
-        vy += (now[1] - fresh * seen[1]) / len(holding)
-    return BallState(ball.x + vx * age, ball.y + vy * age, vx, vy)
+        c, s = cos(before.heading), sin(before.heading)
+        dx, dy = ball.x - before.x, ball.y - before.y
+        ahead, aside = c * dx + s * dy, c * dy - s * dx
+        place = _FRONT + BALL_RADIUS
+        if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
+            # It was not there yet when it was seen.
+            ahead, aside, fresh = place, 0.0, 0.0
+        c, s = cos(after.heading), sin(after.heading)
+        dx, dy = c * ahead - s * aside, s * ahead + c * aside
+        x, y = x + after.x + dx, y + after.y + dy
+        vx, vy = vx + after.vx - after.omega * dy, vy + after.vy + after.omega * dx
+    count = len(holding)
+    x, y, vx, vy = x / count, y / count, vx / count, vy / count
+    if fresh:
+        seen = [_velocity(before, ball.x, ball.y) for before, _ in holding]
+        vx += fresh * (ball.vx - sum(each[0] for each in seen) / count)
+        vy += fresh * (ball.vy - sum(each[1] for each in seen) / count)
+    return BallState(x, y, vx, vy)
 
 
 def _velocity(robot: RobotState, x: float, y: float) -> tuple[float, float]:

@@ -100,6 +100,37 @@ def test_a_ball_that_two_robots_hold_goes_between_them(command: RobotCommand) ->
         made.act({BLUE: replace(command, dribbler=True), YELLOW: RobotCommand(dribbler=True)})
 
 
+@pytest.mark.parametrize("delay", [0.035, 0.1])
+def test_they_may_begin_as_they_drive(delay: float) -> None:
+    late = RealismSettings(vision_delay=delay)
+    sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, preset("grsim", realism=late), PERIOD)
+    made = PredictedWorld(sim, delay)
+    start = {BLUE: (-0.1015, 0.0, 0.0), YELLOW: (0.1015, 0.0, math.pi)}
+    made.reset(Placement(start, (0.0, 0.0, 2.0, 0.0), {BLUE: (2.0, 0.0), YELLOW: (2.0, 0.0)}), 1)
+    for _ in range(7):
+        shown = made.observe()
+        assert shown.ball.x - shown.own[0].x == pytest.approx(0.1015, abs=0.005)
+        made.act({BLUE: RobotCommand(2.0, dribbler=True), YELLOW: RobotCommand(-2.0, dribbler=True)})
+
+
+def test_a_ball_that_was_not_yet_in_their_mouths_when_it_was_seen_is_there_now() -> None:
+    late = RealismSettings(vision_delay=0.1)
+    sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, preset("grsim", realism=late), PERIOD)
+    made = PredictedWorld(sim, late.vision_delay)
+    # Two mouths that wait for it, half turned to each other.
+    x, y, turn = 0.0663, 0.0978, math.radians(50.0)
+    start = {BLUE: (x, y, turn - math.pi), YELLOW: (x, -y, math.pi - turn)}
+    made.reset(Placement(start, (-0.25, 0.0, 3.0, 0.0)), 1)
+    held = 0
+    for _ in range(20):
+        shown, real = made.observe(), made.truth()
+        if all(robot.ball_contact for robot in real.own + real.opponents):
+            held += 1
+            assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.05
+        made.act({BLUE: RobotCommand(dribbler=True), YELLOW: RobotCommand(dribbler=True)})
+    assert held > 5
+
+
 def test_a_detection_that_is_missing_is_bridged() -> None:
     made = world(vision_delay=0.03, missing_robot=0.5)
     worst = 0.0
