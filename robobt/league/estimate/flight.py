@@ -204,8 +204,7 @@ class FlightWatch:
         rest = 2 * len(self._since) - 5
         if flat < _NOT_FLAT * rest:
             return
-        last = self._since[-1]
-        if not self._unknown and hypot(last.x - before.x, last.y - before.y) < _BACK:
+        if not self._unknown and not _left(before, self._since[-1]):
             return
         hop, misfit = self._launch(before)
         along, rise = hypot(hop.ball.vx, hop.ball.vy), hop.ball.vz
@@ -223,10 +222,11 @@ class FlightWatch:
         if self._unknown:
             found, misfit = self._fit(self._since, before.time, _still(before), _ANYWHERE)
             return _hop(before.time, found, 0), misfit
-        way = self._since[-1].x - before.x, self._since[-1].y - before.y
+        newest = self._since[-1]
+        way = newest.x - before.x, newest.y - before.y
         length = hypot(*way)
         lean = np.array([0.0, 0.0, -way[0] / length, -way[1] / length, 0.0, 1.0])
-        lean /= _USUAL * length / (self._since[-1].time - before.time)
+        lean /= _USUAL * length / (newest.time - before.time)
         rest, tried = 2 * len(self._since) - 5, []
         for i, last in enumerate(self._last):
             flight = [seen for seen in (*self._last[i + 1 :], *self._since) if seen.time > last.time]
@@ -283,6 +283,8 @@ class FlightWatch:
         if self._lost >= _LOST_FOR:
             self.hop = None
             return
+        if hop.count == 0 and self._before is not None and not _left(self._before, seen):
+            return
         self._since.append(seen)
         if hop.count == 0 and self._before is not None:
             hop, _ = self._launch(self._before)
@@ -292,6 +294,11 @@ class FlightWatch:
             found, _ = self._fit(self._since, self._expected.time, mean, _HOP)
             hop = _hop(self._expected.time, found, hop.count)
         self.hop = hop
+
+
+def _left(before: _Seen, seen: _Seen) -> bool:
+    """Return whether a ball is seen, later, elsewhere than it was: else it tells no direction."""
+    return seen.time > before.time and hypot(seen.x - before.x, seen.y - before.y) >= _BACK
 
 
 def _columns(flight: list[_Seen]) -> tuple[FloatArray, FloatArray]:

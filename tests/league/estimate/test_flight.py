@@ -117,6 +117,21 @@ def test_a_ball_that_is_back_exactly_where_it_was_kicked_has_not_flown() -> None
     assert watch.hop is None
 
 
+@pytest.mark.parametrize(("time", "x"), [(13 * PERIOD, 0.0), (0.0, 0.01)], ids=["put back", "late"])
+def test_a_chip_in_flight_may_be_seen_where_it_began_or_as_it_was_before(time: float, x: float) -> None:
+    camera, ball = CameraPlace(2.25, 1.5, 4.0), Hop(0.0, BallMotion(0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0))
+    watch = FlightWatch(preset("grsim").ball, 0.002, {0: camera, 1: CameraPlace(-2.25, 1.5, 4.0)})
+    watch.update(0.0, 0, 0.0, 0.0)
+    for tick in range(1, 13):
+        real = ball.at(tick * PERIOD)
+        stretch = (camera.z - BALL_RADIUS) / (camera.z - BALL_RADIUS - real.z)
+        places = (at + stretch * (place - at) for place, at in ((real.x, camera.x), (0.0, camera.y)))
+        watch.update(tick * PERIOD, 0, *places, Kick(ME, PERIOD) if tick == 1 else None)
+    assert watch.hop is not None
+    watch.update(time, int(time == 0.0), x, 0.0)
+    assert watch.hop is None or abs(watch.hop.ball.vx) < 10.0
+
+
 @pytest.mark.integration
 @pytest.mark.parametrize("name", ["default", "grsim"])
 def test_most_chips_are_known_and_land_where_they_are_said_to(name: str) -> None:
