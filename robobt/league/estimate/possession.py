@@ -18,6 +18,9 @@ _MOUTH_SLACK = 0.004
 _HOLD_SLACK, _HOLD_SPEED = 0.012, 0.5
 """A ball this close to the mouth and this slow relative to it is carried [m, m/s]."""
 
+_PARTED = 0.03
+"""Robots that hold one ball have parted when it would be this far apart from itself: one has lost it [m]."""
+
 _TOUCH_GAP = 0.006
 """Gap between hull and ball that counts as a touch [m]."""
 
@@ -76,11 +79,17 @@ class Possession:
     def carried(self, motions: Mapping[RobotId, RobotMotion]) -> BallMotion | None:
         """Return the motion of the ball given those of the robots, None where nobody carries it.
 
-        Several would each have it go their own way: it goes between.
+        Several would each have it go their own way: it goes between. Where they part while it is not seen,
+        it is with those whose sensors report it, and where these say nothing, with nobody.
         """
-        balls = [hold.ball(motions[hold.robot]) for hold in self.holds if hold.robot in motions]
+        holders = [hold for hold in self.holds if hold.robot in motions]
+        balls = [hold.ball(motions[hold.robot]) for hold in holders]
+        if _apart(balls) > _PARTED:
+            balls = [ball for hold, ball in zip(holders, balls, strict=True) if self.feedback.get(hold.robot)]
         if len(balls) < 2:
             return balls[0] if balls else None
+        if _apart(balls) > _PARTED:
+            return None
         x, y, vx, vy = (
             sum(part) / len(balls)
             for part in zip(*((ball.x, ball.y, ball.vx, ball.vy) for ball in balls), strict=True)
@@ -99,6 +108,11 @@ class Possession:
         body = self._body
         depth = body.face + BALL_RADIUS + body.sensor_depth + slack
         return 0.0 < ahead <= depth and abs(aside) <= body.mouth_width / 2
+
+
+def _apart(balls: list[BallMotion]) -> float:
+    """Return how far from the first the farthest is [m]."""
+    return max((hypot(ball.x - balls[0].x, ball.y - balls[0].y) for ball in balls), default=0.0)
 
 
 def near_robot(ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> bool:

@@ -302,6 +302,21 @@ def test_a_ball_that_two_robots_hold_goes_between_them(watched: Watched) -> None
     assert frame.ball.x == pytest.approx((me.x + her.x) / 2, abs=0.001)
 
 
+@pytest.mark.parametrize("reported", [None, ME, HER])
+def test_a_hidden_ball_stays_with_one_of_two_that_part(watched: Watched, reported: RobotId | None) -> None:
+    mouth = REALISTIC.body.face + 0.0215
+    for _ in range(30):
+        watched.see([(ME, -mouth, 0.0, 0.0), (HER, mouth, 0.0, pi)], [(0.0, 0.0)])
+    if reported is not None:
+        watched.filter.possession.feedback.update({ME: reported == ME, HER: reported == HER})
+    for i in range(60):
+        watched.see([(ME, -mouth, 0.0, 0.0), (HER, mouth + 0.8 * i * PERIOD, 0.0, pi)])
+    frame = watched.frame()
+    me, her = frame.own[0], frame.opponents[0]
+    assert (me.ball_contact, her.ball_contact) == (reported != HER, reported == HER)
+    assert frame.ball.x == pytest.approx(her.x - mouth if reported == HER else 0.0, abs=0.02)
+
+
 def test_a_hidden_ball_that_nobody_has_rolls_on_to_rest(watched: Watched) -> None:
     watched.see_for(0.5, ball=lambda t: (0.4 * t, 0.0))
     for _ in range(120):
