@@ -14,7 +14,7 @@ from robobt.league.known_field import KnownField
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
-from robobt.league.wire.sockets import Receiver
+from robobt.league.wire.sockets import BATCH, Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
 from robobt.match.referee.events import RefereeEvent
@@ -42,9 +42,6 @@ _UNEQUAL = 0.05
 
 _MAX_READING = 0.004
 """How long useless packets are read at a time: a flood must not delay the commands [s]."""
-
-_BACKLOG = 16
-"""Most batches that are dropped unread: a flood must not hold up the start."""
 
 
 class Feed:
@@ -176,7 +173,10 @@ class Feed:
             return
         arrived = self._clock()
         end = arrived + _MAX_READING
+        frames: list[CameraFrame] = []
+        read = 0
         for packet in self._vision.receive():
+            read += 1
             seen = self._read(packet.data)
             if seen is None:
                 if self._clock() > end:
@@ -184,24 +184,17 @@ class Feed:
                 continue
             self._look_around(seen)
             if seen.frame is not None:
-                self.add(seen.frame, arrived)
+                frames.append(seen.frame)
+        # When those arrived that waited is not known: a camera's newest frame alone tells of the clock.
+        newest = {frame.camera: frame for frame in frames} if read < BATCH else {}
+        for frame in frames:
+            self.add(frame, arrived, waited=frame is not newest.get(frame.camera))
         if self.referee is not None:
             for packet in self._sources[1].receive():
                 self.referee.read(packet.data, packet.sender, arrived)
 
-    def skip_backlog(self) -> None:
-        """Drop the frames that have waited unread: when these arrived is not known."""
-        for _ in range(_BACKLOG):
-            waiting = [*self._vision.receive()]
-            if not waiting:
-                return
-            for packet in waiting:
-                seen = self._read(packet.data)
-                if seen is not None:
-                    self._look_around(seen)
-
-    def add(self, frame: CameraFrame, arrived: float) -> None:
-        """Use a camera's frame that arrived at a time of this machine's clock [s]."""
+    def add(self, frame: CameraFrame, arrived: float, *, waited: bool = False) -> None:
+        """Use a camera's frame that arrived, or had ``waited``, at a time of this machine's clock [s]."""
         captured, known = self.filter.captured, self.known
         came = self.now() - (self._clock() - arrived) * self.rate
         apart = self._camera_clocks.shift(frame.camera, came, frame.sent)
@@ -217,7 +210,8 @@ class Feed:
             known.restarted()
             self._camera_clocks.clear()
             self._cameras.clear()
-        self._learn(arrived, frame.sent)
+        if not waited:
+            self._learn(arrived, frame.sent)
         if captured is None or frame.captured > captured or not self.fresh:
             self.arrived = came
             self._delay = frame.sent - frame.captured

@@ -65,9 +65,6 @@ class StepFeed(Feed):
         for frame in frames:
             self.add(frame, link.time)
 
-    def skip_backlog(self) -> None:
-        """Drop nothing: what the simulator sends between two steps belongs to the first."""
-
     def _packets(self, sent: float) -> None:
         """Take in the packets up to those of an instant [s]; the first geometry is waited for too."""
         end = time.monotonic() + _WAIT

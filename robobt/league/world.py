@@ -135,7 +135,6 @@ class LeagueWorld(World):
         check_placement(placement, self._feed.filter.field, self._robots)
         self._commands = {}
         self._feed.filter.clear()
-        self._feed.skip_backlog()
         self._placer.place(placement)
         self._restart_time()
         self._pace.restart(self._looked)

@@ -21,22 +21,22 @@ class LockstepWorld(LeagueWorld):
 
     def __init__(self, server: SimServer, **arguments: Any) -> None:
         self._server = server
-        self._time = 0.0
-        super().__init__(clock=lambda: self._time, **arguments)
+        self.machine_time = 0.0
+        super().__init__(clock=lambda: self.machine_time, **arguments)
         self._hear = self._feed.receive
         self._feed.receive = self._receive  # type: ignore[method-assign]
 
     def _receive(self, wait: float) -> None:
         heard = self._feed.frames
         self._hear(0.0)
-        end = self._time + max(0.0, wait)
+        end = self.machine_time + max(0.0, wait)
         while self._feed.frames == heard and wait > 0.0:
             due = self._server.field.time + self._server.field.period
             if due > end + 1e-9:
-                self._time = end
+                self.machine_time = end
                 return
-            self._time = max(self._time, due)
+            self.machine_time = max(self.machine_time, due)
             self._server.receive()
             self._server.step()
-            self._server.send_due(self._time)
+            self._server.send_due(self.machine_time)
             self._hear(0.0)

@@ -68,11 +68,11 @@ def restart(world: LockstepWorld) -> None:
     first: list[float] = []
     add = world._feed.add
 
-    def added(frame: object, arrived: float) -> None:
+    def added(frame: object, arrived: float, *, waited: bool) -> None:
         first.append(frame.captured)  # type: ignore[attr-defined]
         frame.captured -= first[0]  # type: ignore[attr-defined]
         frame.sent -= first[0]  # type: ignore[attr-defined]
-        add(frame, arrived)  # type: ignore[arg-type]
+        add(frame, arrived, waited=waited)  # type: ignore[arg-type]
 
     world._feed.add = added  # type: ignore[method-assign]
 
@@ -163,17 +163,21 @@ def test_plays_too_slow_for_this_machine_are_told_once(caplog: pytest.LogCapture
     assert "not 60: this machine is too slow" in told
 
 
-def test_packets_that_waited_before_the_first_look_tell_nothing_of_the_rate(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    with played() as (world, server):
-        # The world is open, and the process that plays in it loads what it needs.
-        for _ in range(150):
-            world._time += server.field.period
+def test_packets_that_waited_tell_nothing_of_the_rate(caplog: pytest.LogCaptureFixture) -> None:
+    def load(frames: int) -> None:
+        """Do as a process does that loads what it needs, while the field goes on."""
+        for _ in range(frames):
+            world.machine_time = max(world.machine_time, server.field.time + server.field.period)
             server.step()
-            server.send_due(world._time)
+            server.send_due(world.machine_time)
+
+    with played() as (world, server):
+        load(150)
         world.reset(START, 0)
-        act(world, 10.0)
+        load(12)
+        for _ in range(600):
+            world.act({})
+            assert world._feed.rate == pytest.approx(1.0, abs=0.03)
         assert world._feed.rate == pytest.approx(1.0, abs=0.002)
     assert caplog.messages == []
 

@@ -20,7 +20,7 @@ from robobt.league.wire.packets import MAX_PACKET, PacketCounts
 LOOPBACK = "127.0.0.1"
 """Address of the interface whose packets stay on this machine."""
 
-_BATCH = 256
+BATCH = 256
 """Most datagrams read in one go, so that a flood cannot starve the caller."""
 
 _BUFFER = 1 << 20
@@ -63,7 +63,7 @@ class _UdpSocket:
 
     def _read(self) -> Iterator[tuple[bytes, list[tuple[int, int, bytes]], int, tuple[str, int]]]:
         """Yield data, ancillary data, flags and sender of the waiting datagrams, at most a batch."""
-        for _ in range(_BATCH):
+        for _ in range(BATCH):
             try:
                 if sys.platform == "win32":  # which has no recvmsg, and drops a longer datagram itself
                     data, sender = self._socket.recvfrom(MAX_PACKET)
