@@ -42,7 +42,7 @@ class Hands:
         self._match, self._server, self._clock = match, server, clock
         self._steering = Steering(match)
         self._grip = Grip()
-        self._situations = self._forms = 0
+        self._situations = 0
         # No page may have a file of this machine loaded, as a play or as a model, but those.
         self._files = paths_in(match.scenario.model_dump(mode="json"))
         self._plays = [*dict.fromkeys([*PLAYS, *[setup.play for _, setup in match.scenario.robots]])]
@@ -172,10 +172,7 @@ class Hands:
     def _tell_form(self, robot: RobotId, path: str) -> None:
         fields = [_field(parameter, value) for parameter, value in self._steering.parameters(robot, path)]
         setup = self._steering.setup(robot)
-        # Counted, so that a page sees one that is asked for again, and fills in none anew that stands there.
-        self._forms += 1
-        form = {"number": self._forms, "robot": str(robot), "path": path, "play": setup.play}
-        self._server.tell(form={**form, "fields": fields})
+        self._server.show_form(robot=str(robot), path=path, play=setup.play, fields=fields)
 
 
 def _field(parameter: Parameter, value: Any) -> dict[str, Any]:

@@ -75,7 +75,7 @@ class Server:
         self._host, self._port, self._names = host, port, (*LOOPBACK, *names)
         self.url = ""
         self.situation = ""
-        self._said = 0
+        self._said = self._forms = 0
         self.audience = Audience(self._look_now)
         self.inbox, self.refused = self.audience.inbox, self.audience.refused
         self._thread = threading.Thread(target=self._run, name="robobt live", daemon=True)
@@ -118,6 +118,11 @@ class Server:
         """Tell the viewers something, for a moment."""
         self._said += 1
         self.tell(said=[self._said, text])
+
+    def show_form(self, **form: Any) -> None:
+        """Show a form: counted, so that a page sees one that is asked for again, in another match too."""
+        self._forms += 1
+        self.tell(form={"number": self._forms, **form})
 
     @property
     def layers(self) -> frozenset[str]:

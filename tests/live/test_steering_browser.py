@@ -14,7 +14,7 @@ from robobt.match.recording.reader import parse_recording
 from robobt.match.scenario.scenario import load_scenario
 from robobt.world.game import RefereeCommand
 from tests.live.chromium import Page
-from tests.live.playing import Session, playing, wait_for
+from tests.live.playing import Client, Session, playing, wait_for
 
 pytestmark = pytest.mark.integration
 
@@ -147,6 +147,46 @@ def test_a_form_that_is_closed_stays_closed_until_it_is_asked_for(live: Page, se
     assert live.js("return document.querySelector('.forms form') === null")
     live.button("Edit play").click()
     live.wait("return document.querySelector('.forms form') !== null")
+
+
+def test_what_is_typed_stays_when_the_answer_to_an_earlier_value_comes(live: Page, session: Session) -> None:
+    live.find("#picker .pick.blue").click()
+    live.button("Edit play").click()
+    live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
+    asked = session.server.audience.state["form"]["number"]
+    live.js(
+        """const input = document.querySelector('.forms input[type=number]'), form = input.form;
+        input.focus(); input.value = '0.3'; form.requestSubmit(); input.value = '0.4';"""
+    )
+    wait_for(lambda: session.server.audience.state["form"]["number"] > asked)
+    session.server.say("answered")
+    live.wait("return document.querySelector('.told').textContent === 'answered'")
+    value, focused = live.js(
+        """const input = document.querySelector('.forms input[type=number]');
+        return [input.value, input === document.activeElement];"""
+    )
+    assert (value, focused) == ("0.4", True)
+
+
+def test_a_form_is_shown_to_who_asked_for_it_alone(live: Page, session: Session) -> None:
+    shown = "return document.querySelector('.forms form') !== null"
+    typed = "return document.querySelector('.forms input[type=number]').value"
+    live.find("#picker .pick.blue").click()
+    live.button("Edit play").click()
+    live.wait(shown)
+    live.js("document.querySelector('.forms input[type=number]').value = '0.123'")
+    steers = "return document.querySelector('.live button[aria-pressed=true]') !== null"
+    with Client(session.server.url) as other:
+        other.ask(do="steer")
+        live.wait(f"return !(() => {{ {steers} }})()")
+        other.ask(do="form", robot="yellow 0")
+        wait_for(lambda: session.server.audience.state["form"]["robot"] == "yellow 0")
+        session.server.say("another form")
+        live.wait("return document.querySelector('.told').textContent === 'another form'")
+    live.wait(steers)
+    assert live.js(typed) == "0.123"
+    live.steer(session.server.url)
+    assert not live.js(shown)
 
 
 def test_a_wrong_value_is_told_and_changes_nothing(live: Page, session: Session) -> None:

@@ -127,21 +127,29 @@ const inputOf = field => {
   if (entered === "switch") { input.type = "checkbox"; input.checked = value; return [input, () => input.checked]; }
   if (entered === "number" || entered === "integer") {
     input.type = "number"; input.step = entered === "integer" ? "1" : "any"; input.value = value;
-    return [input, () => Number(input.value)];
+    return [input, () => { if (input.value === "") throw new Error("no number"); return Number(input.value); }];
   }
   input.type = "text";
   if (entered === "text") { input.value = value; return [input, () => input.value]; }
   input.value = JSON.stringify(value);
   return [input, () => JSON.parse(input.value)];
 };
-/* The form that was shown last, as text: it stays as it is, with what was typed, or closed, until another comes. */
-let shownForm = "null";
-const showForm = (form, plays) => {
-  const text = JSON.stringify(form);
-  if (text === shownForm) return;
-  shownForm = text;
-  forms.replaceChildren();
-  if (!form) return;
+/* The newest form told of, as text, and what stands there of it: closed or with what was typed it stays as it is. */
+let toldForm = null, shown = null;
+const typedIn = input => input.type === "checkbox" ? input.checked : input.value;
+const closeForm = () => { shown = null; forms.replaceChildren(); };
+const showForm = (form, plays, steers) => {
+  const text = JSON.stringify(form), before = toldForm;
+  if (text === before) return;
+  toldForm = text;
+  if (!form) { closeForm(); return; }
+  /* Nobody here asked for one that was there before this page, or that another viewer is shown. */
+  if (before === null || !steers) return;
+  /* An answer leaves what was typed since it was asked for. */
+  const same = shown && shown.robot === form.robot && shown.path === form.path && shown.play === form.play;
+  const typed = same ? shown.inputs.filter(each => typedIn(each.input) !== each.told).map(each => [each.input.name, typedIn(each.input)]) : [];
+  const focused = same && forms.contains(document.activeElement) ? document.activeElement.name : null;
+  closeForm();
   const made = make("form"), reads = [];
   made.append(make("h4", "", form.path ? `${words(form.robot)}: ${form.path}` : words(form.robot)));
   const row = (label, input, hint) => {
@@ -162,12 +170,11 @@ const showForm = (form, plays) => {
     const [input, read] = inputOf(field);
     input.name = field.name;
     row(field.name, input, field.type);
-    const before = JSON.stringify(field.value);
-    reads.push([field.name, read, before]);
+    reads.push([field.name, read, JSON.stringify(field.value), input]);
   }
   if (!form.fields.length && form.path) made.append(make("p", "dim", "This node has no parameters to change."));
   const actions = make("div", "group"), send = make("button", "toggle", "Apply");
-  actions.append(send, button("Close", "Close this form", () => forms.replaceChildren()));
+  actions.append(send, button("Close", "Close this form", closeForm));
   made.append(actions);
   made.addEventListener("submit", event => {
     event.preventDefault();
@@ -176,10 +183,17 @@ const showForm = (form, plays) => {
       /* Of a play all that differs from what it was given, of a skill only what was changed here. */
       for (const [name, read, before] of reads) { const value = read(); if (JSON.stringify(value) !== before || !form.path && play.value === form.play) params[name] = value; }
     } catch { bridge.say("A value is written in a form that cannot be read: lists are [1, 2], texts \"so\"."); return; }
+    for (const each of shown.inputs) each.told = typedIn(each.input);
     if (form.path) bridge.act({ do: "skill", robot: form.robot, path: form.path, params });
     else bridge.act({ do: "play", robot: form.robot, play: play.value, params: play.value === form.play ? params : {}, team: all.checked });
   });
+  shown = { ...form, inputs: reads.map(([, , , input]) => ({ input, told: typedIn(input) })) };
+  for (const [name, value] of typed) {
+    const input = made.elements[name];
+    if (input) input[input.type === "checkbox" ? "checked" : "value"] = value;
+  }
   forms.append(made);
+  if (focused && made.elements[focused]) made.elements[focused].focus();
 };
 
 /* ---------------------------------------------------------------- state */
@@ -196,7 +210,8 @@ export const showSteering = now => {
   for (const each of referee.children) each.disabled = !steers || !orders;
   referee.title = orders ? "" : "Nobody referees this match: it is played freely.";
   put(controlled, now.game_controller ? "A game controller decides this match; what it says is above the field." : "");
-  if (steers) showForm(now.form || null, now.plays || []); else showForm(null);
+  forms.hidden = !steers;
+  if ("form" in now) showForm(now.form, now.plays || [], steers);
   if (now.situation && now.situation > saved && steers) location.assign("situation.yaml");
   saved = now.situation || 0;
 };
