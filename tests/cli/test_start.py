@@ -46,7 +46,7 @@ def test_a_list_needs_little(command: str, needed: set[str]) -> None:
 def test_a_match_plays_without_scipy() -> None:
     code = (
         "import sys; sys.modules['scipy'] = None; import robobt\n"
-        "print(robobt.run_trials(robobt.load_scenario('team_v_baseline').lasting(0.2), 2).summary().trace)"
+        "print(robobt.run_trials(robobt.load_scenario('team_v_baseline').lasting(0.2), 1).summary().trace)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -40,8 +40,8 @@ def erforce(endpoints: Endpoints, **more: object) -> FakeSimulator:
     ("form", "teams"),
     [
         ("grsim", ("blue", "yellow")),
-        ("grsim", ("blue",)),
-        ("protocol", ("blue", "yellow")),
+        pytest.param("grsim", ("blue",), marks=pytest.mark.slow),
+        pytest.param("protocol", ("blue", "yellow"), marks=pytest.mark.slow),
         ("protocol", ("yellow",)),
     ],
     ids=str,
