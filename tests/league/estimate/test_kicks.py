@@ -6,7 +6,7 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robobt.league.estimate.kicks import Kick, KickWatch
@@ -78,6 +78,7 @@ class Scene:
     told=st.booleans(),
     seed=st.integers(0, 2**32 - 1),
 )
+@example(at=0.21875, speed=1.5, drives=0.0, heading=-2.0, told=True, seed=284226)
 def test_every_kick_is_seen_once(
     at: float, speed: float, drives: float, heading: float, told: bool, seed: int
 ) -> None:
@@ -88,7 +89,9 @@ def test_every_kick_is_seen_once(
     )
     (kick,) = scene.shot(at, speed)
     assert kick.robot == ME
-    assert at <= kick.time <= at + 2.5 * PERIOD
+    # Of a weak kick that was commanded 6 mm between two frames are enough, which noise shows a frame early
+    # once in a thousand.
+    assert at - PERIOD < kick.time <= at + 2.5 * PERIOD
 
 
 @given(st.floats(0.0, 2.5), st.floats(-pi, pi), st.integers(0, 2**32 - 1))
