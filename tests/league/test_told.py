@@ -12,6 +12,7 @@ from robobt.league.connection import Connection, LeagueError
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.endpoints import Endpoints
+from robobt.league.wire.vision import CameraFrame
 from robobt.match import load_scenario
 from robobt.match.loop import Match
 from robobt.world import DIVISION_A, DIVISION_B, RobotCommand, RobotId, Team
@@ -68,11 +69,11 @@ def restart(world: LockstepWorld) -> None:
     first: list[float] = []
     add = world._feed.add
 
-    def added(frame: object, arrived: float, *, waited: bool) -> None:
-        first.append(frame.captured)  # type: ignore[attr-defined]
-        frame.captured -= first[0]  # type: ignore[attr-defined]
-        frame.sent -= first[0]  # type: ignore[attr-defined]
-        add(frame, arrived, waited=waited)  # type: ignore[arg-type]
+    def added(frame: CameraFrame, arrived: float, *, waited: bool = False) -> None:
+        first.append(frame.captured)
+        frame.captured -= first[0]
+        frame.sent -= first[0]
+        add(frame, arrived, waited=waited)
 
     world._feed.add = added  # type: ignore[method-assign]
 

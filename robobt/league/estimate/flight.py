@@ -283,11 +283,12 @@ class FlightWatch:
         if self._lost >= _LOST_FOR:
             self.hop = None
             return
-        if hop.count == 0 and self._before is not None and not _left(self._before, seen):
+        before = self._before if hop.count == 0 else None
+        if before is not None and not _left(before, seen):
             return
         self._since.append(seen)
-        if hop.count == 0 and self._before is not None:
-            hop, _ = self._launch(self._before)
+        if before is not None:
+            hop, _ = self._launch(before)
         elif self._expected is not None:
             start = self._expected.ball
             mean = np.array([start.x, start.y, start.vx, start.vy, 0.0, start.vz])

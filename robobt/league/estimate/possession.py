@@ -86,9 +86,7 @@ class Possession:
         balls = [hold.ball(motions[hold.robot]) for hold in holders]
         if _apart(balls) > _PARTED:
             balls = [ball for hold, ball in zip(holders, balls, strict=True) if self.feedback.get(hold.robot)]
-        if len(balls) < 2:
-            return balls[0] if balls else None
-        if _apart(balls) > _PARTED:
+        if not balls or _apart(balls) > _PARTED:
             return None
         x, y, vx, vy = (
             sum(part) / len(balls)
