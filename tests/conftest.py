@@ -24,11 +24,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the longest test: at the end one worker would wait for the other to be done with it."""
-    items.sort(key=lambda item: "test_readme.py" not in item.nodeid)
-
-
 @pytest.fixture
 def moments(request: pytest.FixtureRequest) -> int:
     """How many random moments a slow test tries."""
