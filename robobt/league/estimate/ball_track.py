@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import hypot, inf, sqrt
 
-from robobt.league.estimate.kalman import Covariance, Mismatch
+from robobt.league.estimate.kalman import Mismatch
+from robobt.league.estimate.offsets import MeanOffsets, OffsetCovariance
 from robobt.sim.settings import BallSettings
 
 
@@ -30,8 +31,8 @@ class BallMotion:
     vz: float = 0.0
 
 
-_NOISE = 0.05
-"""Acceleration noise of a free ball [m/s^2]."""
+_NOISE = 0.2
+"""Acceleration noise of a free ball, which carpets slow down differently [m/s^2]."""
 
 _PUSHED_NOISE = 6.0
 """Acceleration noise of a ball that a robot may push [m/s^2]."""
@@ -51,6 +52,9 @@ _FADING = 0.95
 _SHORTEST, _LONGEST = 0.005, 0.05
 """Time between two detections from which a kick's velocity is inferred [s]."""
 
+_OFFSET = 0.03
+"""Standard deviation of a camera's offset about its mean [m]."""
+
 _SETTLING = 4
 """Detections after a kick during which its speed is still being determined."""
 
@@ -61,19 +65,35 @@ class BallTrack:
     After a kick or a bounce it is unknown whether the ball slides or rolls: both
     hypotheses are tracked, and the one that fits better is reported.
 
-    It begins with a first detection, of which ``noise`` is the standard deviation [m]; ``time`` is then that
-    of the estimate [s].
+    It begins at rest in a place where it may have been seen by a ``camera``. The detections' standard
+    deviation is ``noise`` [m], ``means`` are the cameras' mean offsets.
+
+    Attributes:
+        time: time of the estimate [s].
     """
 
-    def __init__(self, x: float, y: float, time: float, settings: BallSettings, noise: float) -> None:
+    def __init__(
+        self,
+        x: float,
+        y: float,
+        time: float,
+        settings: BallSettings,
+        noise: float,
+        means: MeanOffsets,
+        camera: int | None = None,
+    ) -> None:
         self.settings = settings
         self._r = noise * noise
-        self.restart(x, y, time)
+        self._means = means
+        self.restart(x, y, time, camera)
 
-    def restart(self, x: float, y: float, time: float) -> None:
-        """Restart the track at rest at a detection."""
+    def restart(self, x: float, y: float, time: float, camera: int | None = None) -> None:
+        """Restart the track at rest, at a camera's detection or where the ball was put."""
         self.time = time
-        self._covariance = Covariance(self._r, 0.0, _KICK**2)
+        self._covariance = OffsetCovariance(_KICK**2, _OFFSET, self._means)
+        if camera is not None:
+            dx, dy = self._covariance.begin(camera, time, self._r)
+            x, y = x - dx, y - dy
         self._last_step = 0.0
         self._split(BallMotion(x, y), time)
 
@@ -92,7 +112,7 @@ class BallTrack:
     @property
     def spread(self) -> float:
         """Standard deviation of the position in each direction [m]."""
-        return sqrt(max(0.0, self._covariance.pp))
+        return sqrt(max(0.0, self._covariance.position_variance))
 
     def advance(self, time: float, near_robot: bool) -> None:
         """Predict the estimate to ``time``."""
@@ -101,6 +121,10 @@ class BallTrack:
             return
         self._sliding = predict_ball(self._sliding, dt, self.settings)
         self._rolling = predict_ball(self._rolling, dt, self.settings)
+        shift_x, shift_y = self._covariance.settle(dt) or (0.0, 0.0)
+        for motion in (self._sliding, self._rolling):
+            motion.x += shift_x
+            motion.y += shift_y
         noise = _PUSHED_NOISE if near_robot else _NOISE + self._mismatch.level * _PUSHED_NOISE
         self._covariance.predict(noise, dt)
         self.time, self._last_step = time, dt
@@ -108,46 +132,55 @@ class BallTrack:
     def carry(self, motion: BallMotion, time: float) -> None:
         """Set the motion of a ball that a robot carries."""
         self._rolling, self._sliding = replace(motion, rolls_at=inf), replace(motion, rolls_at=inf)
-        self._covariance.vv = max(self._covariance.vv, _CARRIED**2)
+        self._covariance.widen(_CARRIED**2)
         self.time = max(self.time, time)
 
-    def deviation(self, x: float, y: float) -> float:
-        """Return the distance of a detection at the track's time from the prediction [m]."""
+    def place(self, x: float, y: float, camera: int) -> tuple[float, float]:
+        """Return where the ball is that a camera sees at a place, without the camera's offset [m]."""
+        dx, dy = self._covariance.offset(camera)
+        return x - dx, y - dy
+
+    def deviation(self, x: float, y: float, camera: int) -> float:
+        """Return the distance of a camera's detection at the track's time from the prediction [m]."""
+        x, y = self.place(x, y, camera)
         return hypot(x - self.motion.x, y - self.motion.y)
 
-    def correct(self, x: float, y: float, kickable: bool = False) -> None:
-        """Correct the estimate with a detection captured at the track's time.
+    def correct(self, x: float, y: float, camera: int, kickable: bool = False) -> None:
+        """Correct the estimate with a camera's detection captured at the track's time.
 
         If a robot was close enough to kick the ball (``kickable``), a sudden departure is
         taken for a kick at the previous detection.
         """
         m, p = self.motion, self._covariance
-        s = p.pp + self._r
+        known = p.knows(camera)
+        x, y = self.place(x, y, camera)
         dx, dy = x - m.x, y - m.y
+        s = p.detection_variance(camera) + self._r
         if (dx * dx + dy * dy) / s > _SURPRISE:
             # Kicked, bounced or touched: the past motion tells nothing about the velocity now.
-            p.vv = max(p.vv, _KICK**2)
-            p.pp = max(p.pp, dx * dx + dy * dy)
-            p.pv = 0.0
+            p.jump(dx * dx + dy * dy, _KICK**2)
             self._split(m, self.time - self._last_step / 2)
-            s = p.pp + self._r
-            if kickable and _SHORTEST <= self._last_step <= _LONGEST:
+            s = p.detection_variance(camera) + self._r
+            if kickable and known and _SHORTEST <= self._last_step <= _LONGEST:
                 # Goalkeepers cannot wait for the next detection to learn the ball's speed.
-                p.pv = s / self._last_step
-                p.vv += p.pv / self._last_step
+                p.move_since(self._last_step, s)
         else:
             scale = 1.0 / sqrt(s)
             self._mismatch.update(dx * scale, dy * scale)
-        k, g = p.gains(s)
+        k, g = p.correct(camera, self.time, s, [dx, dy])
         self._misfit_sliding = _FADING * self._misfit_sliding + _nudge(self._sliding, x, y, k, g) / s
         self._misfit_rolling = _FADING * self._misfit_rolling + _nudge(self._rolling, x, y, k, g) / s
-        p.correct(k, g)
         if self._settling:
             self._settling -= 1
             m = self._sliding
             # The speed lost since the kick belongs to the kick's speed.
             lost = self.settings.slide_deceleration * (self.time - self._kicked)
             m.rolls_at = self.settings.switch_share * (hypot(m.vx, m.vy) + lost)
+
+    def teach(self) -> None:
+        """Let the cameras' mean offsets learn from a ball that rolls along the ground."""
+        if not self._settling:
+            self._covariance.teach()
 
 
 def _nudge(motion: BallMotion, x: float, y: float, k: float, g: float) -> float:

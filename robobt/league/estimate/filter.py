@@ -7,14 +7,20 @@ captures.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf
+from math import hypot, inf
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
 from robobt.league.estimate.flight import FlightWatch
 from robobt.league.estimate.kicks import Kick, KickWatch
-from robobt.league.estimate.outliers import Outliers
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
-from robobt.league.estimate.robot_track import RobotMotion, RobotTrack, SentCommands, predict_robot
+from robobt.league.estimate.rivals import Rivals, likeliest
+from robobt.league.estimate.robot_track import (
+    RobotMotion,
+    RobotSensing,
+    RobotTrack,
+    SentCommands,
+    predict_robot,
+)
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import SimSettings
@@ -87,14 +93,13 @@ class VisionFilter:
         self._ball_model = self.settings.ball.model
         self._limits = dict(limits or {})
         realism = self.settings.realism
-        self._robot_noise = max(realism.robot_noise, _MIN_ROBOT_NOISE)
+        robot_noise = max(realism.robot_noise, _MIN_ROBOT_NOISE)
+        self._robot_noises = robot_noise, max(realism.heading_noise, _MIN_HEADING_NOISE)
         self._ball_noise = max(realism.ball_noise, _MIN_BALL_NOISE)
-        self._heading_noise = max(realism.heading_noise, _MIN_HEADING_NOISE)
         self.restarts = 0
         self.cameras: dict[int, CameraPlace] = {}
         self._odd_time: tuple[float, int] | None = None
         self._ball_seen = 0.0
-        self._ball_camera: int | None = None
         self.clear()
 
     def clear(self) -> None:
@@ -108,7 +113,11 @@ class VisionFilter:
         self._seen: dict[int, CameraFrame] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
-        self._outliers = Outliers(_CONFIRMATIONS, _ROBOT_TIMEOUT)
+        self._sensing = RobotSensing(*self._robot_noises)
+        # One mean for balls and robots keeps a ball beside its robot where different cameras see the two.
+        self._offsets = self._sensing.offsets
+        self._ball_rivals = Rivals(_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
+        self._robot_rivals: dict[RobotId, Rivals] = {}
         self._sent: dict[RobotId, SentCommands] = {}
 
     def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
@@ -123,11 +132,11 @@ class VisionFilter:
     def put_ball(self, x: float, y: float) -> None:
         """Assume that the ball lies there until it is seen elsewhere, as a robot may hide it."""
         if self.captured is not None:
-            self._ball = BallTrack(x, y, self.captured, self.settings.ball, self._ball_noise)
+            self._ball = self._new_ball(x, y, self.captured)
             self._ball_seen = self.captured
             self.possession.holds = []
             self._flights.clear()
-            self._outliers.forget(None)
+            self._ball_rivals = Rivals(_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
 
     def add(self, frame: CameraFrame, now: float | None = None) -> bool:
         """Use a camera's frame; return False for a duplicate, a late frame or an unconfirmed time.
@@ -154,10 +163,10 @@ class VisionFilter:
             if robot.confidence >= _MIN_CONFIDENCE:
                 detections.setdefault(robot.robot, []).append(robot)
         for number, found in detections.items():
-            self._add_robot(number, found, time)
+            self._add_robot(number, found, time, frame.camera)
         for number, track in list(self._robots.items()):
             if time - track.time > _ROBOT_TIMEOUT:
-                del self._robots[number]
+                del self._robots[number], self._robot_rivals[number]
         balls = [ball for ball in frame.balls if ball.confidence >= _MIN_CONFIDENCE]
         if balls:
             self._add_balls(balls, time, frame.camera)
@@ -215,40 +224,93 @@ class VisionFilter:
         self._odd_time = (time, count)
         return count >= _CONFIRMATIONS
 
-    def _add_robot(self, robot: RobotId, detections: list[RobotDetection], time: float) -> None:
+    def _add_robot(self, robot: RobotId, detections: list[RobotDetection], time: float, camera: int) -> None:
+        limits = self._limits.get(robot, self.settings.limits)
+        rivals = self._robot_rivals.get(robot)
+        if rivals is None:
+            rivals = self._robot_rivals[robot] = Rivals(_CONFIRMATIONS, _ROBOT_GATE, limits.max_speed)
         track = self._robots.get(robot)
-        if track is None:
-            best = max(detections, key=lambda detection: detection.confidence)
-            if best.heading is not None and self._outliers.confirm(robot, best.x, best.y, time, _ROBOT_GATE):
-                limits = self._limits.get(robot, self.settings.limits)
-                noise = self._robot_noise, self._heading_noise
-                self._robots[robot] = RobotTrack(best.x, best.y, best.heading, time, limits, *noise)
-            return
+        if track is not None:
+            detections = self._correct_robot(track, rivals, detections, time, camera)
+        for seen in sorted(detections, key=_surest_first):
+            if seen.heading is None:
+                continue
+            place = None if track is None else (track.motion.x, track.motion.y)
+            occupied = track is not None and self._occupied(seen)
+            if not rivals.believes(seen.x, seen.y, camera, seen.confidence, time, place, occupied):
+                continue
+            if track is None:
+                track = self._robots[robot] = RobotTrack(
+                    seen.x, seen.y, seen.heading, time, camera, limits, self._sensing
+                )
+            else:
+                track.restart(seen.x, seen.y, seen.heading, time, camera)
+
+    def _correct_robot(
+        self, track: RobotTrack, rivals: Rivals, detections: list[RobotDetection], time: float, camera: int
+    ) -> list[RobotDetection]:
+        """Correct a robot's track with the detection that is its own; return the others."""
+        seen_before = track.time
         lag = time - track.time
-        track.advance(time, self._sent.get(robot, []))
+        track.advance(time, self._sent.get(detections[0].robot, []))
         m = track.motion
         # A camera that is slightly late saw the robot slightly further back.
         late = min(0.0, lag)
-        near = min(
-            detections, key=lambda found: track.deviation(found.x - m.vx * late, found.y - m.vy * late)
-        )
-        x, y = near.x - m.vx * late, near.y - m.vy * late
+        deviations = [
+            (track.deviation(seen.x - m.vx * late, seen.y - m.vy * late, camera), seen) for seen in detections
+        ]
         gate = _ROBOT_GATE + track.limits.max_speed * max(0.0, lag)
-        if track.deviation(x, y) <= gate:
-            track.correct(x, y, near.heading)
-            self._outliers.forget(robot)
-        elif near.heading is not None and self._outliers.confirm(robot, x, y, time, gate):
-            track.restart(x, y, near.heading, time)
+        gap, own = likeliest(deviations, _ROBOT_GATE)
+        if gap > gate or (gap > _ROBOT_GATE and rivals.doubts(own.x, own.y, own.confidence, seen_before)):
+            return detections
+        track.correct(own.x - m.vx * late, own.y - m.vy * late, camera)
+        if own.heading is not None:
+            track.correct_heading(own.heading, camera, own.confidence)
+        rivals.saw_track(camera, own.confidence, time)
+        return [seen for gap, seen in deviations if seen is not own and gap > gate]
+
+    def _occupied(self, seen: RobotDetection) -> bool:
+        """Return whether another robot of the team is tracked where one is seen: the number may be wrong."""
+        return any(
+            other != seen.robot
+            and other.team is seen.robot.team
+            and hypot(seen.x - track.motion.x, seen.y - track.motion.y) < _ROBOT_GATE
+            for other, track in self._robots.items()
+        )
+
+    def _new_ball(self, x: float, y: float, time: float, camera: int | None = None) -> BallTrack:
+        return BallTrack(x, y, time, self.settings.ball, self._ball_noise, self._offsets, camera)
 
     def _add_balls(self, balls: list[BallDetection], time: float, camera: int) -> None:
-        track = self._ball
-        if track is None:
-            best = max(balls, key=lambda ball: ball.confidence)
-            if self._outliers.confirm(None, best.x, best.y, time, _BALL_GATE):
-                self._ball = BallTrack(best.x, best.y, time, self.settings.ball, self._ball_noise)
-                self._ball_seen = time
-            return
+        track, rivals = self._ball, self._ball_rivals
         motions = {robot: self._robot_at(robot, time) for robot in self._robots}
+        own: BallDetection | None = None
+        if track is not None:
+            own = self._correct_ball(track, balls, time, camera, motions)
+        for ball in sorted(balls, key=_surest_first):
+            if ball is own or (track is not None and track.deviation(ball.x, ball.y, camera) <= _BALL_GATE):
+                continue
+            place = None if track is None else (track.motion.x, track.motion.y)
+            if not rivals.believes(ball.x, ball.y, camera, ball.confidence, time, place):
+                continue
+            if track is None:
+                track = self._ball = self._new_ball(ball.x, ball.y, time, camera)
+            else:
+                track.restart(ball.x, ball.y, time, camera)
+            own = ball
+        if track is not None and own is not None:
+            self._ball_seen = max(time, self._ball_seen)
+            self._look_up(track, own, time, camera, motions)
+
+    def _correct_ball(
+        self,
+        track: BallTrack,
+        balls: list[BallDetection],
+        time: float,
+        camera: int,
+        motions: Mapping[RobotId, RobotMotion],
+    ) -> BallDetection | None:
+        """Correct the ball's track with the detection that is its own; return that."""
         kickable = False
         if time > track.time:
             carried = self.possession.carried(motions)
@@ -256,18 +318,16 @@ class VisionFilter:
             track.advance(time, kickable)
             if carried is not None:
                 track.carry(carried, time)
-        nearest = min(balls, key=lambda ball: track.deviation(ball.x, ball.y))
+        rivals = self._ball_rivals
         gate = min(_MAX_GATE, _BALL_GATE + _MAX_BALL_SPEED * max(0.0, time - self._ball_seen))
-        if track.deviation(nearest.x, nearest.y) <= gate:
-            # The offset between two cameras must not be taken for a kick.
-            track.correct(nearest.x, nearest.y, kickable and camera == self._ball_camera)
-            self._outliers.forget(None)
-        elif self._outliers.confirm(None, nearest.x, nearest.y, time, gate):
-            track.restart(nearest.x, nearest.y, time)
-        else:
-            return
-        self._ball_seen, self._ball_camera = max(time, self._ball_seen), camera
-        self._look_up(track, nearest, time, camera, motions)
+        gap, own = likeliest([(track.deviation(ball.x, ball.y, camera), ball) for ball in balls], _BALL_GATE)
+        if gap > gate or (gap > _BALL_GATE and rivals.doubts(own.x, own.y, own.confidence, self._ball_seen)):
+            return None
+        track.correct(own.x, own.y, camera, kickable)
+        if self._flights.hop is None:
+            track.teach()
+        rivals.saw_track(camera, own.confidence, time)
+        return own
 
     def _look_up(
         self,
@@ -279,7 +339,7 @@ class VisionFilter:
     ) -> None:
         """Find out whether the ball that was seen is kicked, flies, or is somebody's."""
         flights = self._flights
-        kick = self._kick_watch.update(time, seen.x, seen.y, motions, self._sent)
+        kick = self._kick_watch.update(time, *track.place(seen.x, seen.y, camera), motions, self._sent)
         above = flights.at(time)
         if above is not None and above.z > ROBOT_HEIGHT:
             # Nobody kicks it: it is seen to pass them.
@@ -288,7 +348,9 @@ class VisionFilter:
             self.kicks.append(kick)
         if seen.tracked is None:
             near = near_robot(track.motion, motions)
-            flights.update(time, camera, seen.x, seen.y, kick, near)
+            # A ball in the air is seen by each camera elsewhere: only the mean tells the camera's own offset.
+            dx, dy = self._offsets.of(camera)
+            flights.update(time, camera, seen.x - dx, seen.y - dy, kick, near)
         else:
             ball = seen.tracked
             flights.known(time, BallMotion(ball.x, ball.y, ball.vx, ball.vy, 0.0, ball.z, ball.vz))
@@ -318,3 +380,7 @@ class VisionFilter:
             return track.motion
         ball = predict_ball(track.motion, time - track.time, self.settings.ball)
         return stop_at_robots(track.motion, ball, motions)
+
+
+def _surest_first(seen: BallDetection | RobotDetection) -> float:
+    return -seen.confidence

@@ -7,10 +7,12 @@ steady, and grows as soon as the innovations point in one direction.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import cos, hypot, sin, sqrt
 
-from robobt.league.estimate.kalman import Covariance, Mismatch
+from robobt.league.estimate.kalman import Mismatch
+from robobt.league.estimate.offsets import MeanOffsets, OffsetCovariance
+from robobt.league.estimate.rivals import Rivals
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
@@ -44,10 +46,30 @@ _COMMAND_ERROR = 0.1
 """Relative error of the acceleration that commands cause in the model."""
 
 
+_OFFSET, _HEADING_OFFSET = 0.03, 0.03
+"""Standard deviation of a camera's offset about its mean [m, rad]."""
+
+_HEADING_GATE = 0.6
+"""Largest deviation of a heading beyond what the robot may have turned [rad]."""
+
+_HEADING_CONFIRMATIONS = 10
+"""Number of headings in a row that agree and lie beyond the gate after which they are believed."""
+
+
+@dataclass(slots=True)
+class RobotSensing:
+    """How cameras see robots: standard deviations of detections [m, rad], and the cameras' mean offsets."""
+
+    noise: float
+    heading_noise: float
+    offsets: MeanOffsets = field(default_factory=lambda: MeanOffsets(2))
+    heading_offsets: MeanOffsets = field(default_factory=lambda: MeanOffsets(1))
+
+
 class RobotTrack:
     """The estimate of one robot.
 
-    It begins with a first detection; detections deviate by ``noise`` [m] and ``heading_noise`` [rad].
+    It begins with a ``camera``'s detection at ``time`` [m, rad, s].
 
     Attributes:
         motion: the estimate at ``time``.
@@ -60,21 +82,31 @@ class RobotTrack:
         y: float,
         heading: float,
         time: float,
+        camera: int,
         limits: RobotLimits,
-        noise: float,
-        heading_noise: float,
+        sensing: RobotSensing,
     ) -> None:
         self.limits = limits
-        self._r, self._rh = noise * noise, heading_noise * heading_noise
-        self.restart(x, y, heading, time)
+        self._sensing = sensing
+        self._r, self._rh = sensing.noise**2, sensing.heading_noise**2
+        self.restart(x, y, heading, time, camera)
 
-    def restart(self, x: float, y: float, heading: float, time: float) -> None:
-        """Restart the track at rest at a detection."""
-        self.motion = RobotMotion(x, y, heading)
+    def restart(self, x: float, y: float, heading: float, time: float, camera: int) -> None:
+        """Restart the track at rest at a camera's detection."""
         self.time = time
-        self._position = Covariance(self._r, 0.0, 1.0)
-        self._heading = Covariance(self._rh, 0.0, 10.0)
-        self._mismatch, self._heading_mismatch = Mismatch(), Mismatch()
+        self._position = OffsetCovariance(1.0, _OFFSET, self._sensing.offsets)
+        dx, dy = self._position.begin(camera, time, self._r)
+        self.motion = RobotMotion(x - dx, y - dy, heading)
+        self._mismatch = Mismatch()
+        self._headings = Rivals(_HEADING_CONFIRMATIONS, _HEADING_GATE, self.limits.max_turn)
+        self._restart_heading(heading, time, camera)
+
+    def _restart_heading(self, heading: float, time: float, camera: int) -> None:
+        self._heading = OffsetCovariance(10.0, _HEADING_OFFSET, self._sensing.heading_offsets)
+        (offset,) = self._heading.begin(camera, time, self._rh)
+        self.motion.heading, self.motion.omega = wrap_angle(heading - offset), 0.0
+        self._heading_mismatch = Mismatch()
+        self._heading_seen = time
 
     def advance(self, time: float, commands: SentCommands) -> None:
         """Predict the estimate to ``time`` under the commands that were in force."""
@@ -83,6 +115,11 @@ class RobotTrack:
             return
         before = self.motion
         after = self.motion = predict_robot(before, self.time, time, commands, self.limits)
+        shift_x, shift_y = self._position.settle(dt)
+        after.x += shift_x
+        after.y += shift_y
+        (shift_heading,) = self._heading.settle(dt)
+        after.heading = wrap_angle(after.heading + shift_heading)
         acceleration = hypot(after.vx - before.vx, after.vy - before.vy) / dt
         turn_acceleration = abs(after.omega - before.omega) / dt
         self._position.predict(
@@ -99,33 +136,52 @@ class RobotTrack:
     @property
     def spread(self) -> float:
         """Standard deviation of the position in each direction [m]."""
-        return sqrt(max(0.0, self._position.pp))
+        return sqrt(max(0.0, self._position.position_variance))
 
-    def deviation(self, x: float, y: float) -> float:
-        """Return the distance of a detection at the track's time from the prediction [m]."""
-        return hypot(x - self.motion.x, y - self.motion.y)
+    def deviation(self, x: float, y: float, camera: int) -> float:
+        """Return the distance of a camera's detection at the track's time from the prediction [m]."""
+        dx, dy = self._position.offset(camera)
+        return hypot(x - dx - self.motion.x, y - dy - self.motion.y)
 
-    def correct(self, x: float, y: float, heading: float | None) -> None:
-        """Correct the estimate with a detection captured at the track's time."""
-        m = self.motion
-        s = self._position.pp + self._r
-        dx, dy = x - m.x, y - m.y
-        k, g = self._position.gains(s)
+    def correct(self, x: float, y: float, camera: int) -> None:
+        """Correct the estimate with the place at which a camera saw the robot at the track's time."""
+        m, p = self.motion, self._position
+        ox, oy = p.offset(camera)
+        s = p.detection_variance(camera) + self._r
+        dx, dy = x - ox - m.x, y - oy - m.y
+        k, g = p.correct(camera, self.time, s, [dx, dy])
         m.x += k * dx
         m.y += k * dy
         m.vx += g * dx
         m.vy += g * dy
-        self._position.correct(k, g)
         scale = 1.0 / sqrt(s)
         self._mismatch.update(dx * scale, dy * scale)
-        if heading is not None:
-            s = self._heading.pp + self._rh
-            dh = wrap_angle(heading - m.heading)
-            k, g = self._heading.gains(s)
-            m.heading = wrap_angle(m.heading + k * dh)
-            m.omega += g * dh
-            self._heading.correct(k, g)
-            self._heading_mismatch.update(dh / sqrt(s))
+        p.teach()
+
+    def correct_heading(self, heading: float, camera: int, confidence: float) -> None:
+        """Correct the estimate with the heading at which a camera saw the robot at the track's time.
+
+        A heading far from the prediction, as of a pattern that was misread, is left out until it is
+        confirmed.
+        """
+        m, p, time = self.motion, self._heading, self.time
+        dh = wrap_angle(heading - p.offset(camera)[0] - m.heading)
+        turned = self.limits.max_turn * (time - self._heading_seen)
+        self._heading_seen = time
+        if abs(dh) > _HEADING_GATE + turned:
+            if self._headings.believes(cos(heading), sin(heading), camera, confidence, time):
+                self._restart_heading(heading, time, camera)
+            return
+        self._headings.saw_track(camera, confidence, time)
+        if abs(dh) > _HEADING_GATE:
+            self._restart_heading(heading, time, camera)
+            return
+        s = p.detection_variance(camera) + self._rh
+        k, g = p.correct(camera, time, s, [dh])
+        m.heading = wrap_angle(m.heading + k * dh)
+        m.omega += g * dh
+        self._heading_mismatch.update(dh / sqrt(s))
+        p.teach()
 
 
 def predict_robot(

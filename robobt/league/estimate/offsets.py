@@ -1,0 +1,242 @@
+"""An object's covariance, with the offset of each camera that sees it.
+
+Calibrated cameras disagree by centimetres about where a thing is. Each detection is taken as
+position + the camera's offset + noise, and the Kalman filter estimates the offsets with position
+and velocity: what alternates with the camera is an offset, what all cameras see is motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp
+
+_DETECTIONS_KNOWN = 5
+"""Number of detections after which a camera's offset counts as known."""
+
+_FORGOTTEN = 2.0
+"""A camera that has not seen the object for this long is dropped from its estimate [s]."""
+
+_ANYWHERE = 1.0
+"""Variance of a position that is not known at all [m^2 or rad^2]."""
+
+_TOGETHER = 0.1
+"""Cameras that saw the object within this time see it together [s]."""
+
+_DRIFT = 0.02
+"""Growth of an offset's variance, as a share of its first one [1/s]: it changes with the place."""
+
+_LEARNING_RATE = 0.01
+"""Least weight of one detection in a camera's mean offset."""
+
+_SETTLING_TIME = 0.5
+"""Time constant with which what all cameras of an object share goes into its position [s]."""
+
+
+class MeanOffsets:
+    """The mean offset of each camera over all objects, in metres or radians.
+
+    Only differences between cameras can be seen, so the offsets add up to zero.
+
+    Args:
+        axes: number of coordinates.
+    """
+
+    def __init__(self, axes: int) -> None:
+        self._axes = axes
+        self._means: dict[int, list[float]] = {}
+        self._counts: dict[int, int] = {}
+
+    def of(self, camera: int) -> list[float]:
+        """Return a camera's mean offset, one entry per axis; zeros while it is unknown."""
+        mean = self._means.get(camera)
+        return [0.0] * self._axes if mean is None else list(mean)
+
+    def learn(self, offsets: dict[int, list[float]]) -> None:
+        """Learn from one object's offsets in two or more cameras."""
+        counts, means = self._counts, self._means
+        for camera in offsets:
+            counts[camera] = counts.get(camera, 0) + 1
+        # The camera that is known least, and the same weight for all: else they would no longer add up to 0.
+        weight = max(_LEARNING_RATE, 1.0 / min(counts[camera] for camera in offsets))
+        for axis in range(self._axes):
+            changes = {camera: offset[axis] - self.of(camera)[axis] for camera, offset in offsets.items()}
+            shared = sum(changes.values()) / len(changes)
+            for camera, change in changes.items():
+                means.setdefault(camera, [0.0] * self._axes)[axis] += weight * (change - shared)
+
+
+@dataclass(slots=True)
+class _Camera:
+    """A camera's offset from the object's position, and how often and when it last saw it [s]."""
+
+    offset: list[float]
+    seen: float
+    detections: int = 0
+
+
+class OffsetCovariance:
+    """Covariance of position, velocity and the cameras' offsets, equal for all axes, and those offsets.
+
+    Args:
+        velocity_variance: of the first estimate; the position is unknown.
+        spread: standard deviation of an offset about the camera's mean, in the unit of the position.
+        means: the cameras' mean offsets, shared by all objects.
+    """
+
+    def __init__(self, velocity_variance: float, spread: float, means: MeanOffsets) -> None:
+        # Rows and columns: position, velocity, then the cameras in their order.
+        self._matrix = [[_ANYWHERE, 0.0], [0.0, velocity_variance]]
+        self._cameras: dict[int, _Camera] = {}
+        self._spread, self._means = spread * spread, means
+        self._several = False
+
+    def begin(self, camera: int, time: float, noise: float) -> list[float]:
+        """Take in the first detection [s], with the variance of its noise; return the camera's offset."""
+        offset = self.offset(camera)
+        self.correct(camera, time, self.detection_variance(camera) + noise, [0.0] * len(offset))
+        return offset
+
+    @property
+    def position_variance(self) -> float:
+        """Variance of the position, of which the cameras' common offset, which nobody can see, is no part."""
+        last = max(self._cameras, key=lambda camera: self._cameras[camera].seen, default=None)
+        return self._matrix[0][0] if last is None else self.detection_variance(last)
+
+    def offset(self, camera: int) -> list[float]:
+        """Return a camera's offset, one entry per axis."""
+        known = self._cameras.get(camera)
+        return self._means.of(camera) if known is None else known.offset
+
+    def knows(self, camera: int) -> bool:
+        """Return whether a camera's offset is known."""
+        known = self._cameras.get(camera)
+        return known is not None and known.detections >= _DETECTIONS_KNOWN
+
+    def detection_variance(self, camera: int) -> float:
+        """Return the variance of where a camera is expected to see the object, without its noise."""
+        m = self._matrix
+        if camera not in self._cameras:
+            return m[0][0] + self._spread
+        i = self._row(camera)
+        return m[0][0] + 2.0 * m[0][i] + m[i][i]
+
+    def predict(self, noise: float, dt: float) -> None:
+        """Grow over ``dt`` seconds under an acceleration noise, in the position's unit / s^2."""
+        m, size = self._matrix, len(self._matrix)
+        # Only differences drift: a drift that all cameras share would take up what is motion.
+        if self._several:
+            count = size - 2
+            for i in range(2, size):
+                for j in range(2, size):
+                    m[i][j] += _DRIFT * self._spread * dt * ((i == j) - 1.0 / count)
+        q = noise * noise * dt * dt
+        for j in range(size):
+            m[0][j] += dt * m[1][j]
+        for j in range(size):
+            m[j][0] += dt * m[j][1]
+        m[0][0] += q * dt * dt / 4.0
+        m[0][1] += q * dt / 2.0
+        m[1][0] = m[0][1]
+        m[1][1] += q
+
+    def settle(self, dt: float) -> list[float]:
+        """Return what to add to the position, one entry per axis, after ``dt`` seconds.
+
+        An offset that all cameras of an object share cannot be seen. It is moved into the position, towards
+        the cameras' means, so that objects seen by different cameras stay in place to each other. No
+        velocity comes of it.
+        """
+        if not self._cameras:
+            return []
+        share = 1.0 - exp(-dt / _SETTLING_TIME)
+        apart = [
+            [b - mean for b, mean in zip(known.offset, self._means.of(camera), strict=True)]
+            for camera, known in self._cameras.items()
+        ]
+        shift = [share * sum(axis) / len(apart) for axis in zip(*apart, strict=True)]
+        for known in self._cameras.values():
+            known.offset = [b - part for b, part in zip(known.offset, shift, strict=True)]
+        return shift
+
+    def jump(self, square: float, velocity_variance: float) -> None:
+        """Take the object to have been displaced, by a squared distance, and its velocity to be unknown."""
+        m = self._matrix
+        for row in m:
+            row[1] = 0.0
+        m[1] = [0.0] * len(m)
+        m[1][1] = velocity_variance
+        m[0][0] = max(m[0][0], square)
+        # What was learned in the last moment may have been the beginning of the jump.
+        for camera, known in self._cameras.items():
+            if known.detections < _DETECTIONS_KNOWN:
+                known.offset, known.detections = self._means.of(camera), 0
+                self._clear(self._row(camera))
+
+    def move_since(self, dt: float, variance: float) -> None:
+        """Let the next innovation, of a total ``variance``, be due to a velocity that began ``dt`` s ago."""
+        m = self._matrix
+        m[0][1] = m[1][0] = variance / dt
+        m[1][1] += variance / dt / dt
+
+    def widen(self, velocity_variance: float) -> None:
+        """Raise the variance of the velocity to this value where it is lower."""
+        self._matrix[1][1] = max(self._matrix[1][1], velocity_variance)
+
+    def correct(
+        self, camera: int, time: float, variance: float, innovation: list[float]
+    ) -> tuple[float, float]:
+        """Correct the offsets and shrink; return the gains of position and velocity.
+
+        Args:
+            camera: whose detection it is.
+            time: of the detection [s].
+            variance: of the innovation, the camera's noise included.
+            innovation: detection less position and offset, one entry per axis.
+        """
+        known = self._cameras.get(camera) or self._add(camera, time)
+        known.seen, known.detections = max(time, known.seen), known.detections + 1
+        m, i = self._matrix, self._row(camera)
+        column = [row[0] + row[i] for row in m]
+        gains = [entry / variance for entry in column]
+        for row, gain in zip(m, gains, strict=True):
+            for j, entry in enumerate(column):
+                row[j] -= gain * entry
+        for each, gain in zip(self._cameras.values(), gains[2:], strict=True):
+            each.offset = [b + gain * e for b, e in zip(each.offset, innovation, strict=True)]
+        if len(self._cameras) > 1:
+            for other in [other for other, each in self._cameras.items() if each.seen < time - _FORGOTTEN]:
+                self._drop(other)
+            self._several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
+        return gains[0], gains[1]
+
+    def teach(self) -> None:
+        """Let the cameras' means learn from this object's offsets."""
+        if self._several:
+            known = {camera: each.offset for camera, each in self._cameras.items() if self.knows(camera)}
+            if len(known) > 1:
+                self._means.learn(known)
+
+    def _row(self, camera: int) -> int:
+        return 2 + list(self._cameras).index(camera)
+
+    def _add(self, camera: int, time: float) -> _Camera:
+        for row in self._matrix:
+            row.append(0.0)
+        self._matrix.append([0.0] * (len(self._matrix) + 1))
+        added = self._cameras[camera] = _Camera(self._means.of(camera), time)
+        self._clear(len(self._matrix) - 1)
+        return added
+
+    def _drop(self, camera: int) -> None:
+        i = self._row(camera)
+        del self._cameras[camera], self._matrix[i]
+        for row in self._matrix:
+            del row[i]
+
+    def _clear(self, i: int) -> None:
+        """Forget a camera's offset but its spread."""
+        m = self._matrix
+        m[i] = [0.0] * len(m)
+        for row in m:
+            row[i] = 0.0
+        m[i][i] = self._spread
