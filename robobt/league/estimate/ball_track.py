@@ -31,8 +31,11 @@ class BallMotion:
     vz: float = 0.0
 
 
-_NOISE = 0.2
-"""Acceleration noise of a free ball, which carpets slow down differently [m/s^2]."""
+_RESTING_NOISE, _ROLLING_NOISE = 0.05, 0.2
+"""Acceleration noise of a free ball that rests or rolls: carpets differ in how they slow it [m/s^2]."""
+
+_ROLLS = 0.1
+"""Speed from which on a ball rolls [m/s]."""
 
 _PUSHED_NOISE = 6.0
 """Acceleration noise of a ball that a robot may push [m/s^2]."""
@@ -125,7 +128,8 @@ class BallTrack:
         for motion in (self._sliding, self._rolling):
             motion.x += shift_x
             motion.y += shift_y
-        noise = _PUSHED_NOISE if near_robot else _NOISE + self._mismatch.level * _PUSHED_NOISE
+        noise = _RESTING_NOISE if hypot(self.motion.vx, self.motion.vy) < _ROLLS else _ROLLING_NOISE
+        noise = _PUSHED_NOISE if near_robot else noise + self._mismatch.level * _PUSHED_NOISE
         self._covariance.predict(noise, dt)
         self.time, self._last_step = time, dt
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 _MEMORY = 0.25
 """Weight of the newest innovation in the running mean that separates a manoeuvre from noise."""
 
-_SUSPECT = 4.0
+_SUSPECT = 9.0
 """Squared running mean, in variances, from which on the model is doubted."""
 
-_CERTAIN = 16.0
+_CERTAIN = 27.0
 """Squared running mean, in variances, from which on the model is rejected."""
 
 _MEAN_VARIANCE = _MEMORY / (2.0 - _MEMORY)
