@@ -14,6 +14,7 @@ from robobt.league.known_field import KnownField
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.referee_message import LONGEST
 from robobt.league.wire.sockets import BATCH, Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
@@ -81,7 +82,7 @@ class Feed:
         self.frames = 0
         self.fresh = False
         self.arrived = self.heard = -1e9
-        self.referee = RefereeFollower() if connection.follow_referee else None
+        self.referee = RefereeFollower(self.known) if connection.follow_referee else None
         self._clock = clock
         self._cameras: dict[int, float] = {}
         self._camera_clocks = CameraClocks()
@@ -96,7 +97,7 @@ class Feed:
             self._vision = opened.enter_context(Receiver(*self._source, interface))
             self._sources = [self._vision]
             if self.referee is not None:
-                self._sources.append(opened.enter_context(Receiver(*endpoints.referee, interface)))
+                self._sources.append(opened.enter_context(Receiver(*endpoints.referee, interface, LONGEST)))
             self._opened = opened.pop_all()
 
     def close(self) -> None:
@@ -189,9 +190,19 @@ class Feed:
         newest = {frame.camera: frame for frame in frames} if read < BATCH else {}
         for frame in frames:
             self.add(frame, arrived, waited=frame is not newest.get(frame.camera))
+        self.hear_referee()
+
+    def hear_referee(self) -> None:
+        """Take in the game controller's packets that wait."""
         if self.referee is not None:
+            arrived = self._clock()
             for packet in self._sources[1].receive():
                 self.referee.read(packet.data, packet.sender, arrived)
+
+    @property
+    def halted(self) -> bool:
+        """Whether the game controller wants every robot to stand still."""
+        return self.referee is not None and self.referee.game.halted
 
     def add(self, frame: CameraFrame, arrived: float, *, waited: bool = False) -> None:
         """Use a camera's frame that arrived, or had ``waited``, at a time of this machine's clock [s]."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 
 from robobt.league.estimate.clocks import FieldClock
+from robobt.league.wire.notices import Notices
 from robobt.world.field import FieldGeometry
 
 _log = logging.getLogger(__name__)
@@ -16,24 +17,18 @@ _NOTABLE, _SLOW = 0.01, 0.9
 """A rate that is off by this share is told; one below this share of the expected is a slow field."""
 
 
-class KnownField:
+class KnownField(Notices):
     """What is known of a field from one match to the next.
 
     ``speed`` is the rate that its clock is expected to have [s of the field per s].
     """
 
     def __init__(self, speed: float = 1.0) -> None:
+        super().__init__()
         self.clock = FieldClock(speed)
         self.field: FieldGeometry | None = None
         self._speed = speed
-        self._told: set[str] = set()
         self._since: tuple[float, float] | None = None
-
-    def tell(self, what: str, message: str) -> None:
-        """Warn the user of something, once."""
-        if what not in self._told:
-            self._told.add(what)
-            _log.warning(message)
 
     def tell_again(self, message: str) -> None:
         """Warn the user of something each time that it happens."""

@@ -74,9 +74,7 @@ class StepFeed(Feed):
                 if seen is not None:
                     self._look_around(seen)
                     self._geometry_due &= not seen.cameras
-            if self.referee is not None:
-                for packet in self._sources[1].receive():
-                    self.referee.read(packet.data, packet.sender, self._link.time)
+            self.hear_referee()
             late = self.referee is not None and self.referee.sent < sent - 1e-3
             if not late and not self._geometry_due:
                 return

@@ -40,6 +40,8 @@ _STALE = 0.2
 _SHORTEST = 1e-5
 """Shortest wait for packets [s]."""
 
+_STAND = RobotCommand()
+
 _SLOWEST = 0.25
 """Rate of a match's time while it waits for a field's clock that stood still."""
 
@@ -49,7 +51,7 @@ class LeagueWorld(World):
 
     Frames are predicted from the last capture to now with the commands sent since.
     Commands go out once a control period, and at least 60 times a second, whether or not
-    the vision sends; without frames for 0.2 s they stop the robots, as they do when this
+    the vision sends; without frames for 0.2 s they stop the robots, as they do in a HALT and when this
     world is closed or its process ends. Another world of this process that commands one
     of the same robots is closed.
 
@@ -96,6 +98,7 @@ class LeagueWorld(World):
         self._robots = None if robots is None else sorted(robots)
         self._limits = {robot: limits for robot, limits in (robots or {}).items() if limits is not None}
         self._commands: dict[RobotId, RobotCommand] = {}
+        self._sent: Mapping[RobotId, RobotCommand] = {}
         self._clock = clock
         here = self.connection
         commanded = () if here.simulator == "observer" else robots
@@ -168,8 +171,10 @@ class LeagueWorld(World):
             limits = self._limits.get(robot, self.settings.limits)
             clamped[robot] = clamp_command(command, limits, self.settings.kicker)
         self._commands = {robot: clamped.get(robot) or RobotCommand() for robot in self._commanded()}
-        self._transmit()
         feed = self._feed
+        # A HALT may have come while the trees decided.
+        feed.hear_referee()
+        self._transmit()
         if feed.fresh:
             self.latencies.append((feed.now() - feed.arrived) / feed.rate)
         # An immediate kick has been made; repeats of the command only drive.
@@ -271,16 +276,16 @@ class LeagueWorld(World):
         return frame
 
     def _transmit(self) -> None:
-        """Send the commands in force; without recent frames, commands to stop."""
+        """Send the commands in force; without recent frames, or in a HALT, commands to stop."""
         now = self._feed.now()
         commands = self._commands
-        if now - self._feed.heard > _STALE:
+        if self._feed.halted or now - self._feed.heard > _STALE:
             commands = {robot: RobotCommand() for robot in commands}
         self._link.send(commands, now)
         effect = self.settings.realism.command_delay + self.settings.limits.reaction
         self._feed.filter.sent(self._feed.vision_now() + effect, commands)
         self.send_times.append(self._clock())
-        self._sent_at = now
+        self._sent, self._sent_at = commands, now
 
     @property
     def paced(self) -> bool:
@@ -310,3 +315,5 @@ class LeagueWorld(World):
                 self._transmit()
             # A time lost in rounding must not be waited for again and again.
             feed.receive(max(until - now, _SHORTEST) / feed.rate)
+            if feed.halted and any(command != _STAND for command in self._sent.values()):
+                self._transmit()

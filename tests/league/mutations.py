@@ -51,6 +51,27 @@ def mutations(seeds: list[Message], seed: int) -> Iterator[bytes]:
         yield _bytes_changed(bytearray(data), rng) if rng.random() < 0.1 else data
 
 
+def around(message: Message, keep: tuple[str, str], seed: int) -> Iterator[bytes]:
+    """Packets without end in which two adjacent fields of a message are intact, and all others are spoilt.
+
+    Half of them have other fields that are absurd, the others bytes that were changed before or behind.
+    """
+    rng = random.Random(seed)
+    kept = type(message)(**{name: getattr(message, name) for name in keep}).SerializePartialToString()
+    while True:
+        copy = type(message)()
+        copy.CopyFrom(message)
+        for _ in range(rng.choice((0, 1, 2, 4, 12))):
+            _absurd(copy, rng)
+        for name in keep:
+            setattr(copy, name, getattr(message, name))
+        before, _, behind = copy.SerializePartialToString().partition(kept)
+        if rng.random() < 0.5:
+            before = _bytes_changed(bytearray(before), rng)[-1000:] if rng.random() < 0.5 else before
+            behind = _bytes_changed(bytearray(behind), rng)
+        yield (before + kept + behind)[:_LONG]
+
+
 def _bytes_changed(data: bytearray, rng: random.Random) -> bytes:
     kind = rng.randrange(100)
     if kind < 40:

@@ -124,8 +124,7 @@ class OfficialReferee:
         """Follow the controller's messages; return the events that are new in them at this time [s]."""
         events: list[RefereeEvent] = []
         for message in messages:
-            if not self._follower.follow(message):
-                raise GameControllerError("the game controller names a place that is on no field")
+            self._follower.follow(message)
             events += self._follower.reported(now, EPOCH)
         return events
 

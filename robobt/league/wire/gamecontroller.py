@@ -5,37 +5,32 @@ Source of the states: RoboCup SSL rules, chapter "Referee commands".
 
 from __future__ import annotations
 
-import logging
 from dataclasses import replace
 from typing import Literal
 
 from robobt.league.wire.gameevents import read_event
 from robobt.league.wire.messages import GameEvent
 from robobt.league.wire.messages import Referee as RefereeMessage
-from robobt.league.wire.packets import MAX_OBJECTS, PacketCounts, on_field, read
+from robobt.league.wire.notices import Notices
+from robobt.league.wire.packets import MAX_OBJECTS, PacketCounts
+from robobt.league.wire.referee_message import (
+    ReadMessage,
+    clear_nonsense,
+    command_in,
+    command_of,
+    read_message,
+)
+from robobt.league.wire.senders import Address, FirstSender
 from robobt.match.referee.events import RefereeEvent
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import IN_PLAY_DISTANCE
 from robobt.world.state import Frame
 
-_log = logging.getLogger(__name__)
-
 _MM = 1000.0
-
-_SILENCE = 2.0
-"""Another sender is followed once the present one has been silent for this long [s]."""
 
 _KICK_TIMEOUT = 10.0
 """A restart that has not been taken by then is over, where the controller does not tell the time left [s]."""
-
-# No longer sent, but found in old logs.
-_OUTDATED = {
-    10: RefereeCommand.DIRECT_FREE_YELLOW,
-    11: RefereeCommand.DIRECT_FREE_BLUE,
-    14: RefereeCommand.STOP,
-    15: RefereeCommand.STOP,
-}
 
 _RESTARTS = {
     RefereeCommand[f"{prefix}_{team.name}"]: (restart, team)
@@ -60,9 +55,11 @@ class RefereeFollower:
         blue_on_positive_half: whether blue defends +x; None until a packet says so.
         sent: when the last packet was sent, as its sender's clock has it [s].
         counts: what happened to the packets.
+
+    ``notices`` warns of messages that make no sense, and of further controllers.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, notices: Notices | None = None) -> None:
         self.sent = 0.0
         self.game = GameState(
             RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_touch=False, placement=None
@@ -71,47 +68,60 @@ class RefereeFollower:
         self.counts = PacketCounts()
         self._news: list[GameEvent] = []
         self._told: set[bytes] = set()
-        self._counter: tuple[int, int, int] | None = None
+        self._counter: tuple[int, int, int, RefereeCommand | None] | None = None
         self._ready: tuple[Point, float] | None = None
-        self._sender: tuple[str, int] | None = None
-        self._heard = 0.0
-        self._ignored: set[tuple[str, int]] = set()
+        self._controller = FirstSender[Address]()
+        self._notices = notices or Notices()
 
-    def read(self, data: bytes, sender: tuple[str, int] = ("", 0), time: float = 0.0) -> bool:
-        """Update the state from a packet; return False (counted) when it is malformed or implausible.
+    def read(self, data: bytes, sender: Address = ("", 0), time: float = 0.0) -> bool:
+        """Update the state from a packet; return False (counted) when nothing in it is of use.
 
-        Of several senders the first is followed until it falls silent; each of the others is
-        reported once.
+        Fields that make no sense are left out, and reported once each; what a message has to hold keeps its
+        last value. A command that is not known halts. Of several senders the first is followed until it
+        falls silent; each of the others is reported once.
 
-        ``time`` is when it arrived, on a clock that grows from call to call [s].
+        Args:
+            data: the packet.
+            sender: who sent it.
+            time: when it arrived, on a clock that grows from call to call [s].
         """
-        if sender != self._sender and self._sender is not None and time - self._heard <= _SILENCE:
-            if sender not in self._ignored:
-                self._ignored.add(sender)
-                _log.warning(
-                    "two game controllers: following %s:%d, ignoring %s:%d; stop one of them",
-                    *self._sender,
-                    *sender,
-                )
+        controller = self._controller
+        if controller.sender is not None and not controller.follows(sender, time):
+            first, second = (f"{host}:{port}" for host, port in (controller.sender, sender))
+            self._notices.tell(
+                f"controller {second}",
+                f"two game controllers: following {first}, ignoring {second}; stop one of them",
+            )
             self.counts.foreign += 1
             return False
-        if read(RefereeMessage, data, self.counts, self._update) is None:
+        seen = read_message(data, self.counts)
+        if seen is None:
             return False
-        self._sender, self._heard = sender, time
-        self._ignored.discard(sender)
+        controller.heard(sender, time)
+        self._update(seen)
         return True
 
-    def _update(self, message: RefereeMessage) -> bool | None:
+    def follow(self, message: RefereeMessage) -> None:
+        """Update the state from a message of the one controller there is."""
+        odd = clear_nonsense(message)
+        self._update(ReadMessage(message, command_in(message), odd))
+
+    def _update(self, seen: ReadMessage) -> None:
+        message, command, odd = seen
+        for name in odd:
+            self._notices.tell(
+                f"referee {name}",
+                f"the game controller's messages: {name} is missing or makes no sense; it is left out, "
+                "and the rest is followed",
+            )
         placement: Point | None = None
         if message.HasField("designated_position"):
             spot = message.designated_position
             placement = (spot.x / _MM, spot.y / _MM)
-            if not on_field(*placement):
-                return None
-        command = _command(message.command)
-        self.sent = message.packet_timestamp / 1e6
-        events = message.game_events[:MAX_OBJECTS]
-        told = {event.SerializeToString(): event for event in events}
+        if message.HasField("packet_timestamp"):
+            self.sent = message.packet_timestamp / 1e6
+        events = list(message.game_events)
+        told = {event.SerializePartialToString(): event for event in events}
         # They stay in the packets until play goes on.
         self._news = (self._news + [event for each, event in told.items() if each not in self._told])[
             -MAX_OBJECTS:
@@ -119,11 +129,11 @@ class RefereeFollower:
         self._told = set(told)
         if message.HasField("blue_team_on_positive_half"):
             self.blue_on_positive_half = message.blue_team_on_positive_half
-        upcoming = _command(message.next_command) if message.HasField("next_command") else None
+        upcoming = command_of(message.next_command) if message.HasField("next_command") else None
         # A restarted controller counts from 0 again, but with another timestamp. A goal is told as a command
         # once, and then the command in force again, with the number of the goal.
-        counter = (message.command_counter, message.command_timestamp, int(message.command))
-        if counter != self._counter:
+        counter = (message.command_counter, message.command_timestamp, int(message.command), command)
+        if command is not None and counter != self._counter:
             self._counter = counter
             self._follow(command, upcoming, placement)
         elif self.game.command is RefereeCommand.STOP:
@@ -133,23 +143,19 @@ class RefereeFollower:
             self.game = replace(self.game, restart=restart, restart_team=team, placement=placement)
         elif self.game.restart is Restart.BALL_PLACEMENT:
             self.game = replace(self.game, placement=placement or self.game.placement)
+        game = self.game
         self.game = replace(
-            self.game,
-            stage=Stage(int(message.stage)),
-            blue_score=message.blue.score,
-            yellow_score=message.yellow.score,
-            blue=_status(message.blue),
-            yellow=_status(message.yellow),
+            game,
+            stage=Stage(int(message.stage)) if message.HasField("stage") else game.stage,
+            blue_score=message.blue.score if message.blue.HasField("score") else game.blue_score,
+            yellow_score=message.yellow.score if message.yellow.HasField("score") else game.yellow_score,
+            blue=_status(message.blue, game.blue) if message.HasField("blue") else game.blue,
+            yellow=_status(message.yellow, game.yellow) if message.HasField("yellow") else game.yellow,
             upcoming=upcoming,
             events=tuple([GameEvent.Type.Name(event.type).lower() for event in events]),
             action_time=_seconds(message, "current_action_time_remaining"),
             stage_time=_seconds(message, "stage_time_left"),
         )
-        return True
-
-    def follow(self, message: RefereeMessage) -> bool:
-        """Update the state from a message of the one controller there is; False when it is implausible."""
-        return bool(self._update(message))
 
     def reported(self, now: float, epoch: float | None = None) -> list[RefereeEvent]:
         """Return the game events that are new in the packets since this was asked last.
@@ -219,12 +225,12 @@ def _following(upcoming: RefereeCommand | None) -> tuple[Restart | None, Team | 
     return (None, None) if upcoming is None else _RESTARTS.get(upcoming, (None, None))
 
 
-def _status(info: RefereeMessage.TeamInfo) -> TeamStatus:
+def _status(info: RefereeMessage.TeamInfo, before: TeamStatus) -> TeamStatus:
     return TeamStatus(
-        keeper=info.goalkeeper,
+        keeper=info.goalkeeper if info.HasField("goalkeeper") else before.keeper,
         max_robots=info.max_allowed_bots if info.HasField("max_allowed_bots") else None,
         yellow_cards=len(info.yellow_card_times),
-        red_cards=info.red_cards,
+        red_cards=info.red_cards if info.HasField("red_cards") else before.red_cards,
         can_place_ball=info.can_place_ball if info.HasField("can_place_ball") else True,
         substituting=info.bot_substitution_allowed,
     )
@@ -234,7 +240,3 @@ def _seconds(
     message: RefereeMessage, field: Literal["current_action_time_remaining", "stage_time_left"]
 ) -> float | None:
     return getattr(message, field) * 1e-6 if message.HasField(field) else None
-
-
-def _command(number: int) -> RefereeCommand:
-    return _OUTDATED.get(int(number)) or RefereeCommand(int(number))

@@ -31,6 +31,8 @@ _T = TypeVar("_T")
 class PacketCounts:
     """What happened to the packets of one port.
 
+    Of a game controller's packets that are not accepted, what makes sense is used all the same.
+
     Attributes:
         accepted: used.
         unreadable: not a message of the port's type, or truncated.
@@ -49,7 +51,7 @@ class PacketCounts:
 
     @property
     def dropped(self) -> int:
-        """Number of packets that were not used."""
+        """Number of packets that were not used, or not in full."""
         return self.unreadable + self.incomplete + self.implausible + self.oversized + self.foreign
 
 

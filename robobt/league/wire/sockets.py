@@ -16,6 +16,7 @@ from typing import Self
 
 from robobt.config.errors import RobobtError
 from robobt.league.wire.packets import MAX_PACKET, PacketCounts
+from robobt.league.wire.senders import Address
 
 LOOPBACK = "127.0.0.1"
 """Address of the interface whose packets stay on this machine."""
@@ -41,13 +42,14 @@ class Packet:
     """One datagram and the address it came from."""
 
     data: bytes
-    sender: tuple[str, int]
+    sender: Address
 
 
 class _UdpSocket:
     """A non-blocking UDP socket that works as a context manager."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest: int = MAX_PACKET) -> None:
+        self._longest = longest
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
 
@@ -66,10 +68,10 @@ class _UdpSocket:
         for _ in range(BATCH):
             try:
                 if sys.platform == "win32":  # which has no recvmsg, and drops a longer datagram itself
-                    data, sender = self._socket.recvfrom(MAX_PACKET)
+                    data, sender = self._socket.recvfrom(self._longest)
                     yield data, [], 0, sender
                     continue
-                datagram = self._socket.recvmsg(MAX_PACKET, 64)
+                datagram = self._socket.recvmsg(self._longest, 64)
             except (BlockingIOError, InterruptedError):
                 return
             except OSError:
@@ -98,16 +100,19 @@ class Receiver(_UdpSocket):
         interface: own address of the interface to listen on; packets from other machines
             that arrive elsewhere are dropped. By default all packets from other machines are
             dropped, and those of this machine accepted on any interface.
+        longest: longer datagrams are dropped [bytes].
 
     Raises:
         SocketError: the port is taken, or no interface has the address.
         ValueError: ``address`` is not an IPv4 address.
     """
 
-    def __init__(self, address: str, port: int, interface: str | None = None) -> None:
+    def __init__(
+        self, address: str, port: int, interface: str | None = None, longest: int = MAX_PACKET
+    ) -> None:
         group = IPv4Address(address).is_multicast
         self._interface = None if interface is None else _interface_index(interface)
-        super().__init__()
+        super().__init__(longest)
         self.counts = PacketCounts()
         self._own: dict[str, bool] = {}
         try:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from math import inf, nan
 
 import pytest
 
@@ -175,12 +177,88 @@ def test_a_restart_is_over_when_the_controllers_time_for_it_is(controller: Contr
     assert controller.ball(1.0, 1.0, 15.2).in_play
 
 
-def test_a_place_that_is_none_is_dropped(controller: Controller) -> None:
-    controller.say("STOP")
-    controller.message.designated_position.x = float("nan")
-    controller.message.designated_position.y = 0.0
-    assert not controller.follower.read(controller.message.SerializeToString())
-    assert controller.follower.counts.implausible == 1
+@pytest.mark.parametrize("place", [(nan, 0.0), (0.0, inf), (50_000.0, 0.0), (1e38, -1e38)])
+@pytest.mark.parametrize("command", ["HALT", "STOP", "FORCE_START"])
+def test_a_place_on_no_field_is_left_out_and_told_once(
+    controller: Controller, caplog: pytest.LogCaptureFixture, command: str, place: tuple[float, float]
+) -> None:
+    controller.say("BALL_PLACEMENT_BLUE", at=(1000.0, 0.0))
+    controller.message.blue.score = 3
+    game = controller.say(command, at=place)
+    for _ in range(50):
+        controller.repeat()
+    assert (game.command, game.placement, game.blue_score) == (RefereeCommand[command], None, 3)
+    assert controller.follower.counts.implausible == 51
+    (told,) = caplog.messages
+    assert "designated_position" in told
+
+
+def test_what_a_message_lacks_keeps_its_last_value(
+    controller: Controller, caplog: pytest.LogCaptureFixture
+) -> None:
+    message = controller.message
+    message.blue.score, message.blue.goalkeeper = 2, 5
+    controller.say("FORCE_START")
+    for name in ("stage", "packet_timestamp", "command_timestamp", "blue"):
+        message.ClearField(name)
+    message.yellow.ClearField("score")
+    message.yellow.goalkeeper, message.yellow.red_cards = 4_000_000_000, 2**32 - 1
+    message.yellow.max_allowed_bots = 77
+    message.stage_time_left, message.current_action_time_remaining = 2**62, -(2**62)
+    message.command_counter += 1
+    message.command = Referee.HALT
+    for _ in range(3):
+        assert controller.follower.read(message.SerializePartialToString())
+    game = controller.follower.game
+    assert game.halted
+    assert (game.stage, game.blue_score, game.yellow_score) == (Stage.NORMAL_FIRST_HALF, 2, 0)
+    assert (game.blue.keeper, game.yellow.keeper, game.yellow.red_cards) == (5, 0, 0)
+    assert (game.yellow.max_robots, game.stage_time, game.action_time) == (None, None, None)
+    assert len(caplog.messages) == len(set(caplog.messages)) == 10
+
+
+def test_a_command_that_nobody_knows_halts(controller: Controller, caplog: pytest.LogCaptureFixture) -> None:
+    controller.say("FORCE_START")
+    controller.message.ClearField("command")
+    unknown = controller.message.SerializePartialToString() + b"\x20\x4d"
+    assert controller.follower.read(unknown)
+    assert controller.follower.game.halted
+    (told,) = caplog.messages
+    assert "command" in told
+
+
+@pytest.mark.parametrize("command", ["HALT", "STOP", "TIMEOUT_BLUE"])
+@pytest.mark.parametrize(
+    "broken",
+    [
+        lambda data: data[:-9],
+        lambda data: data + b"\xff\xff",
+        # The team's length reaches beyond the packet.
+        lambda data: data.replace(b"\x3a\x12", b"\x3a\x7f"),
+        # The stage swallows what follows: its number goes on.
+        lambda data: data.replace(b"\x10\x01", b"\x10\x81", 1),
+        lambda data: b"\x0b" * 20 + data,
+        # A later command, as of a field whose number was spoilt.
+        lambda data: data + b"\x20\x02",
+    ],
+    ids=["cut", "longer", "length", "number", "groups", "contradiction"],
+)
+def test_a_message_that_is_broken_around_it_still_stops_the_robots(
+    controller: Controller, command: str, broken: Callable[[bytes], bytes]
+) -> None:
+    controller.say("FORCE_START")
+    controller.message.command = Referee.Command.Value(command)
+    controller.message.command_counter += 1
+    assert controller.follower.read(broken(controller.message.SerializeToString()))
+    assert controller.follower.game.command is RefereeCommand[command]
+
+
+def test_a_message_that_cannot_be_decoded_starts_nothing(controller: Controller) -> None:
+    controller.say("HALT")
+    controller.message.command = Referee.FORCE_START
+    controller.message.command_counter += 1
+    assert not controller.follower.read(controller.message.SerializeToString() + b"\xff\xff")
+    assert controller.follower.game.halted
 
 
 def test_noise_is_counted(controller: Controller) -> None:
