@@ -208,9 +208,7 @@ class Feed:
         """Use a camera's frame that arrived, or had ``waited``, at a time of this machine's clock [s]."""
         captured, known = self.filter.captured, self.known
         came = self.now() - (self._clock() - arrived) * self.rate
-        apart = self._camera_clocks.shift(frame.camera, came, frame.sent)
-        frame.captured += apart
-        frame.sent += apart
+        self._camera_clocks.align(frame, came)
         there = known.clock.at(arrived)
         if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame), there):
             return

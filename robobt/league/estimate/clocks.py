@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import inf, sqrt
 
 from robobt.league.estimate.kalman import Covariance, Mismatch
+from robobt.league.wire.vision import CameraFrame
 
 _BLOCK = 0.0999
 """Packets sent within so long compete for the least delay [s of the field].
@@ -61,7 +62,10 @@ _JUMP = 0.5
 """A clock does not gain this much; a single packet that shows it has a wrong timestamp [s]."""
 
 _CONFIRMATIONS = 3
-"""Consecutive packets after which a clock that jumped is believed."""
+"""Consecutive packets after which a clock that jumped ahead is believed."""
+
+_LATE, _SET_BACK = 0.2, 0.3
+"""Packets that are late by more are held up [s]; where they are for longer, the clock was set back [s]."""
 
 
 @dataclass(slots=True)
@@ -220,6 +224,7 @@ class _Offset:
     least: float
     before: float
     odd: int = 0
+    late_since: float = inf
 
     @property
     def now(self) -> float:
@@ -236,6 +241,12 @@ class CameraClocks:
         """Forget all offsets: the clocks were restarted."""
         self._offsets.clear()
 
+    def align(self, frame: CameraFrame, arrived: float) -> None:
+        """Convert a frame that ``arrived`` by this machine's clock to the first camera's clock [s]."""
+        apart = self.shift(frame.camera, arrived, frame.sent)
+        frame.captured += apart
+        frame.sent += apart
+
     def shift(self, camera: int, arrived: float, sent: float) -> float:
         """Return what to add to a camera's timestamps to convert them to the first camera's clock [s].
 
@@ -248,7 +259,13 @@ class CameraClocks:
         elif offset < known.now - _JUMP and known.odd + 1 < _CONFIRMATIONS:
             known.odd += 1
             return 0.0
-        elif arrived - known.since > _STRETCH:
+        elif offset <= known.now + _LATE:
+            known.late_since = inf
+        elif arrived - known.late_since > _SET_BACK:
+            known = self._offsets[camera] = _Offset(arrived, offset, offset)
+        else:
+            known.late_since = min(known.late_since, arrived)
+        if arrived - known.since > _STRETCH:
             known.since, known.before, known.least = arrived, known.least, offset
         known.odd = 0
         known.least = min(known.least, offset)

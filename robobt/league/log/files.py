@@ -27,7 +27,10 @@ _HEADER = struct.Struct(">12si")
 _RECORD = struct.Struct(">qii")
 
 _MAX_RECORD = 1 << 20
-"""Longest record [bytes]. Records of kinds that are not used here may be longer than our packets."""
+"""Longest record that is kept [bytes]; no packet is longer, but the index of a log may be."""
+
+_PIECE = 1 << 16
+"""So much of a longer record is read at a time [bytes]."""
 
 _FLUSH_EVERY = 600
 """Records from one flush to the next: some seconds of a match."""
@@ -85,8 +88,14 @@ class LogWriter:
             self._file.close()
 
 
+_PACKETS = frozenset({LogKind.VISION_2010, LogKind.REFEREE, LogKind.VISION, LogKind.TRACKER})
+"""Kinds of records that hold a packet."""
+
+
 def read_log(path: str | Path) -> Iterator[LogRecord]:
     """Yield the records of a log in their order, those of unknown kinds included.
+
+    Records that hold no packet, as an index, are left out where they are longer than any packet.
 
     A truncated log, as a killed recorder leaves it, ends with its last complete
     record and a warning.
@@ -108,8 +117,12 @@ def read_log(path: str | Path) -> Iterator[LogRecord]:
             raise LogError(f"{where}: has version {version} of the format; only {_VERSION} can be read")
         number = 0
         while (record := _read_record(file, where, number)) is not None:
-            yield record
+            if record is not _SKIPPED:
+                yield record
             number += 1
+
+
+_SKIPPED = LogRecord(0, LogKind.BLANK, b"")
 
 
 def _read_record(file: IO[bytes], where: Path, number: int) -> LogRecord | None:
@@ -119,10 +132,12 @@ def _read_record(file: IO[bytes], where: Path, number: int) -> LogRecord | None:
             return None
         if len(head) == _RECORD.size:
             time, kind, size = _RECORD.unpack(head)
-            if not 0 <= size <= _MAX_RECORD:
+            if size < 0 or (size > _MAX_RECORD and kind in _PACKETS):
                 raise LogError(f"{where}: record {number}: impossible size of {size} bytes")
-            data = file.read(size)
-            if len(data) == size:
+            if size > _MAX_RECORD:
+                if _skip(file, size):
+                    return _SKIPPED
+            elif len(data := file.read(size)) == size:
                 return LogRecord(time, kind, data)
     except EOFError:
         pass
@@ -130,6 +145,16 @@ def _read_record(file: IO[bytes], where: Path, number: int) -> LogRecord | None:
         raise LogError(f"{where}: record {number}: {error}") from error
     _log.warning("%s: ends in the middle of record %d", where, number)
     return None
+
+
+def _skip(file: IO[bytes], size: int) -> bool:
+    """Read past so many bytes; return whether they are all there."""
+    while size > 0:
+        read = len(file.read(min(size, _PIECE)))
+        if not read:
+            return False
+        size -= read
+    return True
 
 
 def _open(path: Path, mode: str) -> IO[bytes]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.log.files import LogError, LogKind, LogRecord, read_log
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.tracker import read_tracked
-from robobt.league.wire.vision import read_vision
+from robobt.league.wire.vision import CameraFrame, read_vision
 from robobt.match.recording import RecordedRobot, Recorder, RecordingHeader
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.scenario.scenario import Scenario
@@ -101,13 +102,14 @@ class LogWorld(World):
     def _rewind(self) -> None:
         self._records: Iterator[LogRecord] = read_log(self.path)
         self._filter = VisionFilter(self.field)
+        self._camera_clocks, self._restarts = CameraClocks(), 0
         self._referee = RefereeFollower()
         self._refereed = False
         self._tracked: tuple[str, Frame] | None = None
         self._ticks = 0
         self._kicks = []
         self._waiting = next(self._records, None)
-        self._clock = 0 if self._waiting is None else self._waiting.time
+        self._clock = self._began = 0 if self._waiting is None else self._waiting.time
 
     def _use(self, record: LogRecord) -> None:
         self._clock = max(self._clock, record.time)
@@ -118,7 +120,7 @@ class LogWorld(World):
             if seen is not None:
                 self._filter.cameras.update(seen.cameras)
             if seen is not None and seen.frame is not None:
-                self._filter.add(seen.frame)
+                self._see(seen.frame, record.time)
         elif record.kind == LogKind.REFEREE:
             self._refereed = self._referee.read(record.data) or self._refereed
         elif record.kind == LogKind.TRACKER:
@@ -127,6 +129,14 @@ class LogWorld(World):
             if tracked is not None and (self._tracked is None or self._tracked[0] == tracked[0]):
                 self._tracked = tracked
         self._waiting = next(self._records, None)
+
+    def _see(self, frame: CameraFrame, received: int) -> None:
+        """Use a camera's frame that was received at a time of the log's clock [ns]."""
+        self._camera_clocks.align(frame, (received - self._began) * 1e-9)
+        self._filter.add(frame)
+        if self._filter.restarts != self._restarts:
+            self._restarts = self._filter.restarts
+            self._camera_clocks.clear()
 
     def _frame(self) -> Frame:
         captured = self._filter.captured

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import logging
 import struct
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -137,6 +138,37 @@ def test_an_impossible_size_is_refused_without_reading_it(tmp_path: Path, size: 
     assert [next(records) for _ in RECORDS] == RECORDS
     with pytest.raises(LogError, match=f"record 3: impossible size of {size} bytes"):
         next(records)
+
+
+@pytest.mark.parametrize("name", ["game.log", "game.log.gz"])
+@pytest.mark.parametrize("kind", [LogKind.INDEX, LogKind.BLANK, LogKind.UNKNOWN, 99])
+def test_records_without_a_packet_are_skipped_whatever_their_size(
+    tmp_path: Path, name: str, kind: int
+) -> None:
+    index = LogRecord(0, kind, bytes(8 * 200_000))
+    path = write(tmp_path / name, [RECORDS[0], index, *RECORDS[1:], index])
+    assert list(read_log(path)) == RECORDS
+
+
+def test_a_record_that_is_skipped_takes_no_memory_and_may_be_cut_off(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = write(tmp_path / "game.log")
+    path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, LogKind.INDEX, 2**31 - 1) + bytes(100))
+    tracemalloc.start()
+    assert list(read_log(path)) == RECORDS
+    assert tracemalloc.get_traced_memory()[1] < 4 << 20
+    tracemalloc.stop()
+    assert "ends in the middle of record 3" in caplog.text
+
+
+@pytest.mark.parametrize("size", [(1 << 20) + 1, 2**31 - 1, -1])
+@pytest.mark.parametrize("kind", [LogKind.VISION_2010, LogKind.REFEREE, LogKind.VISION, LogKind.TRACKER])
+def test_a_packet_of_an_impossible_size_is_refused(tmp_path: Path, kind: LogKind, size: int) -> None:
+    path = write(tmp_path / "game.log")
+    path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, kind, size))
+    with pytest.raises(LogError, match=f"record 3: impossible size of {size} bytes"):
+        list(read_log(path))
 
 
 def test_a_log_is_a_world_that_only_observes(played: Path) -> None:
