@@ -5,26 +5,27 @@ from __future__ import annotations
 import select
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from math import pi
 
 from robobt.league.connection import Connection, LeagueError
 from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.known_field import KnownField
+from robobt.league.sources import VisionSources
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.referee_message import LONGEST
-from robobt.league.wire.sockets import BATCH, Receiver
-from robobt.league.wire.tracker import read_tracked
-from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, VisionPacket, read_vision
+from robobt.league.wire.senders import Address, FirstSender
+from robobt.league.wire.sockets import BATCH, Packet, Receiver
+from robobt.league.wire.tracker import detections_in, read_tracked
+from robobt.league.wire.vision import CameraFrame, VisionPacket, read_vision
 from robobt.match.referee.events import RefereeEvent
 from robobt.sim.settings import SimSettings
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState
-from robobt.world.geometry import wrap_angle
+from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BallState, Frame, RobotId
+from robobt.world.state import Frame, RobotId
 
 ALL_CAMERAS = 0.002
 """How long a frame waits for those of the other cameras [s]."""
@@ -90,7 +91,8 @@ class Feed:
         self._restarts = 0
         self._now_at = clock()
         self._now = self._now_at * connection.speed
-        self._tracker: str | None = None
+        self._senders = VisionSources(self.known)
+        self._tracker = FirstSender[tuple[str, Address]]()
         endpoints, interface = connection.endpoints, connection.interface
         self._source = endpoints.vision if connection.source == "vision" else endpoints.tracker
         with ExitStack() as opened:
@@ -178,14 +180,11 @@ class Feed:
         read = 0
         for packet in self._vision.receive():
             read += 1
-            seen = self._read(packet.data)
-            if seen is None:
-                if self._clock() > end:
-                    break
-                continue
-            self._look_around(seen)
-            if seen.frame is not None:
-                frames.append(seen.frame)
+            frame = self._read(packet, arrived)
+            if frame is not None:
+                frames.append(frame)
+            elif self._clock() > end:
+                break
         # When those arrived that waited is not known: a camera's newest frame alone tells of the clock.
         newest = {frame.camera: frame for frame in frames} if read < BATCH else {}
         for frame in frames:
@@ -210,7 +209,7 @@ class Feed:
         came = self.now() - (self._clock() - arrived) * self.rate
         self._camera_clocks.align(frame, came)
         there = known.clock.at(arrived)
-        if not self.filter.add(frame if self.sign() > 0.0 else _turned(frame), there):
+        if not self.filter.add(frame if self.sign() > 0.0 else frame.turned(), there):
             return
         self.frames += 1
         self.heard = came
@@ -231,8 +230,8 @@ class Feed:
         """Take in a packet's geometry."""
         if seen.field is not None:
             self._see(seen.field)
+        turned = self.sign()
         for number, place in seen.cameras.items():
-            turned = self.sign()
             self.filter.cameras[number] = CameraPlace(turned * place.x, turned * place.y, place.z)
 
     def _see(self, field: FieldGeometry) -> None:
@@ -262,15 +261,43 @@ class Feed:
             self._camera_clocks.clear()
         self.known.watch(arrived)
 
-    def _read(self, data: bytes) -> VisionPacket | None:
-        if self.connection.source == "vision":
-            return read_vision(data, self._vision.counts)
-        tracked = read_tracked(data, self.filter.field, self._vision.counts)
-        # Several trackers may send; the first is followed.
-        if tracked is None or tracked[0] != (self._tracker or tracked[0]):
+    def _read(self, packet: Packet, arrived: float) -> CameraFrame | None:
+        """Return the frame in a packet of somebody who is followed, and take in the geometry."""
+        counts, sender = self._vision.counts, packet.sender
+        if self.connection.source == "tracker":
+            return self._read_tracked(packet, arrived)
+        seen = read_vision(packet.data, counts)
+        if seen is None:
             return None
-        self._tracker = tracked[0]
-        return VisionPacket(_detections(tracked[1]), None)
+        frame = seen.frame
+        if frame is not None and not self._senders.takes(frame, sender, arrived, self._places):
+            counts.refuse()
+            return None
+        if (seen.field is not None or seen.cameras) and self._senders.shows_field(sender, arrived):
+            self._look_around(seen)
+        return frame
+
+    def _read_tracked(self, packet: Packet, arrived: float) -> CameraFrame | None:
+        counts = self._vision.counts
+        tracked = read_tracked(packet.data, self.filter.field, counts)
+        if tracked is None:
+            return None
+        tracker = tracked[0], packet.sender
+        if self._tracker.sender is not None and not self._tracker.follows(tracker, arrived):
+            counts.refuse()
+            first, second = (f"{name} at {it[0]}:{it[1]}" for name, it in (self._tracker.sender, tracker))
+            self.known.tell("trackers", f"several trackers send: following {first}, ignoring {second}")
+            return None
+        self._tracker.heard(tracker, arrived)
+        return detections_in(tracked[1])
+
+    def _places(self) -> dict[RobotId, Point]:
+        """Return where robots were seen last, in the coordinates of the packets."""
+        captured, turned = self.filter.captured, self.sign()
+        if captured is None:
+            return {}
+        robots = self.filter.frame_at(captured).robots()
+        return {robot: (turned * state.x, turned * state.y) for robot, state in robots.items()}
 
     def reported(self, now: float) -> list[RefereeEvent]:
         """Return the game controller's events since this was asked last, as if they had happened now [s]."""
@@ -287,27 +314,3 @@ class Feed:
 
 def _size(field: FieldGeometry, name: str) -> float:
     return float(getattr(field, name))
-
-
-def _turned(frame: CameraFrame) -> CameraFrame:
-    """Return a frame in coordinates turned by 180 degrees."""
-    balls = []
-    for ball in frame.balls:
-        known = ball.tracked
-        if known is not None:
-            known = BallState(-known.x, -known.y, -known.vx, -known.vy, known.z, known.vz)
-        balls.append(BallDetection(-ball.x, -ball.y, ball.confidence, known))
-    robots = []
-    for robot in frame.robots:
-        heading = None if robot.heading is None else wrap_angle(robot.heading + pi)
-        robots.append(RobotDetection(robot.robot, -robot.x, -robot.y, heading, robot.confidence))
-    return CameraFrame(frame.camera, frame.number, frame.captured, frame.sent, balls, robots)
-
-
-def _detections(frame: Frame) -> CameraFrame:
-    """Return a tracked frame as the detections of a single camera that sees everything."""
-    robots = [
-        RobotDetection(robot, state.x, state.y, state.heading) for robot, state in frame.robots().items()
-    ]
-    balls = [BallDetection(frame.ball.x, frame.ball.y, tracked=frame.ball)]
-    return CameraFrame(0, 0, frame.time, frame.time, balls, robots)

@@ -70,10 +70,8 @@ class StepFeed(Feed):
         end = time.monotonic() + _WAIT
         while True:
             for packet in self._vision.receive():
-                seen = self._read(packet.data)
-                if seen is not None:
-                    self._look_around(seen)
-                    self._geometry_due &= not seen.cameras
+                self._read(packet, self._link.time)
+            self._geometry_due &= not self.filter.cameras
             self.hear_referee()
             late = self.referee is not None and self.referee.sent < sent - 1e-3
             if not late and not self._geometry_due:

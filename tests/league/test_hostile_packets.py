@@ -59,6 +59,13 @@ def endpoints() -> Endpoints:
 
 
 @pytest.fixture
+def sock() -> Iterator[socket.socket]:
+    """Where packets come from: one sender, as others would not be followed."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        yield sock
+
+
+@pytest.fixture
 def server(endpoints: Endpoints) -> Iterator[SimServer]:
     with SimServer(ServedField(DIVISION_B, line_up(DIVISION_B, 2)), endpoints) as server:
         yield server
@@ -72,6 +79,7 @@ def world(endpoints: Endpoints) -> Iterator[LeagueWorld]:
 
 
 def hammer(
+    sock: socket.socket,
     to: tuple[str, int],
     seeds: list[Message],
     amount: int,
@@ -87,17 +95,16 @@ def hammer(
 
     before = counted()
     blocks = []
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        for number in range(0, amount, BATCH):
-            if number in (amount // 2, amount - BATCH):
-                blocks.append(sys.getallocatedblocks())
-            for data in islice(packets, BATCH):
-                sock.sendto(data, to)
-            for _ in range(1000):
-                if counted() >= before + number + BATCH:
-                    break
-                take_in()
-            assert counted() == before + number + BATCH
+    for number in range(0, amount, BATCH):
+        if number in (amount // 2, amount - BATCH):
+            blocks.append(sys.getallocatedblocks())
+        for data in islice(packets, BATCH):
+            sock.sendto(data, to)
+        for _ in range(1000):
+            if counted() >= before + number + BATCH:
+                break
+            take_in()
+        assert counted() == before + number + BATCH
     for name in ("accepted", "unreadable", "incomplete", "implausible", "oversized"):
         assert counted(name) > 0, name
     # Objects that Python has for all that: no more than before.
@@ -161,7 +168,9 @@ def orders_to_the_simulator() -> list[Message]:
 @pytest.mark.integration
 @pytest.mark.parametrize("amount", AMOUNTS)
 @pytest.mark.parametrize("port", ["grsim", "control", "blue", "yellow"])
-def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: str, amount: int) -> None:
+def test_the_server_survives_what_is_sent_to_its_ports(
+    sock: socket.socket, server: SimServer, port: str, amount: int
+) -> None:
     seeds = {"grsim": commands_of_grsim, "control": orders_to_the_simulator}.get(port, controls)()
 
     def take_in() -> None:
@@ -169,7 +178,9 @@ def test_the_server_survives_what_is_sent_to_its_ports(server: SimServer, port: 
         server.step()
         server.send_due(server.field.time)
 
-    hammer(("127.0.0.1", getattr(server.endpoints, port)), seeds, amount, [server.counts[port]], take_in)
+    hammer(
+        sock, ("127.0.0.1", getattr(server.endpoints, port)), seeds, amount, [server.counts[port]], take_in
+    )
     # Nothing is left of it but a field like any other, on which robots obey.
     server.ports.set_realism(REALISM["none"])
     server.field.teleport_ball(BallTeleport(-1.0, 1.0, 0.0, 0.0))
@@ -203,7 +214,7 @@ class Vision:
 
 @pytest.mark.parametrize("amount", AMOUNTS)
 def test_the_player_survives_what_is_sent_as_vision(
-    world: LeagueWorld, endpoints: Endpoints, amount: int
+    sock: socket.socket, world: LeagueWorld, endpoints: Endpoints, amount: int
 ) -> None:
     vision = Vision()
     seeds: list[Message] = [SSL_WrapperPacket.FromString(vision.packet()) for _ in range(20)]
@@ -222,13 +233,12 @@ def test_the_player_survives_what_is_sent_as_vision(
         if turn % 500 == 0:
             world.act({ME: RobotCommand(1.0)})
 
-    hammer(endpoints.vision, seeds, amount, [world.counts()["vision"]], take_in)
+    hammer(sock, endpoints.vision, seeds, amount, [world.counts()["vision"]], take_in)
     # It sees again at once what is there.
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        for _ in range(60):
-            sock.sendto(vision.packet(), endpoints.vision)
-            world._feed.receive(0.1)
-            world.observe()
+    for _ in range(60):
+        sock.sendto(vision.packet(), endpoints.vision)
+        world._feed.receive(0.1)
+        world.observe()
     frame = world.truth()
     assert {RobotId(team, n) for team in Team for n in range(2)} <= set(frame.robots())
     assert frame.own[0].position == pytest.approx(poses(vision.field)[ME][:2], abs=0.01)
@@ -237,7 +247,7 @@ def test_the_player_survives_what_is_sent_as_vision(
 @pytest.mark.parametrize("amount", AMOUNTS)
 @pytest.mark.parametrize("port", ["referee_port", "blue_status", "yellow_status"])
 def test_the_player_survives_what_is_sent_to_its_other_ports(
-    world: LeagueWorld, endpoints: Endpoints, port: str, amount: int
+    sock: socket.socket, world: LeagueWorld, endpoints: Endpoints, port: str, amount: int
 ) -> None:
     counts = [world.counts()[port]]
     if port == "referee_port":
@@ -259,11 +269,13 @@ def test_the_player_survives_what_is_sent_to_its_other_ports(
         world._feed.filter.possession.feedback.update(world._link.feedback())
         world.observe()
 
-    hammer(to, seeds, amount, counts, take_in)
+    hammer(sock, to, seeds, amount, counts, take_in)
 
 
 @pytest.mark.parametrize("amount", AMOUNTS)
-def test_the_player_survives_what_is_sent_as_tracked_frames(endpoints: Endpoints, amount: int) -> None:
+def test_the_player_survives_what_is_sent_as_tracked_frames(
+    sock: socket.socket, endpoints: Endpoints, amount: int
+) -> None:
     field = ServedField(DIVISION_B, line_up(DIVISION_B, 2))
     seeds: list[Message] = [
         TrackerWrapperPacket.FromString(write_tracked(field.truth(), number, 100.0 + number / 60, "one"))
@@ -276,7 +288,7 @@ def test_the_player_survives_what_is_sent_as_tracked_frames(endpoints: Endpoints
             for state in world.observe().own:
                 assert all(map(math.isfinite, (state.x, state.y, state.heading, state.vx, state.vy)))
 
-        hammer(endpoints.tracker, seeds, amount, [world.counts()["tracker"]], take_in)
+        hammer(sock, endpoints.tracker, seeds, amount, [world.counts()["tracker"]], take_in)
 
 
 def test_packets_that_ask_for_more_robots_than_there_are_cost_next_to_nothing(server: SimServer) -> None:

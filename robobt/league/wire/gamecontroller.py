@@ -89,7 +89,7 @@ class RefereeFollower:
         if controller.sender is not None and not controller.follows(sender, time):
             first, second = (f"{host}:{port}" for host, port in (controller.sender, sender))
             self._notices.tell(
-                f"controller {second}",
+                f"controller of {sender[0]}",
                 f"two game controllers: following {first}, ignoring {second}; stop one of them",
             )
             self.counts.foreign += 1

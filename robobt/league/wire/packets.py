@@ -39,7 +39,7 @@ class PacketCounts:
         incomplete: lacking a required field.
         implausible: holding impossible values (not finite, far outside any field), or nothing of use.
         oversized: longer than :data:`MAX_PACKET`.
-        foreign: from an interface, machine or game controller other than the one that is followed.
+        foreign: from an interface, machine or sender other than those that are followed.
     """
 
     accepted: int = 0
@@ -48,6 +48,11 @@ class PacketCounts:
     implausible: int = 0
     oversized: int = 0
     foreign: int = 0
+
+    def refuse(self) -> None:
+        """Count the packet that was accepted last as one of a sender that is not followed."""
+        self.accepted -= 1
+        self.foreign += 1
 
     @property
     def dropped(self) -> int:

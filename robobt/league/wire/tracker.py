@@ -5,6 +5,7 @@ from __future__ import annotations
 from robobt.league.wire.messages import TrackedRobot, TrackerWrapperPacket
 from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
 from robobt.league.wire.simulation import TEAMS
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -88,6 +89,15 @@ def read_tracked(data: bytes, field: FieldGeometry, counts: PacketCounts) -> tup
         return message.source_name or message.uuid, Frame(tracked.timestamp, field, ball, own, opponents)
 
     return read(TrackerWrapperPacket, data, counts, convert)
+
+
+def detections_in(frame: Frame) -> CameraFrame:
+    """Return a tracked frame as the detections of a single camera that sees everything."""
+    robots = [
+        RobotDetection(robot, state.x, state.y, state.heading) for robot, state in frame.robots().items()
+    ]
+    balls = [BallDetection(frame.ball.x, frame.ball.y, tracked=frame.ball)]
+    return CameraFrame(0, 0, frame.time, frame.time, balls, robots)
 
 
 def _robot(robot: TrackedRobot) -> RobotState | None:

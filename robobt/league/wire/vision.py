@@ -66,6 +66,20 @@ class CameraFrame:
     balls: list[BallDetection] = dataclasses.field(default_factory=list)
     robots: list[RobotDetection] = dataclasses.field(default_factory=list)
 
+    def turned(self) -> CameraFrame:
+        """Return the same frame in coordinates turned by 180 degrees."""
+        balls = []
+        for ball in self.balls:
+            known = ball.tracked
+            if known is not None:
+                known = BallState(-known.x, -known.y, -known.vx, -known.vy, known.z, known.vz)
+            balls.append(BallDetection(-ball.x, -ball.y, ball.confidence, known))
+        robots = []
+        for robot in self.robots:
+            heading = None if robot.heading is None else wrap_angle(robot.heading + pi)
+            robots.append(RobotDetection(robot.robot, -robot.x, -robot.y, heading, robot.confidence))
+        return CameraFrame(self.camera, self.number, self.captured, self.sent, balls, robots)
+
 
 @dataclass(slots=True)
 class VisionPacket:
