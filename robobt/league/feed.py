@@ -10,15 +10,14 @@ from robobt.league.connection import Connection, LeagueError
 from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.known_field import KnownField
-from robobt.league.sources import VisionSources
+from robobt.league.picture import PictureWatch
+from robobt.league.reading import VisionReader
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.referee_message import LONGEST
-from robobt.league.wire.senders import Address, FirstSender
 from robobt.league.wire.sockets import BATCH, Packet, Receiver
-from robobt.league.wire.tracker import detections_in, read_tracked
-from robobt.league.wire.vision import CameraFrame, VisionPacket, read_vision
+from robobt.league.wire.vision import CameraFrame, VisionPacket
 from robobt.match.referee.events import RefereeEvent
 from robobt.sim.settings import SimSettings
 from robobt.world.field import DIVISION_B, FieldGeometry
@@ -64,6 +63,7 @@ class Feed:
         arrived: when the newest of them arrived, as by :meth:`now` [s].
         heard: when a frame was last used, as by :meth:`now` [s].
         known: what is known of the field beyond this world.
+        picture: whether what is seen answers to the commands.
         referee: the game controller's state, None without one.
     """
 
@@ -91,13 +91,13 @@ class Feed:
         self._restarts = 0
         self._now_at = clock()
         self._now = self._now_at * connection.speed
-        self._senders = VisionSources(self.known)
-        self._tracker = FirstSender[tuple[str, Address]]()
+        self.picture = PictureWatch(self.known)
         endpoints, interface = connection.endpoints, connection.interface
         self._source = endpoints.vision if connection.source == "vision" else endpoints.tracker
         with ExitStack() as opened:
             self._vision = opened.enter_context(Receiver(*self._source, interface))
             self._sources = [self._vision]
+            self._reader = VisionReader(connection.source, self._vision.counts, self.known)
             if self.referee is not None:
                 self._sources.append(opened.enter_context(Receiver(*endpoints.referee, interface, LONGEST)))
             self._opened = opened.pop_all()
@@ -213,6 +213,7 @@ class Feed:
             return
         self.frames += 1
         self.heard = came
+        self.picture.see(frame, came)
         if self.filter.restarts != self._restarts:
             self._restarts = self.filter.restarts
             known.restarted()
@@ -263,33 +264,11 @@ class Feed:
 
     def _read(self, packet: Packet, arrived: float) -> CameraFrame | None:
         """Return the frame in a packet of somebody who is followed, and take in the geometry."""
-        counts, sender = self._vision.counts, packet.sender
-        if self.connection.source == "tracker":
-            return self._read_tracked(packet, arrived)
-        seen = read_vision(packet.data, counts)
+        seen = self._reader.read(packet, arrived, self.filter.field, self._places)
         if seen is None:
             return None
-        frame = seen.frame
-        if frame is not None and not self._senders.takes(frame, sender, arrived, self._places):
-            counts.refuse()
-            return None
-        if (seen.field is not None or seen.cameras) and self._senders.shows_field(sender, arrived):
-            self._look_around(seen)
-        return frame
-
-    def _read_tracked(self, packet: Packet, arrived: float) -> CameraFrame | None:
-        counts = self._vision.counts
-        tracked = read_tracked(packet.data, self.filter.field, counts)
-        if tracked is None:
-            return None
-        tracker = tracked[0], packet.sender
-        if self._tracker.sender is not None and not self._tracker.follows(tracker, arrived):
-            counts.refuse()
-            first, second = (f"{name} at {it[0]}:{it[1]}" for name, it in (self._tracker.sender, tracker))
-            self.known.tell("trackers", f"several trackers send: following {first}, ignoring {second}")
-            return None
-        self._tracker.heard(tracker, arrived)
-        return detections_in(tracked[1])
+        self._look_around(seen)
+        return seen.frame
 
     def _places(self) -> dict[RobotId, Point]:
         """Return where robots were seen last, in the coordinates of the packets."""

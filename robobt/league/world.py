@@ -34,9 +34,6 @@ from robobt.world.state import Frame, RobotId
 _RATE = 60.0
 """Lowest rate of the commands [Hz]."""
 
-_STALE = 0.2
-"""Robots are commanded to stop when no frame has come for this long [s]."""
-
 _SHORTEST = 1e-5
 """Shortest wait for packets [s]."""
 
@@ -51,9 +48,10 @@ class LeagueWorld(World):
 
     Frames are predicted from the last capture to now with the commands sent since.
     Commands go out once a control period, and at least 60 times a second, whether or not
-    the vision sends; without frames for 0.2 s they stop the robots, as they do in a HALT and when this
-    world is closed or its process ends. Another world of this process that commands one
-    of the same robots is closed.
+    the vision sends. They stop all robots where none of them has been seen for 0.2 s, in a HALT, and
+    when this world is closed or its process ends; and those robots that are not seen to obey
+    (:class:`robobt.league.picture.PictureWatch`). Another world of this process that commands one of the
+    same robots is closed.
 
     All times but those of the attributes pass as on the field's own clock, whose rate is
     measured: a simulator at half speed is played at half speed.
@@ -138,6 +136,7 @@ class LeagueWorld(World):
         check_placement(placement, self._feed.filter.field, self._robots)
         self._commands = {}
         self._feed.filter.clear()
+        self._feed.picture.clear()
         self._placer.place(placement)
         self._restart_time()
         self._pace.restart(self._looked)
@@ -276,11 +275,12 @@ class LeagueWorld(World):
         return frame
 
     def _transmit(self) -> None:
-        """Send the commands in force; without recent frames, or in a HALT, commands to stop."""
+        """Send the commands in force; commands to stop in a HALT, and to robots that are not seen to obey."""
         now = self._feed.now()
         commands = self._commands
-        if self._feed.halted or now - self._feed.heard > _STALE:
+        if self._feed.halted:
             commands = {robot: RobotCommand() for robot in commands}
+        commands = self._feed.picture.checked(commands, now)
         self._link.send(commands, now)
         effect = self.settings.realism.command_delay + self.settings.limits.reaction
         self._feed.filter.sent(self._feed.vision_now() + effect, commands)

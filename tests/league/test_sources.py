@@ -163,7 +163,7 @@ def test_a_flood_of_senders_fills_nothing_up() -> None:
         for port in range(5000):
             frame = CameraFrame(0, 1, 0.0, 0.0)
             world._feed._read(Packet(write_vision(frame), (SECOND[0], port)), world.machine_time)
-        assert len(world._feed._senders._sources) <= 64
+        assert len(world._feed._reader._senders._sources) <= 64
         assert len(world._feed.known._told) <= 1
         assert world.play(1.0, DRIVE) < CLOSE
 

@@ -1,0 +1,194 @@
+"""Robots are not driven on where nobody sees what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import inf
+
+import pytest
+
+from robobt.league.wire.vision import CameraFrame, RobotDetection
+from robobt.world.command import RobotCommand
+from robobt.world.game import Team
+from robobt.world.state import RobotId
+from tests.league.faulty_field import FIRST, PERIOD, FaultyField, Sent
+
+ME, MATE, HER = RobotId(Team.BLUE, 0), RobotId(Team.BLUE, 1), RobotId(Team.YELLOW, 0)
+STOPPED, BLIND = 0.5, 0.3
+"""By when robots have to be stopped under a frozen picture, and where nothing is seen [s]."""
+
+Fault = Callable[[float, list[CameraFrame]], Sent]
+
+
+def frozen(world: FaultyField, cameras: tuple[int, ...] = (0, 1), noise: float = 0.0) -> Fault:
+    """Cameras that show what they showed last, with fresh numbers and timestamps."""
+    last: dict[int, CameraFrame] = {}
+
+    def fault(now: float, frames: list[CameraFrame]) -> Sent:
+        sent = []
+        for frame in frames:
+            if frame.camera in cameras:
+                shown = last.setdefault(frame.camera, frame)
+                frame = replace(frame, balls=shown.balls, robots=shown.robots)
+                if noise:
+                    dx, dy = world._rng.normal(0.0, noise, 2)
+                    robots = [replace(it, x=it.x + dx, y=it.y + dy) for it in frame.robots]
+                    frame = replace(frame, robots=robots)
+            sent.append((frame, FIRST))
+        return sent
+
+    return fault
+
+
+def live(_: float, frames: list[CameraFrame]) -> Sent:
+    return [(frame, FIRST) for frame in frames]
+
+
+def nothing(_: float, frames: list[CameraFrame]) -> Sent:
+    return []
+
+
+def nobody(_: float, frames: list[CameraFrame]) -> Sent:
+    return [(replace(frame, robots=[]), FIRST) for frame in frames]
+
+
+def strangers(_: float, frames: list[CameraFrame]) -> Sent:
+    robot = RobotDetection(RobotId(Team.BLUE, 9), 0.0, 0.0, 0.0)
+    return [(replace(frame, robots=[robot]), FIRST) for frame in frames]
+
+
+@pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
+@pytest.mark.parametrize("speed", [1.0, 0.3])
+@pytest.mark.parametrize("again", [0.0, 0.001], ids=["frozen", "frozen but for noise"])
+@pytest.mark.parametrize("cameras", [1, 2])
+def test_robots_under_a_frozen_picture_are_stopped_and_told_once(
+    caplog: pytest.LogCaptureFixture, noise: float, speed: float, again: float, cameras: int
+) -> None:
+    drive = {ME: RobotCommand(speed), HER: RobotCommand(0.0, 0.0, 2.0)}
+    with FaultyField(noise=noise, cameras=cameras) as world:
+        world.play(1.0, drive)
+        at, before = world.machine_time, world.poses[ME][0]
+        world.fault = frozen(world, noise=again)
+        world.play(3.2, drive)
+        for robot in drive:
+            print(f"frozen picture: {robot} moved for {world.moved[robot] - at:.3f} s")
+            assert world.moved[robot] - at < STOPPED
+        assert abs(world.poses[ME][0] - before) < speed * 0.7
+        (told,) = caplog.messages
+        assert "the cameras' picture stands" in told
+        # Where it goes on, so do they.
+        world.fault = live
+        world.play(0.1, drive)
+        assert world.machine_time - world.moved[ME] < 0.05
+        world.play(2.0, drive)
+    assert len(caplog.messages) == 1
+
+
+def test_robots_that_start_under_a_frozen_picture_are_stopped(caplog: pytest.LogCaptureFixture) -> None:
+    with FaultyField() as world:
+        world.play(1.0)
+        world.fault = frozen(world)
+        world.play(2.0)
+        at = world.machine_time
+        world.play(2.0, {ME: RobotCommand(1.0), MATE: RobotCommand(0.0, -1.0)})
+        assert 0.0 < max(world.moved.values()) - at < STOPPED
+    assert len(caplog.messages) == 1
+
+
+def test_one_frozen_camera_of_two_stops_the_robots_that_it_shows() -> None:
+    drive = {ME: RobotCommand(0.5), HER: RobotCommand(0.0, 0.0, 2.0)}
+    with FaultyField(cameras=2) as world:
+        world.play(1.0, drive)
+        at = world.machine_time
+        world.fault = frozen(world, (0,))
+        world.play(2.5, drive)
+        assert world.moved[ME] - at < STOPPED
+        assert world.machine_time - world.moved[HER] < 0.05
+
+
+@pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
+def test_a_robot_that_is_blocked_stops_nobody_while_others_move(
+    caplog: pytest.LogCaptureFixture, noise: float
+) -> None:
+    drive = {ME: RobotCommand(1.0), HER: RobotCommand(0.3, 0.0, 1.0)}
+    with FaultyField(noise=noise) as world:
+        world.stuck = {ME}
+        world.play(4.0, drive)
+        for robot in drive:
+            assert world.machine_time - world.moved[robot] < 0.05
+    assert caplog.messages == []
+
+
+@pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
+def test_a_robot_that_was_blocked_alone_tries_again_slowly_and_goes_on(noise: float) -> None:
+    with FaultyField(noise=noise) as world:
+        world.stuck = {ME}
+        world.play(2.0, {ME: RobotCommand(1.0)})
+        assert world.machine_time - world.moved[ME] > 1.0
+        # Nobody else has to wait for it.
+        world.play(0.2, {ME: RobotCommand(1.0), MATE: RobotCommand(0.5)})
+        assert world.machine_time - world.moved[MATE] < 0.05
+        world.play(3.0)
+        world.stuck = set()
+        world.play(4.0, {ME: RobotCommand(1.0)})
+        assert world.machine_time - world.moved[ME] < 0.05
+
+
+@pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
+@pytest.mark.parametrize(
+    "command",
+    [RobotCommand(0.1), RobotCommand(0.2), RobotCommand(0.0, 0.0, 0.8), RobotCommand(0.0, -3.0, 6.0)],
+    ids=str,
+)
+def test_robots_that_obey_are_never_stopped(
+    caplog: pytest.LogCaptureFixture, noise: float, command: RobotCommand
+) -> None:
+    with FaultyField(noise=noise) as world:
+        for _ in range(4):
+            world.play(0.5)
+            at = world.machine_time
+            while world.machine_time - at < 1.0:
+                world.play(PERIOD / 2, {ME: command})
+                assert world.machine_time - world.moved[ME] < 0.05
+            world.play(0.7, {ME: RobotCommand(-command.vx, -command.vy, -command.omega)})
+    assert caplog.messages == []
+
+
+def test_a_robot_that_dithers_in_its_place_is_not_stopped(caplog: pytest.LogCaptureFixture) -> None:
+    with FaultyField(noise=0.0) as world:
+        for i in range(120):
+            world.play(PERIOD / 2, {ME: RobotCommand(0.3 if i % 4 < 2 else -0.3)})
+        assert world.machine_time - world.moved[ME] < 0.05
+    assert caplog.messages == []
+
+
+@pytest.mark.parametrize("cameras", [1, 2])
+@pytest.mark.parametrize("fault", [nothing, nobody, strangers])
+def test_where_nothing_is_seen_robots_are_stopped(fault: Fault, cameras: int) -> None:
+    drive = {ME: RobotCommand(1.0), HER: RobotCommand(0.0, 0.0, 2.0)}
+    with FaultyField(cameras=cameras) as world:
+        world.play(1.0, drive)
+        at = world.machine_time
+        world.fault = fault
+        world.play(1.5, drive)
+        took = max(world.moved[robot] for robot in drive) - at
+        print(f"{fault.__name__} is seen: robots moved for {took:.3f} s")
+        assert took < BLIND
+        world.fault = live
+        world.play(0.5, drive)
+        assert world.play(1.0, drive) < inf
+        assert world.machine_time - world.moved[ME] < 0.05
+
+
+def test_a_robot_that_is_hidden_for_a_while_drives_on() -> None:
+    drive = {ME: RobotCommand(0.3), MATE: RobotCommand(0.3)}
+
+    def hidden(_: float, frames: list[CameraFrame]) -> Sent:
+        return [(replace(it, robots=[r for r in it.robots if r.robot != ME]), FIRST) for it in frames]
+
+    with FaultyField() as world:
+        world.play(1.0, drive)
+        world.fault = hidden
+        world.play(0.6, drive)
+        assert world.machine_time - world.moved[ME] < 0.05
