@@ -167,3 +167,22 @@ def test_robots_stand_under_the_commands_that_say_so_and_those_that_nobody_knows
     known = message.FromString(packet).HasField("command")
     stands = not known or number in (Referee.HALT, Referee.TIMEOUT_BLUE, Referee.TIMEOUT_YELLOW)
     assert (seconds_to_stop(world, packet, 0.5) <= BAR) is stands
+
+
+def test_a_halt_is_heard_while_trees_decide_and_behind_a_queue_of_junk(world: Halted) -> None:
+    drive = {ME: RobotCommand(0.5)}
+    message = halt()
+    for number, junk in enumerate((0, 300)):
+        message.command, message.command_counter = Referee.FORCE_START, 1000 + 2 * number
+        world.referee.send(message.SerializeToString())
+        world.act(drive)
+        world.act(drive)
+        for _ in range(junk):
+            world.referee.send(b"\xff\xff")
+        message.command, message.command_counter = Referee.HALT, 1001 + 2 * number
+        world.referee.send(message.SerializeToString())
+        halted_at = world.machine_time
+        # What the trees had decided before it is not sent any more.
+        for _ in range(5):
+            world.act(drive)
+        assert world.moved_at - halted_at <= BAR * (junk > 0)

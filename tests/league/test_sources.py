@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -156,6 +157,55 @@ def test_the_field_is_that_of_the_source_that_is_followed() -> None:
         publisher = ("10.0.0.9", 1)
         feed._read(Packet(write_vision(None, write_geometry(DIVISION_A)), publisher), world.machine_time)
         assert world.observe().field == DIVISION_B
+
+
+def test_two_computers_are_followed_where_blue_defends_the_other_side() -> None:
+    with FaultyField(cameras=2, blue_on_positive_half=True) as world:
+        world.fault = lambda now, frames: (
+            [(frames[0], FIRST), (frames[1], SECOND)] if now > 101.0 else [(frames[0], FIRST)]
+        )
+        world.play(3.0)
+        assert len(world.observe().robots()) == 4
+        # The second one's frames were left out until it had agreed.
+        assert world.counts()["vision"].foreign < 20
+
+
+def test_a_vision_computer_that_comes_back_is_followed_again() -> None:
+    with FaultyField(cameras=2) as world:
+
+        def fault(now: float, frames: list[CameraFrame]) -> Sent:
+            return [(frames[0], FIRST)] + ([(frames[1], SECOND)] if not 102.0 < now < 106.0 else [])
+
+        world.fault = fault
+        world.play(6.5)
+        assert world.play(2.0, DRIVE) < CLOSE
+
+
+def test_a_copy_of_the_picture_from_another_address_changes_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    def relayed(now: float, frame: CameraFrame) -> list[CameraFrame]:
+        return [replace(frame, captured=now - 0.1, sent=now - 0.1)]
+
+    with disturbed(relayed) as world:
+        assert world.play(3.0, DRIVE) < CLOSE
+    assert len(caplog.messages) == 1
+
+
+def test_a_second_source_that_was_there_first_is_followed_and_told(caplog: pytest.LogCaptureFixture) -> None:
+    with FaultyField() as world:
+        begins = world.machine_time + 0.5
+
+        def fault(now: float, frames: list[CameraFrame]) -> Sent:
+            other = elsewhere(0)(now, frames[0])
+            return [(it, SECOND) for it in other] + [(it, FIRST) for it in frames if now > begins]
+
+        world.fault = fault
+        world.play(3.0)
+        seen = world.observe().robots()
+        assert {robot: state.y for robot, state in seen.items()} == pytest.approx(
+            {robot: pose[1] + 2.0 for robot, pose in world.poses.items()}, abs=CLOSE
+        )
+    (told,) = caplog.messages
+    assert "following 10.0.0.6:40006, ignoring 10.0.0.5:10006" in told
 
 
 def test_a_flood_of_senders_fills_nothing_up() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt.league.log.files import LogKind, LogWriter
+from robobt.league.log.files import LogKind, LogWriter, read_log
 from robobt.league.log.world import LogWorld
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, write_vision
 from robobt.world.game import Team
@@ -74,3 +74,17 @@ def test_a_clock_that_is_set_within_the_log_costs_no_robot(tmp_path: Path, jump:
     error = largest_error(write_log(tmp_path / "game.log", [0.0, 2.0], jump), 2)
     print(f"a clock set by {jump:g} s: at most {error * 1000:.1f} mm off")
     assert error < 0.2
+
+
+def test_a_pause_in_which_the_cameras_clocks_stood_still_costs_no_camera(tmp_path: Path) -> None:
+    path, hour = tmp_path / "paused.log", 3_600_000_000_000
+    records = list(read_log(write_log(tmp_path / "game.log", [0.0, 2.0])))
+    with LogWriter(path) as log:
+        for i, (time, _, data) in enumerate(records):
+            log.write(time + (hour if i > len(records) / 2 else 0), LogKind.VISION, data)
+    world = LogWorld(path)
+    world.reset(Placement(), 0)
+    while not world.ended:
+        world.act({})
+    last = SPEED * SECONDS - 2.0
+    assert [robot.y for robot in world.observe().own] == pytest.approx([last, last], abs=0.03)

@@ -240,8 +240,12 @@ def test_a_command_that_nobody_knows_halts(controller: Controller, caplog: pytes
         lambda data: b"\x0b" * 20 + data,
         # A later command, as of a field whose number was spoilt.
         lambda data: data + b"\x20\x02",
+        lambda data: data.replace(b"team", b"\xff\xfe\xc0\x80"),
+        # Fields in another order, with an event of an unknown kind that lacks what it has to hold.
+        lambda data: b"\x82\x01\x03\xc0\x02\x63" * 300 + data,
+        lambda data: data + b"\xa2\x01\xc0\xb8\x02" + b"x" * 40_000,
     ],
-    ids=["cut", "longer", "length", "number", "groups", "contradiction"],
+    ids=["cut", "longer", "length", "number", "groups", "contradiction", "no text", "events", "long"],
 )
 def test_a_message_that_is_broken_around_it_still_stops_the_robots(
     controller: Controller, command: str, broken: Callable[[bytes], bytes]
