@@ -28,7 +28,7 @@ _COMMANDED, _COMMANDED_TURN = 0.06, 0.3
 _MOVED, _TURNED = 0.015, 0.1
 """What is seen to move by more than this moves; less may be noise [m, rad]."""
 
-_RETRY, _TRIAL = 3.0, 0.3
+_RETRY, _TRIAL = 5.0, 0.3
 """A robot that was told to stand tries again after this time, for so long [s] ..."""
 
 _TRIAL_SPEED, _TRIAL_TURN = 0.2, 1.0
@@ -67,7 +67,7 @@ class PictureWatch:
 
     A live camera's detections differ from frame to frame, if only by noise. A robot is told to stand when all
     cameras that see it show exactly the same throughout, or when nothing on the field moves. One
-    that is blocked while others move drives on. It may move again when the picture does; every 3 s it tries.
+    that is blocked while others move drives on. It may move again when the picture does; every 5 s it tries.
     """
 
     def __init__(self, notices: Notices) -> None:

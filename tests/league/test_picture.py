@@ -70,7 +70,7 @@ def test_robots_under_a_frozen_picture_are_stopped_and_told_once(
         world.play(1.0, drive)
         at, before = world.machine_time, world.poses[ME][0]
         world.fault = frozen(world, noise=again)
-        world.play(3.2, drive)
+        world.play(4.5, drive)
         for robot in drive:
             print(f"frozen picture: {robot} moved for {world.moved[robot] - at:.3f} s")
             assert world.moved[robot] - at < STOPPED
