@@ -21,6 +21,9 @@ _RESTART = 0.25
 _TRIAL = 0.2
 """How long a further sender has to agree with what is seen before it is followed too [s]."""
 
+_NEW = 5.0
+"""A sender that is heard no longer than this is ignored as a whole for one camera of another's [s]."""
+
 _DISAGREEMENT = 0.5
 """How long one sees robots elsewhere before that is reported [s]: they may just have been put there."""
 
@@ -104,6 +107,8 @@ class VisionSources:
     def _contest(self, source: _Source, sender: Address, camera: int) -> None:
         """Keep a sender off whose camera another one sends."""
         source.free = source.heard + SILENCE
+        # One that has long been followed loses that camera only.
+        source.followed &= source.heard - source.began > _NEW
         owner = self._cameras[camera]
         # A program that was restarted is soon alone.
         if self._sources[owner].heard > source.began:
@@ -135,7 +140,8 @@ class VisionSources:
                 )
             return
         source.odd = inf
-        source.free = min(source.free, time + _TRIAL)
+        if source.free == inf:
+            source.free = time + _TRIAL
         source.followed = time >= source.free
 
     def _others(self, sender: Address, source: _Source | None, time: float) -> list[Address]:

@@ -208,6 +208,20 @@ def test_a_second_source_that_was_there_first_is_followed_and_told(caplog: pytes
     assert "following 10.0.0.6:40006, ignoring 10.0.0.5:10006" in told
 
 
+def test_a_source_that_sends_our_camera_now_and_then_adds_nobody() -> None:
+    guest = RobotDetection(RobotId(Team.BLUE, 9), 2.0, 2.0, 0.0)
+
+    def frames(now: float, frame: CameraFrame) -> list[CameraFrame]:
+        shared = [CameraFrame(0, 1, now, now)] if now % 0.6 < PERIOD else []
+        return [*shared, CameraFrame(3, 1, now, now, [], [guest])]
+
+    with disturbed(frames) as world:
+        world.play(2.0, DRIVE)
+        for _ in range(180):
+            world.act(DRIVE)
+            assert guest.robot not in world.observe().robots()
+
+
 def test_a_flood_of_senders_fills_nothing_up() -> None:
     with disturbed(lambda now, frame: []) as world:
         for port in range(5000):
