@@ -12,7 +12,7 @@ from robobt.league.wire.vision import CameraFrame, RobotDetection
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import RobotId
-from tests.league.faulty_field import FIRST, PERIOD, FaultyField, Sent
+from tests.league.faults.faulty_field import FIRST, PERIOD, FaultyField, Sent
 
 ME, MATE, HER = RobotId(Team.BLUE, 0), RobotId(Team.BLUE, 1), RobotId(Team.YELLOW, 0)
 STOPPED, BLIND = 0.5, 0.3
@@ -58,10 +58,16 @@ def strangers(_: float, frames: list[CameraFrame]) -> Sent:
     return [(replace(frame, robots=[robot]), FIRST) for frame in frames]
 
 
-@pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
-@pytest.mark.parametrize("speed", [1.0, 0.3])
-@pytest.mark.parametrize("again", [0.0, 0.001], ids=["frozen", "frozen but for noise"])
-@pytest.mark.parametrize("cameras", [1, 2])
+@pytest.mark.parametrize(
+    ("noise", "speed", "again", "cameras"),
+    [
+        (0.0013, 1.0, 0.0, 1),
+        (0.0, 1.0, 0.0, 2),
+        (0.0013, 0.3, 0.0013, 1),
+        (0.0, 0.3, 0.0, 1),
+        (0.0, 1.0, 0.001, 2),
+    ],
+)
 def test_robots_under_a_frozen_picture_are_stopped_and_told_once(
     caplog: pytest.LogCaptureFixture, noise: float, speed: float, again: float, cameras: int
 ) -> None:
@@ -138,20 +144,20 @@ def test_a_robot_that_was_blocked_alone_tries_again_slowly_and_goes_on(noise: fl
 @pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
 @pytest.mark.parametrize(
     "command",
-    [RobotCommand(0.1), RobotCommand(0.2), RobotCommand(0.0, 0.0, 0.8), RobotCommand(0.0, -3.0, 6.0)],
-    ids=str,
+    [RobotCommand(0.1), RobotCommand(0.0, 0.2), RobotCommand(0.0, 0.0, 0.8), RobotCommand(0.0, -3.0, 6.0)],
+    ids=["slow", "slowly aside", "turning", "fast"],
 )
 def test_robots_that_obey_are_never_stopped(
     caplog: pytest.LogCaptureFixture, noise: float, command: RobotCommand
 ) -> None:
     with FaultyField(noise=noise) as world:
-        for _ in range(4):
+        for _ in range(2):
             world.play(0.5)
             at = world.machine_time
-            while world.machine_time - at < 1.0:
+            while world.machine_time - at < 0.7:
                 world.play(PERIOD / 2, {ME: command})
                 assert world.machine_time - world.moved[ME] < 0.05
-            world.play(0.7, {ME: RobotCommand(-command.vx, -command.vy, -command.omega)})
+            world.play(0.5, {ME: RobotCommand(-command.vx, -command.vy, -command.omega)})
     assert caplog.messages == []
 
 
@@ -171,7 +177,7 @@ def test_where_nothing_is_seen_robots_are_stopped(fault: Fault, cameras: int) ->
         world.play(1.0, drive)
         at = world.machine_time
         world.fault = fault
-        world.play(1.5, drive)
+        world.play(1.0, drive)
         took = max(world.moved[robot] for robot in drive) - at
         print(f"{fault.__name__} is seen: robots moved for {took:.3f} s")
         assert took < BLIND

@@ -17,7 +17,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B
 from robobt.world.game import Team
 from robobt.world.state import RobotId
-from tests.league.faulty_field import FIRST, PERIOD, SECOND, FaultyField, Sent
+from tests.league.faults.faulty_field import FIRST, PERIOD, SECOND, FaultyField, Sent
 
 ME = RobotId(Team.BLUE, 0)
 DRIVE = {ME: RobotCommand(0.5), RobotId(Team.YELLOW, 1): RobotCommand(0.3, 0.0, 0.5)}
@@ -92,10 +92,10 @@ def test_a_second_source_changes_nothing_and_is_told_once(
     caplog: pytest.LogCaptureFixture, stranger: Stranger, told: str | None, sender: tuple[str, int]
 ) -> None:
     with disturbed(stranger, sender) as world:
-        error = world.play(4.0, DRIVE)
+        error = world.play(2.5, DRIVE)
         print(f"a second source: at most {error * 1000:.1f} mm off")
         assert error < CLOSE
-        assert world.counts()["vision"].foreign > 10
+        assert world.counts()["vision"].foreign > 5
     assert len(caplog.messages) == (told is not None)
     assert told is None or told in caplog.text
 

@@ -1,6 +1,6 @@
 """From a HALT on the wire to the last command that moves a robot, whatever else its message holds.
 
-``pytest -s -m "slow or not slow" tests/league/test_halt.py`` prints the longest time.
+``pytest -s -m "slow or not slow" tests/league/faults/test_halt.py`` prints the longest time.
 """
 
 from __future__ import annotations
