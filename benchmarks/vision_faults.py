@@ -24,9 +24,15 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
+from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
+from robobt.league.picture import PictureWatch
+from robobt.league.sources import VisionSources
+from robobt.league.wire.notices import Notices
+from robobt.league.wire.senders import Address
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import REALISM, SimSettings
+from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -41,7 +47,12 @@ ME, OTHER = RobotId(Team.BLUE, 2), RobotId(Team.BLUE, 5)
 SURE, WEAK = 0.9, 0.3
 """Confidences of a real detection and of a false one."""
 
+FIRST, SECOND = ("10.0.0.5", 10006), ("10.0.0.6", 10006)
+"""Two senders of vision."""
+
 Pose = tuple[float, float, float]
+Fault = Callable[[CameraFrame, np.random.Generator], None]
+Sent = Iterator[tuple[CameraFrame, Address]]
 
 
 @dataclass
@@ -154,12 +165,12 @@ def turned(each: int, by: float, frame: CameraFrame, _: np.random.Generator) -> 
 
 def stream(
     scene: Scene,
-    seconds: float,
     offsets: list[tuple[float, float]],
     late: list[float],
     rng: np.random.Generator,
-    fault: Callable[[CameraFrame, np.random.Generator], None] = as_it_is,
-) -> Iterator[CameraFrame]:
+    fault: Fault = as_it_is,
+    seconds: float = SECONDS,
+) -> Sent:
     """Yield the frames of cameras with these offsets [m] and delays to the first one's frames [s]."""
     for number in range(round(seconds / PERIOD)):
         for camera, (dx, dy) in enumerate(offsets):
@@ -168,38 +179,94 @@ def stream(
                 seen.x += dx
                 seen.y += dy
             fault(frame, rng)
-            yield frame
+            yield frame, FIRST
 
 
-def largest(scene: Scene, frames: Iterator[CameraFrame]) -> dict[str, float]:
-    """Return the largest errors of a filter after its first second."""
-    known, worst = VisionFilter(DIVISION_B, SETTINGS), dict[str, float]()
-    for frame in frames:
-        known.add(frame)
-        time = frame.captured - STARTED
-        if time > WARM_UP:
-            for name, error in scene.errors(known.frame_at(frame.captured), time).items():
-                worst[name] = max(error, worst.get(name, 0.0))
+def largest(scene: Scene, sent: Sent) -> dict[str, float]:
+    """Return the largest errors after the first second, as a frame goes from its sender to the filter."""
+    known, worst, arrived = VisionFilter(DIVISION_B, SETTINGS), dict[str, float](), STARTED
+    sources, clocks = VisionSources(Notices()), CameraClocks()
+    for frame, sender in sent:
+        if sender == FIRST and frame.camera == 0:
+            arrived = frame.captured
+        robots = known.frame_at(known.captured or arrived).robots()
+        seen = {robot: (state.x, state.y) for robot, state in robots.items()}
+        if not sources.takes(frame, sender, arrived, lambda seen=seen: seen):
+            continue
+        clocks.align(frame, arrived)
+        if not known.add(frame) or frame.captured < STARTED + WARM_UP:
+            continue
+        for name, error in scene.errors(known.frame_at(frame.captured), frame.captured - STARTED).items():
+            worst[name] = max(error, worst.get(name, 0.0))
     return worst
+
+
+def two_sources(rng: np.random.Generator) -> Sent:
+    """Send from a second address our camera with everything 2 m away and a clock 30 s ahead."""
+    for number, (frame, sender) in enumerate(stream(played(), HERE, [0.0], rng)):
+        yield frame, sender
+        if number > 30:
+            ahead = frame.captured + 30.0
+            other = CameraFrame(0, number + 7, ahead, ahead)
+            other.robots = [RobotDetection(s.robot, s.x, s.y + 2.0, s.heading) for s in frame.robots]
+            yield other, SECOND
+
+
+def empty_source(rng: np.random.Generator) -> Sent:
+    """Send from a second address frames of another camera that see nothing, ahead of time."""
+    for number, (frame, sender) in enumerate(stream(played(), HERE, [0.0], rng)):
+        yield frame, sender
+        if number % 15 == 0:
+            yield CameraFrame(5, number, frame.captured + 0.4, frame.captured + 0.4), SECOND
+
+
+def two_clocks(apart: float, rng: np.random.Generator) -> Sent:
+    """Shift the clock of the second camera."""
+    for frame, sender in stream(played(), PLACES[:2], [0.0, 0.0], rng):
+        if frame.camera == 1:
+            frame.captured += apart
+            frame.sent += apart
+        yield frame, sender
+
+
+def stops_after(seconds: float) -> float:
+    """Return how long a robot is commanded on at 1 m/s while its picture stands still [s]."""
+    watch, command = PictureWatch(Notices()), RobotCommand(1.0)
+    seen, last = Scene(lambda _: (0.0, 0.0), {ME: lambda t: (t, 0.0, 0.0)}), 0.0
+    rng = np.random.default_rng(0)
+    for number in range(round((1.0 + seconds) / PERIOD)):
+        time = number * PERIOD
+        if time < 1.0:
+            frame = seen.seen(0, number, time, rng)
+        watch.see(frame, time)
+        if watch.checked({ME: command}, time)[ME].vx:
+            last = time - 1.0
+    return last
 
 
 HERE, PLACES = [(0.0, 0.0)], [(0.03, -0.04), (-0.05, 0.0), (0.02, 0.03), (-0.01, 0.02)]
 LATE = [0.0, 0.004, 0.008, 0.012]
 
-CASES: dict[str, Callable[[np.random.Generator], Iterator[CameraFrame]]] = {
-    "one camera, no fault": lambda rng: stream(played(), SECONDS, HERE, [0.0], rng),
-    "two cameras, 9 cm apart": lambda rng: stream(played(), SECONDS, PLACES[:2], LATE[:2], rng),
-    "four cameras, up to 9 cm apart": lambda rng: stream(played(), SECONDS, PLACES, LATE, rng),
-    "false balls, a false robot": lambda rng: stream(played(), SECONDS, HERE, [0.0], rng, phantoms),
-    "false ball and robot seen first": lambda rng: stream(played(), SECONDS, HERE, [0.0], rng, weak_first),
-    "numbers exchanged for 0.17 s": lambda rng: stream(played(), SECONDS, HERE, [0.0], rng, swapped),
-    "nothing seen for 0.1 s": lambda rng: stream(played(), SECONDS, HERE, [0.0], rng, gaps),
-    "every tenth heading half a turn off": lambda rng: stream(
-        played(), SECONDS, HERE, [0.0], rng, partial(turned, 10, pi)
-    ),
-    "every third heading 1 rad off": lambda rng: stream(
-        played(), SECONDS, HERE, [0.0], rng, partial(turned, 3, 1.0)
-    ),
+
+def one_camera(fault: Fault, rng: np.random.Generator) -> Sent:
+    """Return what one camera sends with a fault."""
+    return stream(played(), HERE, [0.0], rng, fault)
+
+
+CASES: dict[str, Callable[[np.random.Generator], Sent]] = {
+    "one camera, no fault": partial(one_camera, as_it_is),
+    "two cameras, 9 cm apart": lambda rng: stream(played(), PLACES[:2], LATE[:2], rng),
+    "four cameras, up to 9 cm apart": lambda rng: stream(played(), PLACES, LATE, rng),
+    "false balls, a false robot": partial(one_camera, phantoms),
+    "false ball and robot seen first": partial(one_camera, weak_first),
+    "numbers exchanged for 0.17 s": partial(one_camera, swapped),
+    "nothing seen for 0.1 s": partial(one_camera, gaps),
+    "every tenth heading half a turn off": partial(one_camera, partial(turned, 10, pi)),
+    "every third heading 1 rad off": partial(one_camera, partial(turned, 3, 1.0)),
+    "another source, robots elsewhere": two_sources,
+    "another source that sees nothing": empty_source,
+    "two cameras, clocks 2 s apart": partial(two_clocks, 2.0),
+    "two cameras, clocks 1 h apart": partial(two_clocks, -3600.0),
 }
 
 
@@ -229,14 +296,14 @@ def drawn(kind: str, seed: int, alone: bool) -> tuple[float, float]:
     if kind == "goal":
         aside = float(rng.uniform(-0.35, 0.35))
         scene.ball = lambda time: (4.5 + speed * (time - 1.5), aside)
-    frames = stream(scene, 2.5 if kind == "goal" else 3.0, offsets, late, rng)
+    frames = stream(scene, offsets, late, rng, seconds=2.5 if kind == "goal" else 3.0)
     if kind in ("rest", "moving"):
         worst = largest(scene, frames)
         return worst["ball speed"], worst["robot speed"]
     known, before = VisionFilter(DIVISION_B, SETTINGS), None
     looked = wrong = 0
     goals: list[Team] = []
-    for frame in frames:
+    for frame, _ in frames:
         known.add(frame)
         now = known.frame_at(frame.captured)
         if frame.captured - STARTED > WARM_UP:
@@ -276,6 +343,7 @@ def show_cases(seed: int) -> None:
         worst = largest(played(), frames(np.random.default_rng(seed)))
         row = [f"{worst[name]:{9 if name == 'robot' else 8}.3f}" for name in names]
         print(f"{title:38}{''.join(row)}", flush=True)
+    print(f"A picture that stands still: {stops_after(3.0):.3f} s until the last moving command.")
 
 
 def main(words: list[str] | None = None) -> None:
