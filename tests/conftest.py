@@ -15,6 +15,8 @@ import pytest
 
 from robobt.config.telling import OFTEN
 
+pytest_plugins = ("tests.limits",)
+
 StartPython = Callable[..., "subprocess.Popen[str]"]
 
 
