@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -15,13 +18,15 @@ from robobt import signals
 from robobt.signals import TERMINATE, Terminated, check, ending, uninterrupted
 from tests.conftest import StartPython
 
+ROOT = Path(__file__).resolve().parents[1]
+
 
 def send(number: int) -> None:
     os.kill(os.getpid(), number)
 
 
 @pytest.fixture(autouse=True)
-def _handlers_stay_as_they_were() -> Iterator[None]:
+def _handlers_stay_as_they_were(signals_of_a_terminal: None) -> Iterator[None]:
     watched = (signal.SIGINT, *TERMINATE)
     before = [signal.getsignal(number) for number in watched]
     yield
@@ -66,6 +71,14 @@ def test_a_hang_up_that_nohup_ignores_stays_ignored() -> None:
             check()
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.integration
+def test_tests_of_signals_pass_where_nohup_or_a_script_has_them_ignored() -> None:
+    tests = f"{__file__}::test_a_signal_to_terminate_ends_the_block_with_its_own_exit_status"
+    command = ["sh", "-c", 'trap "" HUP INT; exec "$0" -m pytest --patience 20 "$1"', sys.executable, tests]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stdout
 
 
 def test_a_signal_waits_for_the_end_of_what_must_be_whole() -> None:

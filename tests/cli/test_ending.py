@@ -33,7 +33,7 @@ from robobt.worlds import sim_world
 from tests.league.served import free_endpoints, served
 from tests.registries import temporarily
 
-pytestmark = pytest.mark.integration
+pytestmark = [pytest.mark.integration, pytest.mark.usefixtures("signals_of_a_terminal")]
 
 WHOLE = b"\xff\xff\xff\xff\x00\x00\x00\x00"
 """How a recording ends that was finished."""

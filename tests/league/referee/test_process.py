@@ -139,6 +139,7 @@ def test_it_ends_however_the_match_does_and_leaves_no_folder(
     program: Path,
     number: signal.Signals,
     start_python: Callable[..., Any],
+    signals_of_a_terminal: None,
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
 ) -> None:
