@@ -17,6 +17,7 @@ import pytest
 from robobt import signals
 from robobt.signals import TERMINATE, Terminated, check, ending, uninterrupted
 from tests.conftest import StartPython
+from tests.waiting import LIMIT
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -194,27 +195,28 @@ def test_who_swallows_every_exception_is_ended_by_force(start_python: StartPytho
     process = start_python("-c", STUBBORN)
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
-    began = time.monotonic()
     process.send_signal(signal.SIGTERM)
-    assert process.wait(20) == 128 + signal.SIGTERM
-    assert time.monotonic() - began < 15.0
+    assert process.wait(LIMIT) == 128 + signal.SIGTERM
     assert process.stdout.readline() == "robots stopped\n"
 
 
 LATE = """
-import atexit, sys, time
+import atexit, threading, time
 from robobt.signals import at_the_latest_after, ending
-atexit.register(time.sleep, 1.0)
+forced, let_go = threading.Event(), threading.Event()
+atexit.register(let_go.wait)
+atexit.register(forced.set)
 with ending():
     try:
         with at_the_latest_after(0.1):
             print("ready", flush=True)
             try:
-                time.sleep(60)
+                time.sleep(600)
             finally:
-                time.sleep(0.5)
+                forced.wait()
     finally:
-        time.sleep(1.5)
+        let_go.set()
+        time.sleep(0.5)
         print("files finished", flush=True)
 """
 
@@ -224,5 +226,5 @@ def test_who_lets_go_while_its_end_is_being_forced_may_finish(start_python: Star
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
     process.send_signal(signal.SIGTERM)
-    assert process.wait(20) == 128 + signal.SIGTERM
+    assert process.wait(LIMIT) == 128 + signal.SIGTERM
     assert process.stdout.readline() == "files finished\n"

@@ -32,6 +32,7 @@ from robobt.world.state import RobotId
 from robobt.worlds import sim_world
 from tests.league.served import free_endpoints, served
 from tests.registries import temporarily
+from tests.waiting import soon
 
 pytestmark = [pytest.mark.integration, pytest.mark.usefixtures("signals_of_a_terminal")]
 
@@ -111,23 +112,15 @@ def in_a_process(*arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 
-def soon(what: Callable[[], bool]) -> bool:
-    # Long enough to compile for the first time on a busy machine.
-    end = time.monotonic() + 120.0
-    while not what():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.02)
-    return True
-
-
 @contextmanager
 def told_when(what: Callable[[], bool], number: int) -> Iterator[None]:
     """Send this process a signal as soon as something is the case."""
 
     def tell() -> None:
-        soon(what)
-        os.kill(os.getpid(), number)
+        try:
+            soon(what)
+        finally:
+            os.kill(os.getpid(), number)
 
     thread = threading.Thread(target=tell)
     # For a command that has ended before.
@@ -238,9 +231,9 @@ def test_a_server_ends_with_a_complete_log_when_its_terminal_closes(tmp_path: Pa
         return bool(found)
 
     try:
-        assert soon(lambda: large(log))
+        soon(lambda: large(log))
         os.close(terminal)
-        assert soon(ended)
+        soon(ended)
     finally:
         if not statuses:
             with suppress(ProcessLookupError):
@@ -291,7 +284,7 @@ def test_a_match_over_the_network_stops_its_robots_before_it_ends(tmp_path: Path
     endpoints, recording = free_endpoints(), tmp_path / "ended.robobt.arrows"
     with served_six_v_six(endpoints) as last, told_when(lambda: large(recording), number):
         ended = robobt(*six_v_six(endpoints, recording))
-        assert soon(lambda: told_to_stop(last))
+        soon(lambda: told_to_stop(last))
     assert ended.exit_code == 128 + number
     # A busy machine may have been told before that it is too slow.
     assert ended.output.splitlines()[-1].startswith("robobt: ")
@@ -315,7 +308,7 @@ def test_a_match_over_the_network_ends_within_a_second_at_any_moment(
             command = [sys.executable, "-m", "robobt", *map(str, six_v_six(endpoints, recording))]
             with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
                 # From then on everything is put in its place.
-                assert soon(lambda: bool(last))
+                soon(lambda: bool(last))
                 time.sleep(moment)
                 began = time.monotonic()
                 process.send_signal(signal.SIGTERM)

@@ -20,6 +20,7 @@ from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.stream import MessageStream
 from robobt.league.wire.vision import read_vision
 from tests.league.served import free_endpoints
+from tests.waiting import LIMIT
 
 ANY_PORT = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
 
@@ -112,7 +113,7 @@ def test_serve_in_step_passes_only_the_time_that_is_asked_for() -> None:
                     with closing(stream):
                         for _ in range(steps):
                             stream.send(SimulationSyncRequest(sim_step=2 / 60).SerializeToString())
-                            stream.receive(10.0)
+                            stream.receive(LIMIT)
                     asked.set()
 
     asked = threading.Event()

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from tests.waiting import LIMIT
+
 ROBOBT = [sys.executable, "-m", "robobt"]
 
 
@@ -38,5 +40,5 @@ def test_warnings_are_told_but_not_each_failure_of_a_tree() -> None:
         "logging.getLogger('robobt.league.wire.links').warning('two senders');"
         "logging.getLogger('robobt.tree.runner').warning('tree stopped')"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=LIMIT)
     assert done.stderr == "two senders\n"

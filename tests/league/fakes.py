@@ -25,6 +25,7 @@ from robobt.league.wire.sockets import Receiver, Sender
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.game import Team
 from robobt.world.state import RobotId
+from tests.waiting import LIMIT
 
 _TEAMS = {1: Team.YELLOW, 2: Team.BLUE}
 
@@ -214,5 +215,5 @@ def running(simulator: FakeSimulator) -> Iterator[FakeSimulator]:
         yield simulator
     finally:
         ended.set()
-        thread.join(5.0)
+        thread.join(LIMIT)
         simulator.close()

@@ -39,6 +39,7 @@ from robobt.league.wire.messages import (
 from robobt.league.wire.stream import MessageStream, StreamError
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.world.game import Team
+from tests.waiting import LIMIT
 
 OFFICIAL = os.environ.get("ROBOBT_GAME_CONTROLLER", "")
 needs_openssl = pytest.mark.skipif(shutil.which("openssl") is None, reason="there is no openssl")
@@ -72,7 +73,7 @@ class Listening:
             try:
                 self._reply(stream, "", token := next(tokens))
                 for kind in (self.registers, *[self.asks] * 1000):
-                    data = stream.receive(5.0)
+                    data = stream.receive(LIMIT)
                     if data is None:
                         return
                     message = kind.FromString(data)
@@ -272,7 +273,7 @@ def test_the_official_controller_understands_all_of_it(tmp_path: Path, keys: tup
     started = [OFFICIAL, "-backendOnly", *flags]
     with subprocess.Popen(started, cwd=tmp_path, stderr=subprocess.DEVNULL) as process:
         try:
-            end = time.monotonic() + 10.0
+            end = time.monotonic() + LIMIT
             while True:
                 try:
                     socket.create_connection(("127.0.0.1", ports[4])).close()

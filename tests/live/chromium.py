@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from time import monotonic, sleep
 from typing import Any
 
 import pytest
@@ -14,6 +13,8 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
+
+from tests.waiting import soon
 
 _QUIET = (
     "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
@@ -47,18 +48,9 @@ class Page:
         """Run a function's body in the page and return what it returns."""
         return self.driver.execute_script(script, *args)
 
-    def wait(self, script: str, *args: Any, seconds: float = 20.0) -> Any:
+    def wait(self, script: str, *args: Any) -> Any:
         """Run it until what it returns is true."""
-        return self.until(lambda: self.js(script, *args), script, seconds)
-
-    def until(self, what: Callable[[], Any], said: str = "it", seconds: float = 20.0) -> Any:
-        end = monotonic() + seconds
-        while monotonic() < end:
-            found = what()
-            if found:
-                return found
-            sleep(0.02)
-        raise AssertionError(f"did not come true within {seconds} s: {said}")
+        return soon(lambda: self.js(script, *args), script)
 
     def find(self, selector: str) -> WebElement:
         return self.driver.find_element(By.CSS_SELECTOR, selector)

@@ -6,7 +6,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tests.live.chromium import Page, chromium
-from tests.live.playing import playing, wait_for
+from tests.live.playing import playing
+from tests.waiting import soon
 
 FOLDER = Path(__file__).parents[2] / "docs" / "images"
 SHOWN = 8.0
@@ -26,7 +27,7 @@ def main() -> None:
         for layer in ("paths", "targets"):
             page.wait(f"return document.querySelector('.choices input[name={layer}]') !== null")
             page.js(f"document.querySelector('.choices input[name={layer}]').click()")
-        wait_for(lambda: session.match.measures.ticks * session.match.scenario.period > SHOWN, 120.0)
+        soon(lambda: session.match.measures.ticks * session.match.scenario.period > SHOWN, 120.0)
         page.find("#play").click()
         page.wait("return document.querySelector('#head').textContent.includes('paused')")
         save(page, "live")

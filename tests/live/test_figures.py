@@ -17,13 +17,13 @@ return { frames: measured.frames, painted: [at(measured.painted, .5), at(measure
 def test_eleven_a_side_are_painted_at_once(page: Page) -> None:
     with playing("eleven_v_eleven") as session:
         page.steer(session.server.url)
-        page.wait("return window.robobt.match.frames > 120", seconds=60.0)
+        page.wait("return window.robobt.match.frames > 120")
         # Beside those of a recording, which are shown anyway.
         page.js("document.querySelectorAll('.choices input:not(:checked)').forEach(box => box.click())")
         assert {"paths", "targets", "goal line"} <= {*page.js("return [...window.robobt.state.layers]")}
         page.js("window.robobt.measured.painted.length = 0; window.robobt.measured.frames = 0")
         page.js("window.begun = performance.now()")
-        page.wait("return performance.now() > window.begun + 20000", seconds=60.0)
+        page.wait("return performance.now() > window.begun + 20000")
         rate = page.js("return 1000 * window.robobt.measured.frames / (performance.now() - window.begun)")
         page.button("Drive").click()
         page.wait("return document.querySelector('.driving button').textContent === 'Let go'")

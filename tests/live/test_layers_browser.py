@@ -13,8 +13,9 @@ from robobt.plays import PLAYS
 from robobt.skills.base import Skill
 from robobt.tree import Status
 from tests.live.chromium import Page
-from tests.live.playing import Session, playing, wait_for
+from tests.live.playing import Session, playing
 from tests.live.test_server import get
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -52,7 +53,7 @@ def session() -> Iterator[Session]:
 
 def test_layers_are_drawn_as_long_as_they_are_looked_at(page: Page, session: Session, tmp_path: Path) -> None:
     page.open(session.server.url)
-    page.wait(f"{BOXES}.length > 6", seconds=60.0)
+    page.wait(f"{BOXES}.length > 6")
     assert {"goal line", "paths", "targets", EVIL, "words"} <= {*page.js(BOXES)}
     assert page.js(SHOWN) == 0
     page.js(CLICK, EVIL)
@@ -63,7 +64,7 @@ def test_layers_are_drawn_as_long_as_they_are_looked_at(page: Page, session: Ses
     page.wait("return window.robobt.match.robots[0].numbers.size === 1")
     page.wait(f"const n = (() => {{ {SHOWN} }})(); return n === 1")
     page.js(CLICK, "words")
-    wait_for(lambda: session.server.layers == frozenset())
+    soon(lambda: session.server.layers == frozenset())
     page.wait(f"const n = (() => {{ {SHOWN} }})(); return n === 0")
     _, _, body = get(session, "recording.robobt.arrows")
     saved = parse_recording(body, tmp_path)
@@ -76,8 +77,8 @@ def test_layers_are_drawn_as_long_as_they_are_looked_at(page: Page, session: Ses
 
 def test_a_viewer_that_leaves_no_longer_looks(page: Page, session: Session) -> None:
     page.open(session.server.url)
-    page.wait(f"{BOXES}.length > 6", seconds=60.0)
+    page.wait(f"{BOXES}.length > 6")
     page.js(CLICK, "paths")
-    wait_for(lambda: session.server.layers == {"paths"})
+    soon(lambda: session.server.layers == {"paths"})
     page.open("about:blank")
-    wait_for(lambda: session.server.layers == frozenset())
+    soon(lambda: session.server.layers == frozenset())

@@ -10,7 +10,8 @@ from selenium.webdriver.common.keys import Keys
 from robobt.skills import KickToTarget, SelectShot
 from robobt.tree import Sequence, tree_svg
 from tests.live.chromium import Page
-from tests.live.playing import Session, playing, wait_for
+from tests.live.playing import Session, playing
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -93,7 +94,7 @@ def test_it_is_used_by_the_keyboard_alone(live: Page, session: Session) -> None:
     matches = len(session.matches)
     live.js("[...document.querySelectorAll('.live button')].find(b => b.textContent === 'Again').focus()")
     ActionChains(live.driver).send_keys(Keys.ENTER).perform()
-    wait_for(lambda: len(session.matches) > matches)
+    soon(lambda: len(session.matches) > matches)
 
 
 def test_texts_stay_in_the_boxes_of_a_trees_picture(page: Page, tmp_path: Path) -> None:

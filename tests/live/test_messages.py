@@ -18,7 +18,8 @@ from robobt.live.server import Server
 from robobt.match import Match, load_scenario
 from robobt.plays import PLAYS
 from robobt.worlds import sim_world
-from tests.live.playing import Client, playing, wait_for
+from tests.live.playing import Client, playing
+from tests.waiting import soon
 
 FORMS: list[dict[str, Any]] = [
     {"do": "pause", "on": True},
@@ -142,5 +143,5 @@ def test_thousands_of_hostile_messages_over_the_network() -> None:
             client.socket.send(json.dumps({"do": "steer"}))
             client.socket.send(json.dumps({"do": "reset"}))
             client.socket.send(json.dumps({"do": "pause", "on": False}))
-            wait_for(lambda: 0 < session.ticks < ticks or session.ticks > ticks + 10)
+            soon(lambda: 0 < session.ticks < ticks or session.ticks > ticks + 10)
     print(sent, session.server.refused)

@@ -15,6 +15,7 @@ from robobt.match.recording import Event, Recording, load_recording
 from robobt.world.game import GameState, RefereeCommand, Restart, Team, TeamStatus
 from robobt.worlds import sim_world
 from tests.live.chromium import Page
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -69,7 +70,7 @@ def test_a_window_of_a_chart_is_downloaded(
         plot, -width // 4, 0
     ).click_and_hold().move_by_offset(width // 4, 0).release().perform()
     page.find(".chart a").click()
-    page.until(saved.exists)
+    soon(saved.exists)
     rows = [*csv.reader(saved.read_text().splitlines())]
     assert rows[0] == ["time [s]", "ball speed [m/s]", "blue 0 x [m]", "blue 0 shot.score", *more]
     assert 0.15 < len(rows) / len(recording) < 0.35

@@ -13,7 +13,8 @@ from websockets.sync.client import connect
 
 from robobt.live.messages import MOST_REFUSED, Allowance, read
 from robobt.match.recording.reader import parse_recording
-from tests.live.playing import Client, Session, playing, wait_for
+from tests.live.playing import Client, Session, playing
+from tests.waiting import LIMIT, soon
 
 pytestmark = pytest.mark.integration
 
@@ -27,7 +28,7 @@ def session() -> Iterator[Session]:
 def get(session: Session, path: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
     """Ask for a path behind the token, or an absolute one."""
     _, _, address, token, _ = session.server.url.split("/")
-    connection = http.client.HTTPConnection(address, timeout=10)
+    connection = http.client.HTTPConnection(address, timeout=LIMIT)
     connection.request("GET", path if path.startswith("/") else f"/{token}/{path}", headers=headers)
     answer = connection.getresponse()
     body = answer.read()
@@ -83,7 +84,7 @@ def test_messages_that_are_none_are_counted_and_end_the_connection(session: Sess
             client.socket.send(none[i % 5])
         pytest.fail("all of them were taken")
     assert session.server.refused["no message"] - before == MOST_REFUSED
-    wait_for(lambda: session.ticks > ticks)
+    soon(lambda: session.ticks > ticks)
 
 
 def test_a_message_of_64_megabytes_ends_the_connection(session: Session) -> None:
@@ -92,8 +93,8 @@ def test_a_message_of_64_megabytes_ends_the_connection(session: Session) -> None
         client.socket.send("x" * 2**26)
         while True:
             client.socket.recv()
-    wait_for(lambda: session.server.refused["too long"])
-    wait_for(lambda: session.ticks > ticks)
+    soon(lambda: session.server.refused["too long"])
+    soon(lambda: session.ticks > ticks)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +126,7 @@ def test_one_viewer_steers_and_another_can_take_over(session: Session) -> None:
         second.read(lambda it: it.state.get("viewers") == 2)
         assert (first.state["steers"], second.state["steers"]) == (True, False)
         second.ask(do="pause", on=True)
-        wait_for(lambda: session.server.refused["not steering"])
+        soon(lambda: session.server.refused["not steering"])
         second.ask(do="steer")
         second.read(lambda it: it.state["steers"])
         first.read(lambda it: not it.state["steers"])
@@ -149,12 +150,12 @@ def test_a_match_is_paused_stepped_and_started_anew(session: Session) -> None:
         sleep(0.2)
         assert session.ticks == paused
         client.ask(do="step", ticks=3)
-        wait_for(lambda: session.ticks == paused + 3)
+        soon(lambda: session.ticks == paused + 3)
         client.ask(do="reset", next=False)
-        wait_for(lambda: session.ticks == 0)
+        soon(lambda: session.ticks == 0)
         assert session.match.seed == session.matches[-2].seed
         client.ask(do="pause", on=False)
-        wait_for(lambda: session.ticks > 5)
+        soon(lambda: session.ticks > 5)
 
 
 def test_what_was_seen_is_saved_as_a_recording(session: Session, tmp_path: Path) -> None:

@@ -21,7 +21,8 @@ from robobt.skills.aim.raters.shot_predictor import shot_predictor
 from robobt.world.features import SHOT_SCENE
 from robobt.world.protocol import WrappedWorld
 from robobt.worlds import sim_world
-from tests.live.playing import Client, wait_for
+from tests.live.playing import Client
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -134,7 +135,7 @@ def test_a_recording_is_gone_on_with_from_any_time(
             stream = server.audience.stream
             assert stream is not None
             # The end is told at once, and what is on its way is encoded by another thread.
-            wait_for(lambda: stream.end and not stream._encoded)
+            soon(lambda: stream.end and not stream._encoded)
             saved = parse_recording(stream.recording(), tmp_path)
     finally:
         replay.end()
@@ -154,7 +155,7 @@ def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenari
         with Client(server.url) as client:
             client.read(lambda it: it.state.get("over"))
             assert client.hello["scenario"] == "striker_vs_goalie"
-            wait_for(lambda: server.audience.stream is not None and not server.audience.stream._encoded)
+            soon(lambda: server.audience.stream is not None and not server.audience.stream._encoded)
             saved = parse_recording(server.audience.stream.recording(), tmp_path)  # type: ignore[union-attr]
     finally:
         replay.end()

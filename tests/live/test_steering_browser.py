@@ -14,7 +14,8 @@ from robobt.match.recording.reader import parse_recording
 from robobt.match.scenario.scenario import load_scenario
 from robobt.world.game import RefereeCommand
 from tests.live.chromium import Page
-from tests.live.playing import Client, Session, playing, wait_for
+from tests.live.playing import Client, Session, playing
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -47,7 +48,7 @@ def play(page: Page, session: Session, ticks: int) -> None:
     before = session.ticks
     for _ in range(ticks):
         page.find("#next").click()
-    wait_for(lambda: session.ticks == before + ticks)
+    soon(lambda: session.ticks == before + ticks)
     shown = session.match.scenario.period * (session.ticks - 1)
     page.wait("return window.robobt.state.time > arguments[0] - .001", shown)
 
@@ -69,16 +70,16 @@ def test_a_robot_is_dragged_and_taken_off_and_put_back(live: Page, session: Sess
     world = session.match.world
     robot = world.truth().own[1]
     drag(live, robot.position, (-2.0, 1.5))
-    wait_for(lambda: hypot(world.truth().own[1].x + 2.0, world.truth().own[1].y - 1.5) < 0.05)
+    soon(lambda: hypot(world.truth().own[1].x + 2.0, world.truth().own[1].y - 1.5) < 0.05)
     play(live, session, 1)
     drag(live, world.truth().own[1].position, (-2.0, 3.3), 6)
-    wait_for(lambda: len(world.truth().own) == 2)
+    soon(lambda: len(world.truth().own) == 2)
     play(live, session, 1)
     live.find("#picker .pick.blue:nth-of-type(2)").click()
     live.button("Take off").click()
-    wait_for(lambda: len(world.truth().own) == 3)
+    soon(lambda: len(world.truth().own) == 3)
     play(live, session, 1)
-    wait_for(lambda: any(event.kind == "robot moved" for event in recorded(session)))
+    soon(lambda: any(event.kind == "robot moved" for event in recorded(session)))
 
 
 def recorded(session: Session) -> list[Event]:
@@ -91,7 +92,7 @@ def test_a_ball_that_is_flicked_rolls(live: Page, session: Session) -> None:
     world = session.match.world
     ball = world.truth().ball
     drag(live, ball.position, (ball.x + 1.0, ball.y + 0.5), 8)
-    wait_for(lambda: world.truth().ball.speed > 0.5)
+    soon(lambda: world.truth().ball.speed > 0.5)
     moving = world.truth().ball
     assert moving.vx > 0.0
     assert moving.vx / moving.vy == pytest.approx(2.0, rel=0.3)
@@ -115,14 +116,14 @@ document.querySelectorAll('#tree .row')[place].click(); return place;"""
     place = live.js(find)
     assert place > 0
     live.button("Edit skill").click()
-    field = live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
+    field = soon(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
     name = field.get_attribute("name")
     field.clear()
     field.send_keys("0.37")
     live.button("Apply").click()
     # The form shows what was typed before the match has heard of it; a change makes another tree.
     player = session.match.players[3]
-    wait_for(lambda: player.runner.nodes[place].parameters()[name] == 0.37)  # type: ignore[attr-defined]
+    soon(lambda: player.runner.nodes[place].parameters()[name] == 0.37)  # type: ignore[attr-defined]
     play(live, session, 2)
     assert live.js("return window.robobt.match.frames") >= 5
 
@@ -130,7 +131,7 @@ document.querySelectorAll('#tree .row')[place].click(); return place;"""
 def test_what_is_typed_stays_whatever_the_match_tells(live: Page, session: Session) -> None:
     live.find("#picker .pick.blue").click()
     live.button("Edit play").click()
-    live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
+    soon(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
     live.js("document.querySelector('.forms input[type=number]').value = '0.123'")
     session.server.say("something else")
     live.wait("return document.querySelector('.told').textContent === 'something else'")
@@ -152,13 +153,13 @@ def test_a_form_that_is_closed_stays_closed_until_it_is_asked_for(live: Page, se
 def test_what_is_typed_stays_when_the_answer_to_an_earlier_value_comes(live: Page, session: Session) -> None:
     live.find("#picker .pick.blue").click()
     live.button("Edit play").click()
-    live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
+    soon(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))
     asked = session.server.audience.state["form"]["number"]
     live.js(
         """const input = document.querySelector('.forms input[type=number]'), form = input.form;
         input.focus(); input.value = '0.3'; form.requestSubmit(); input.value = '0.4';"""
     )
-    wait_for(lambda: session.server.audience.state["form"]["number"] > asked)
+    soon(lambda: session.server.audience.state["form"]["number"] > asked)
     session.server.say("answered")
     live.wait("return document.querySelector('.told').textContent === 'answered'")
     value, focused = live.js(
@@ -180,7 +181,7 @@ def test_a_form_is_shown_to_who_asked_for_it_alone(live: Page, session: Session)
         other.ask(do="steer")
         live.wait(f"return !(() => {{ {steers} }})()")
         other.ask(do="form", robot="yellow 0")
-        wait_for(lambda: session.server.audience.state["form"]["robot"] == "yellow 0")
+        soon(lambda: session.server.audience.state["form"]["robot"] == "yellow 0")
         session.server.say("another form")
         live.wait("return document.querySelector('.told').textContent === 'another form'")
     live.wait(steers)
@@ -192,7 +193,7 @@ def test_a_form_is_shown_to_who_asked_for_it_alone(live: Page, session: Session)
 def test_a_wrong_value_is_told_and_changes_nothing(live: Page, session: Session) -> None:
     live.find("#picker .pick.blue").click()
     live.button("Edit play").click()
-    field = live.until(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
+    field = soon(lambda: live.driver.find_elements("css selector", ".forms input[type=number]"))[0]
     live.js("arguments[0].value = '-1e9'", field)
     live.button("Apply").click()
     live.wait("return document.querySelector('.told').textContent !== ''")
@@ -216,7 +217,7 @@ def test_names_are_text_and_never_markup(live: Page, session: Session) -> None:
 def test_a_robot_is_turned_where_it_stands(live: Page, session: Session) -> None:
     world = session.match.world
     drag(live, world.truth().own[1].position, (-1.0, -1.0))
-    wait_for(lambda: hypot(world.truth().own[1].x + 1.0, world.truth().own[1].y + 1.0) < 0.05)
+    soon(lambda: hypot(world.truth().own[1].x + 1.0, world.truth().own[1].y + 1.0) < 0.05)
     play(live, session, 1)
     before = world.truth().own[1].heading
     live.find("#picker .pick.blue:nth-of-type(2)").click()

@@ -1,8 +1,6 @@
 import os
 import signal
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,6 +17,7 @@ from robobt.worlds import sim_world
 from tests.conftest import StartPython
 from tests.match.scripted import PlainWorld, Scripted, data
 from tests.registries import temporarily
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -162,14 +161,10 @@ def test_workers_end_with_a_run_that_is_killed(tmp_path: Path, start_python: Sta
     ids.mkdir()
     root = Path(__file__).resolve().parents[2]
     run = start_python(script, ids, env={**os.environ, "PYTHONPATH": str(root)})
-    assert _soon(lambda: len(list(ids.iterdir())) == 2)
+    soon(lambda: len(list(ids.iterdir())) == 2)
     run.kill()
     run.wait()
-    assert _soon(lambda: not any(_lives(path.name) for path in ids.iterdir()))
-
-
-def _soon(what: Callable[[], bool]) -> bool:
-    return any(what() or time.sleep(0.05) for _ in range(2400))
+    soon(lambda: not any(_lives(path.name) for path in ids.iterdir()))
 
 
 def _lives(process: str) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from robobt.tournament.recordings import Keep, Recordings
 from robobt.world.game import Team
 from robobt.worlds import sim_world
 from tests.tournament.made_up import drill, plan, runner
+from tests.waiting import soon
 
 pytestmark = [
     pytest.mark.integration,
@@ -96,10 +96,7 @@ def test_a_program_that_may_stay_is_started_once_for_either_side(
         found = play(what, store, workers)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
     assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
-    end = time.monotonic() + 5.0
-    while left(name) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not left(name)
+    soon(lambda: not left(name))
 
 
 @pytest.mark.slow

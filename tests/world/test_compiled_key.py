@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from robobt.world.compiled_key import key_of
+from tests.waiting import LIMIT
 
 INNER = """
 from robobt.world.compiled import compilable
@@ -34,7 +35,7 @@ def answer(folder: Path, factor: float, added: float) -> list[str]:
     (folder / "inner.py").write_text(INNER.format(added=added))
     (folder / "outer.py").write_text(OUTER)
     run = [sys.executable, "-B", "outer.py"]
-    done = subprocess.run(run, cwd=folder, capture_output=True, text=True, check=True, timeout=120)
+    done = subprocess.run(run, cwd=folder, capture_output=True, text=True, check=True, timeout=LIMIT)
     return done.stdout.split()
 
 

@@ -17,6 +17,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
+from tests.waiting import LIMIT
 
 BLUE = RobotId(Team.BLUE, 0)
 TRUTH = Frame(0.0, DIVISION_B, BallState(0.0, 0.0), (RobotState(0, 0.0, 0.0, ball_contact=True),), ())
@@ -46,7 +47,7 @@ def test_what_is_sent_reaches_the_own_match_only() -> None:
             Receiver(places[1][0], int(places[1][1])) as far,
         ):
             one.senders["vision"].send(b"seen")
-            assert select.select([near], [], [], 5.0)[0]
+            assert select.select([near], [], [], LIMIT)[0]
             assert [packet.data for packet in near.receive()] == [b"seen"]
             assert list(far.receive()) == []
 
@@ -58,10 +59,10 @@ def test_a_program_never_hears_the_match_beside_it(shared: tuple[str, ...], list
         near, far = [listening(opened, ports.addresses(Team.BLUE), listens) for ports in (one, other)]
         for _ in range(3):
             other.senders["vision"].send(b"theirs")
-        assert select.select([far], [], [], 5.0)[0]
+        assert select.select([far], [], [], LIMIT)[0]
         assert not select.select([near], [], [], 0.05)[0]
         one.senders["vision"].send(b"seen")
-        assert select.select([near], [], [], 5.0)[0]
+        assert select.select([near], [], [], LIMIT)[0]
         assert near.recv(100) == b"seen"
 
 
@@ -95,7 +96,7 @@ def test_a_team_commands_by_either_protocol() -> None:
             assert ports.commands(TRUTH)[Team.BLUE][BLUE].vx == 1.0
         with send(addresses["protocol"], write_control({0: RobotCommand(vx=0.5)})) as sock:
             assert ports.commands(TRUTH)[Team.BLUE][BLUE].vx == 0.5
-            sock.settimeout(5.0)
+            sock.settimeout(LIMIT)
             answer = RobotControlResponse.FromString(sock.recv(2048))
         assert [(feedback.id, feedback.dribbler_ball_contact) for feedback in answer.feedback] == [(0, True)]
 

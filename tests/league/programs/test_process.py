@@ -5,12 +5,12 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from robobt.league.programs.process import KEPT_OUTPUT, TeamProcess
+from tests.waiting import soon
 
 pytestmark = [
     pytest.mark.integration,
@@ -28,12 +28,8 @@ ESCAPES = (
 
 
 def wait_for_words(path: Path) -> str:
-    end = time.monotonic() + 20.0
-    while time.monotonic() < end:
-        if path.exists() and (words := path.read_text()).endswith("\n"):
-            return words
-        time.sleep(0.01)
-    raise AssertionError("it says nothing")
+    soon(lambda: path.exists() and path.read_text().endswith("\n"), "it says something")
+    return path.read_text()
 
 
 def runs(pid: int) -> bool:
@@ -78,10 +74,7 @@ def test_nothing_is_left_when_the_match_is_killed(tmp_path: Path) -> None:
         child = int(wait_for_words(output))
         process.send_signal(signal.SIGKILL)
         process.wait()
-    end = time.monotonic() + 10.0
-    while runs(child) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert not runs(child)
+    soon(lambda: not runs(child))
 
 
 def test_how_it_ended_is_told_with_its_last_words(tmp_path: Path) -> None:
@@ -89,9 +82,7 @@ def test_how_it_ended_is_told_with_its_last_words(tmp_path: Path) -> None:
     ends["import os; os.kill(os.getpid(), 9)"] = "was ended by signal 9"
     for code, told in ends.items():
         with TeamProcess([sys.executable, "-S", "-c", code], tmp_path, tmp_path / "out.txt") as program:
-            end = time.monotonic() + 20.0
-            while program.ended() is None and time.monotonic() < end:
-                time.sleep(0.01)
+            soon(program.ended)
             assert program.ended() == f"its program {told}"
 
 
@@ -99,9 +90,7 @@ def test_only_the_beginning_of_its_output_is_kept(tmp_path: Path) -> None:
     output = tmp_path / "out.txt"
     shout = "import os\nfor _ in range(200): os.write(1, b'x' * (1 << 20))\n"
     with TeamProcess([sys.executable, "-S", "-c", shout], tmp_path, output) as program:
-        end = time.monotonic() + 30.0
-        while program.ended() is None and time.monotonic() < end:
-            time.sleep(0.01)
+        soon(program.ended)
     assert output.stat().st_size == KEPT_OUTPUT
     assert program.printed == 200 << 20
 

@@ -15,6 +15,7 @@ from robobt.league.wire.simulation import write_control, write_teleport
 from robobt.league.wire.stream import MessageStream
 from robobt.league.wire.vision import BallDetection, CameraFrame
 from robobt.world.command import RobotCommand
+from tests.waiting import LIMIT
 
 PERIOD = 1 / 60
 SEEN = CameraFrame(0, 7, 1.0, 1.0, [BallDetection(1.0, 2.0)])
@@ -39,11 +40,11 @@ class Client:
         if command:
             request.simulator_command.MergeFromString(command)
         self.stream.send(request.SerializeToString())
-        select.select([self._port], [], [], 5.0)
+        select.select([self._port], [], [], LIMIT)
         return self._port.receive()
 
     def answer(self) -> SimulationSyncResponse:
-        data = self.stream.receive(5.0)
+        data = self.stream.receive(LIMIT)
         assert data is not None
         return SimulationSyncResponse.FromString(data)
 
@@ -95,11 +96,11 @@ def test_nobody_places_anything() -> None:
 def test_who_sends_nonsense_or_leaves_is_told_of() -> None:
     with StepPort(PERIOD) as port, Client(port) as client:
         client.stream.send(b"\xff\xff")
-        select.select([port], [], [], 5.0)
+        select.select([port], [], [], LIMIT)
         assert port.receive() is None
         assert port.problem == "its program sent what is no request for a step"
     with StepPort(PERIOD) as port, Client(port) as client:
         client.stream.close()
-        select.select([port], [], [], 5.0)
+        select.select([port], [], [], LIMIT)
         assert port.receive() is None
         assert "closed the connection" in str(port.problem)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import nan
 from typing import TypeVar
 
@@ -37,6 +37,7 @@ from robobt.world.game import Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 from tests.league.served import free_endpoints, poses
+from tests.waiting import soon
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5)
 Answer = TypeVar("Answer")
@@ -54,17 +55,6 @@ def server(endpoints: Endpoints) -> Iterator[SimServer]:
         yield server
 
 
-def eventually(look: Callable[[], Answer | None]) -> Answer:
-    """What ``look`` finds, soon or on a busy machine late."""
-    end = time.monotonic() + 20.0
-    while time.monotonic() < end:
-        found = look()
-        if found:
-            return found
-        time.sleep(0.001)
-    raise AssertionError("nothing came")
-
-
 def ask(server: SimServer, port: int, data: bytes) -> bytes:
     """What the server answers to a packet."""
     with Sender("127.0.0.1", port) as sender:
@@ -74,7 +64,7 @@ def ask(server: SimServer, port: int, data: bytes) -> bytes:
             server.receive()
             return list(sender.answers())
 
-        return eventually(answer)[0]
+        return soon(answer)[0]
 
 
 def send(server: SimServer, port: int, data: bytes, counts: PacketCounts) -> None:
@@ -87,17 +77,15 @@ def send(server: SimServer, port: int, data: bytes, counts: PacketCounts) -> Non
             server.receive()
             return counts.accepted + counts.dropped > before
 
-        eventually(looked)
+        soon(looked)
 
 
 def test_vision_and_tracker_go_out_with_every_step(server: SimServer, endpoints: Endpoints) -> None:
     with Receiver(*endpoints.vision) as vision, Receiver(*endpoints.tracker) as tracker:
         server.step()
         server.send_due(server.field.time)
-        seen = read_vision(eventually(lambda: list(vision.receive()))[0].data, PacketCounts())
-        tracked = read_tracked(
-            eventually(lambda: list(tracker.receive()))[0].data, DIVISION_B, PacketCounts()
-        )
+        seen = read_vision(soon(lambda: list(vision.receive()))[0].data, PacketCounts())
+        tracked = read_tracked(soon(lambda: list(tracker.receive()))[0].data, DIVISION_B, PacketCounts())
     assert seen is not None
     assert seen.frame is not None
     assert seen.field == DIVISION_B
@@ -143,7 +131,7 @@ def test_the_visions_delay_keeps_frames_back() -> None:
         time.sleep(0.02)
         assert list(vision.receive()) == []
         server.send_due(field.time + 0.035)
-        seen = read_vision(eventually(lambda: list(vision.receive()))[0].data, PacketCounts())
+        seen = read_vision(soon(lambda: list(vision.receive()))[0].data, PacketCounts())
     assert seen is not None
     assert seen.frame is not None
     assert seen.frame.sent - seen.frame.captured == pytest.approx(0.035)
@@ -180,14 +168,14 @@ def test_grsims_status_comes_when_something_changes_and_only_then(
         command = write_grsim(Team.BLUE, {0: RobotCommand()}, 0.0)
         send(server, server.endpoints.grsim, command, server.counts["grsim"])
         server.step()
-        assert eventually(told) == [(0, True, False)]
+        assert soon(told) == [(0, True, False)]
         server.step()
         time.sleep(0.02)
         assert told() == []
         kick = write_grsim(Team.BLUE, {0: RobotCommand(kick_speed=3.0)}, 0.0)
         send(server, server.endpoints.grsim, kick, server.counts["grsim"])
         server.step()
-        assert eventually(told) == [(0, False, True)]
+        assert soon(told) == [(0, False, True)]
 
 
 def test_grsims_replacement_puts_robots_and_ball(server: SimServer) -> None:
@@ -237,7 +225,7 @@ def test_limits_and_realism_can_be_configured(server: SimServer, endpoints: Endp
     assert server.field.truth().own[0].speed <= 0.5 + 1e-6
     with Receiver(*endpoints.vision) as vision:
         server.send_due(server.field.time)
-        for packet in eventually(lambda: list(vision.receive())):
+        for packet in soon(lambda: list(vision.receive())):
             seen = read_vision(packet.data, PacketCounts())
             assert seen is not None
             assert seen.frame is not None
@@ -281,7 +269,7 @@ def test_the_servers_referee_publishes_what_it_decides(endpoints: Endpoints) -> 
             server.step()
             for packet in controller.receive():
                 assert follower.read(packet.data)
-        eventually(lambda: list(controller.receive()) or True)
+        soon(lambda: list(controller.receive()) or True)
         assert follower.game.command is server.referee.referee.game.command
         assert follower.game.restart is server.referee.referee.game.restart
 

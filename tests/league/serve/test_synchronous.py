@@ -31,6 +31,7 @@ from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 from tests.league.mutations import mutations
 from tests.league.served import free_endpoints
+from tests.waiting import LIMIT
 
 ME, HER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 5)
 PERIOD = 1 / 60
@@ -165,7 +166,7 @@ def test_mutated_requests_cost_at_most_their_connection(connect: Connect) -> Non
         client = client or connect(rng.choice(["control", "blue", "yellow"]))
         try:
             client.stream.send(data)
-            assert client.stream.receive(10.0) is not None
+            assert client.stream.receive(LIMIT) is not None
         except StreamError:
             client.stream.close()
             client, lost = None, lost + 1

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import socket
-import time
 from collections.abc import Iterator
 
 import pytest
 
 from robobt.league.wire.packets import MAX_PACKET
 from robobt.league.wire.sockets import Packet, Receiver, Sender, SocketError
+from tests.waiting import soon
 
 GROUP = "224.5.23.2"
 
 
 def received(receiver: Receiver, expected: int = 1) -> list[Packet]:
     packets: list[Packet] = []
-    end = time.monotonic() + 20.0
-    while len(packets) < expected and time.monotonic() < end:
-        packets += receiver.receive()
-        time.sleep(0.001)
+
+    def all_came() -> bool:
+        packets.extend(receiver.receive())
+        return len(packets) >= expected
+
+    soon(all_came)
     return packets
 
 
@@ -67,9 +69,7 @@ def test_a_packet_of_another_machine_is_dropped_and_counted(
     monkeypatch.setattr("robobt.league.wire.sockets._can_bind", lambda _: False)
     with Sender("127.0.0.1", receiver.port) as sender:
         sender.send(b"hello")
-        end = time.monotonic() + 20.0
-        while not receiver.counts.foreign and time.monotonic() < end:
-            assert list(receiver.receive()) == []
+        soon(lambda: list(receiver.receive()) or receiver.counts.foreign)
     assert receiver.counts.foreign == 1
 
 
@@ -87,11 +87,7 @@ def test_answers_of_anybody_else_are_left_out(receiver: Receiver) -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
             stranger.sendto(b"not asked", question.sender)
         receiver.answer(b"answer", question.sender)
-        answers: list[bytes] = []
-        end = time.monotonic() + 20.0
-        while not answers and time.monotonic() < end:
-            answers += sender.answers()
-        assert answers == [b"answer"]
+        assert soon(lambda: list(sender.answers())) == [b"answer"]
 
 
 def test_an_unknown_interface_is_one_plain_error() -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from robobt.league.wire.stream import MAX_MESSAGE, MessageStream, StreamError, encode_varint
+from tests.waiting import LIMIT
 
 
 @pytest.fixture
@@ -27,13 +28,13 @@ def test_a_message_of_any_size_arrives(ends: Ends, size: int) -> None:
     stream, other = ends
     message = bytes(i % 251 for i in range(size))
     other.sendall(encode_varint(size) + message)
-    assert stream.receive(1.0) == message
+    assert stream.receive(LIMIT) == message
 
 
 def test_messages_that_come_together_are_taken_one_by_one(ends: Ends) -> None:
     stream, other = ends
     other.sendall(b"\x01a\x02bc\x00")
-    assert [stream.receive(1.0) for _ in range(3)] == [b"a", b"bc", b""]
+    assert [stream.receive(LIMIT) for _ in range(3)] == [b"a", b"bc", b""]
     assert stream.receive(0.0) is None
 
 
@@ -43,7 +44,7 @@ def test_a_message_in_pieces_is_waited_for(ends: Ends) -> None:
         other.sendall(piece)
         assert stream.receive(0.02) is None
     other.sendall(b"x" * 28)
-    assert stream.receive(1.0) == b"x" * 128
+    assert stream.receive(LIMIT) == b"x" * 128
 
 
 def test_what_is_sent_has_its_length_before_it(ends: Ends) -> None:
@@ -56,7 +57,7 @@ def test_a_closed_connection_is_an_error_that_names_the_other_side(ends: Ends) -
     stream, other = ends
     other.close()
     with pytest.raises(StreamError, match="the other side closed the connection"):
-        stream.receive(1.0)
+        stream.receive(LIMIT)
 
 
 @pytest.mark.parametrize("start", [encode_varint(MAX_MESSAGE + 1), b"\x80" * 5, b"\xff" * 10])
@@ -64,7 +65,7 @@ def test_a_length_that_cannot_be_is_an_error(ends: Ends, start: bytes) -> None:
     stream, other = ends
     other.sendall(start)
     with pytest.raises(StreamError, match="the other side"):
-        stream.receive(1.0)
+        stream.receive(LIMIT)
 
 
 def test_the_longest_message_is_still_accepted(ends: Ends) -> None:

@@ -1,5 +1,4 @@
 import json
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from robobt.world import RobotCommand, RobotId, Team
 from robobt.world.field import DIVISION_B
 from robobt.world.protocol import Placement
 from tests.conftest import StartPython
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -235,14 +235,9 @@ def kill_after(start_python: StartPython, path: Path, rows: int, workers: int) -
     command = ["-m", "robobt", "collect", "shots", "-n", "80", "--seed", "5"]
     growing = path if path.suffix == ".csv" else path.with_name(path.name + ".csv")
     process = start_python(*command, "--out", path, "-w", workers)
-    until = time.monotonic() + 300.0
-    while process.poll() is None and time.monotonic() < until:
-        if growing.exists() and growing.read_bytes().count(b"\n") > rows:
-            break
-        time.sleep(0.005)
+    soon(lambda: growing.exists() and growing.read_bytes().count(b"\n") > rows)
     process.kill()
     process.wait()
-    assert growing.read_bytes().count(b"\n") > rows
 
 
 def test_a_killed_collection_keeps_every_finished_shot_and_gets_none_twice(
