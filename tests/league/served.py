@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import secrets
 import socket
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
-from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
+from robobt.league.wire.endpoints import Endpoint, Endpoints
 from robobt.world.state import RobotId
+from tests.waiting import LIMIT
 
 
 def poses(field: ServedField) -> dict[RobotId, tuple[float, float, float]]:
@@ -18,14 +21,21 @@ def poses(field: ServedField) -> dict[RobotId, tuple[float, float, float]]:
     return {robot: (state.x, state.y, state.heading) for robot, state in field.truth().robots().items()}
 
 
-def free_endpoints(group: str = VISION_GROUP) -> Endpoints:
+_PORTS = range(21_000, 30_000)
+"""Neither the league's ports, nor those that the system gives away before a test gets to use them."""
+
+_GROUP = f"239.254.{os.getpid() >> 8 & 255}.{os.getpid() & 255}"
+"""A multicast group that no other process with tests sends to."""
+
+
+def free_endpoints(group: str = _GROUP) -> Endpoints:
     """Ports that nobody uses; the vision goes to a group, or to one host."""
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(9)]
-    for sock in sockets:
-        sock.bind(("127.0.0.1", 0))
-    ports = [sock.getsockname()[1] for sock in sockets]
-    for sock in sockets:
-        sock.close()
+    ports: list[int] = []
+    while len(ports) < 9:
+        port = _PORTS[secrets.randbelow(len(_PORTS))]
+        with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+            sock.bind(("127.0.0.1", port))
+            ports += [port] * (port not in ports)
     return Endpoints(
         vision=Endpoint(group, ports[0]),
         tracker=Endpoint(group, ports[1]),
@@ -52,4 +62,4 @@ def served(
             yield server
         finally:
             ended.set()
-            thread.join(5.0)
+            thread.join(LIMIT)
