@@ -32,7 +32,7 @@ from robobt.world.state import RobotId
 from robobt.worlds import sim_world
 from tests.league.served import free_endpoints, served
 from tests.registries import temporarily
-from tests.waiting import soon
+from tests.waiting import LIMIT, soon
 
 pytestmark = [pytest.mark.integration, pytest.mark.usefixtures("signals_of_a_terminal")]
 
@@ -93,8 +93,9 @@ ends: {time_limit: 600}
 
 @pytest.fixture(autouse=True)
 def _no_end_by_force_in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An orderly end takes longer on a busy machine, and one by force would end pytest."""
-    monkeypatch.setattr(common, "_PATIENCE", 60.0)
+    """An orderly end takes longer on a busy machine, and one by force would end pytest; so does a start."""
+    monkeypatch.setattr(common, "_PATIENCE", LIMIT)
+    monkeypatch.setattr("robobt.league.placing.TIMEOUT", LIMIT)
 
 
 def robobt(*arguments: object) -> Result:

@@ -6,13 +6,16 @@ import os
 import secrets
 import socket
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.endpoints import Endpoint, Endpoints
-from robobt.world.state import RobotId
+from robobt.league.world import LeagueWorld
+from robobt.world.command import RobotCommand
+from robobt.world.state import Frame, RobotId
 from tests.waiting import LIMIT
 
 
@@ -47,6 +50,18 @@ def free_endpoints(group: str = _GROUP) -> Endpoints:
         blue_status=ports[7],
         yellow_status=ports[8],
     )
+
+
+def drive(
+    world: LeagueWorld, commands: dict[RobotId, RobotCommand], until: Callable[[Frame], bool], ticks: int = 20
+) -> Frame:
+    """Command robots for some ticks, and on until something is seen; a busy machine stalls what is seen."""
+    end = time.monotonic() + LIMIT
+    while not until(world.observe()) or ticks > 0:
+        assert time.monotonic() < end, f"it is not seen: {world.observe()}"
+        world.act(commands)
+        ticks -= 1
+    return world.observe()
 
 
 @contextmanager

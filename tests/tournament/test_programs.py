@@ -32,7 +32,7 @@ ROOT = Path(__file__).parent.parent.parent
 FILE = """
 entrant: {name}
 program:
-  command: [env, "PYTHONPATH={root}", {python}, {client}, "{name}", "{{team}}", "{port}"]
+  command: [env, "PYTHONPATH={root}", {python}, {client}, "{name}", "{{team}}", "{port}", "{folder}"]
   ready_within: {ready}
   silent_for: {silent}
   ends_within: 5
@@ -44,7 +44,7 @@ def program(
     folder: Path, name: str, ready: float = 30.0, port: str = "{grsim}", more: str = "", silent: float = 3.0
 ) -> Entrant:
     file = folder / f"{name}.yaml"
-    given = {"ready": ready, "port": port, "more": more, "silent": silent}
+    given = {"ready": ready, "port": port, "more": more, "silent": silent, "folder": folder}
     file.write_text(FILE.format(name=name, root=ROOT, python=sys.executable, client=CLIENT, **given))
     return read_entrant(str(file))
 
@@ -56,13 +56,14 @@ def run(tmp_path: Path, *teams: Entrant, workers: int = 0, seconds: float = 3.0,
         return play(what, store, workers, **options)
 
 
-def left(*names: str) -> list[str]:
-    """Clients that still run."""
+def left(folder: Path) -> list[str]:
+    """Clients of this test that still run."""
     found = []
-    for folder in Path("/proc").iterdir():
+    for process in Path("/proc").iterdir():
         with suppress(OSError):
-            words = (folder / "cmdline").read_text().split("\0")
-            found += [name for name in names if str(CLIENT) in words and name in words]
+            words = (process / "cmdline").read_text().split("\0")
+            if str(CLIENT) in words and str(folder) in words:
+                found.append(" ".join(words))
     return found
 
 
@@ -79,7 +80,7 @@ def test_a_program_drives_its_robots_from_either_side(tmp_path: Path) -> None:
         assert 1.5 < after - before <= 3.0
         assert start.seen_by(other).own[0].position == end.seen_by(other).own[0].position
     assert {path.read_text() for path in (tmp_path / "night.output").glob("*/*.txt")} == {"ready\n"}
-    assert not left("drives")
+    assert not left(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +97,7 @@ def test_a_program_that_may_stay_is_started_once_for_either_side(
         found = play(what, store, workers)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
     assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
-    soon(lambda: not left(name))
+    soon(lambda: not left(tmp_path))
 
 
 @pytest.mark.slow
@@ -104,7 +105,7 @@ def test_a_program_that_may_stay_and_has_lost_by_rule_is_started_anew(tmp_path: 
     found = run(tmp_path, program(tmp_path, "crashes", more="stays: true"), seconds=24.0)
     assert [match.forfeited_by for match in found.matches] == ["crashes"] * 2
     assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
-    assert not left("crashes")
+    assert not left(tmp_path)
 
 
 STEPS = """
@@ -145,7 +146,7 @@ def test_matches_of_programs_in_lock_step_are_the_same_bit_for_bit(tmp_path: Pat
     found = twice(tmp_path, plan(1, scenario=drill(2.4), entrants=tuple(teams)))
     assert len({match.trace for match in found[0]}) == 2
     assert all(match.ticks > 100 for match in found[0])
-    assert not left("steps", "steps 2")
+    assert not left(tmp_path)
 
 
 @pytest.mark.slow
@@ -167,7 +168,7 @@ def test_programs_side_by_side_never_meet(tmp_path: Path) -> None:
     with what.open_store(tmp_path / "night.sqlite") as store:
         found = play(what, store, 2)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
-    assert not left("drives", "twice")
+    assert not left(tmp_path)
 
 
 @pytest.mark.slow
@@ -196,7 +197,7 @@ def test_who_misbehaves_has_lost_and_nothing_is_left(tmp_path: Path) -> None:
             said, _, printed = str(match.side(name).first_error).partition("; its output: ")
             assert said == f"{name}: {told}"
             assert Path(printed).is_file()
-    assert not left(*bad)
+    assert not left(tmp_path)
     assert sum(path.stat().st_size for path in (tmp_path / "night.output").glob("*/*")) < 10 << 20
 
 

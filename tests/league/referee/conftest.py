@@ -47,6 +47,6 @@ def program(tmp_path: Path) -> Path:
     """A program that takes the place of the official one."""
     path = tmp_path / "fake-game-controller"
     module = "tests.league.referee.fake_controller"
-    path.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m {module} "$@"\n')
+    path.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m {module} "$@" "{path}"\n')
     path.chmod(0o755)
     return path
