@@ -32,7 +32,7 @@ _WORDS = 0.5
 """How long the last words of a program that has ended are waited for [s]."""
 
 _GONE = 10.0
-"""How long the system may take to end what was killed [s]."""
+"""How long the guard may take to end everything [s]."""
 
 _GUARD = r"""
 exec 3<&0 </dev/null
@@ -148,11 +148,22 @@ class TeamProcess:
             with suppress(OSError):
                 self._process.stdin.close()
             end = time.monotonic() + _GONE
-            while (self._group() or self._marked()) and time.monotonic() < end:
+            while self._group() or self._marked():
+                if time.monotonic() > end:
+                    self._kill()
+                    break
                 time.sleep(0.02)
                 self._process.poll()
             self._process.wait()
             self._reader.join(_WORDS)
+
+    def _kill(self) -> None:
+        """Kill what is left: the program may have stopped or killed its guard."""
+        with suppress(OSError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        for process in self._marked():
+            with suppress(OSError):
+                os.kill(process, signal.SIGKILL)
 
     def _group(self) -> bool:
         """Return whether a process of the group is left."""

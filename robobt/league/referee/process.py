@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
@@ -31,6 +32,9 @@ VARIABLE = "ROBOBT_GAME_CONTROLLER"
 
 _PATIENCE = 20.0
 """How long the program may take until it listens, on a busy machine [s]."""
+
+_GONE = 10.0
+"""How long the shell that guards the program may take to end everything [s]."""
 
 _TRIES = 5
 """How often another port is tried: between finding a free one and using it somebody else may."""
@@ -188,7 +192,12 @@ class GameControllerProcess:
             with suppress(BrokenPipeError):
                 process.stdin.write(b"\n")
                 process.stdin.close()
-            process.wait()
+            try:
+                process.wait(_GONE)
+            except subprocess.TimeoutExpired:
+                # The program has stopped or killed what was to end it.
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
 
     def _end(self) -> None:
         with uninterrupted:

@@ -61,6 +61,34 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
         assert program.stubborn is deaf
 
 
+@pytest.mark.parametrize(
+    "harm",
+    [
+        "os.killpg(0, signal.SIGSTOP)",
+        "[os.kill(pid, signal.SIGSTOP) for pid in others()]",
+        "[os.kill(pid, signal.SIGKILL) for pid in others()[1:]]",
+    ],
+    ids=["stops all of its group", "stops its guard", "kills its guard"],
+)
+def test_a_program_is_ended_whatever_it_does_to_its_guard(
+    harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("robobt.league.programs.process._GONE", 1.0)
+    code = (
+        "import os, signal, time; from pathlib import Path\n"
+        "def others():\n"
+        "    groups = [(int(file.parent.name), file.read_text().rpartition(')')[2].split()[2])\n"
+        "              for file in Path('/proc').glob('[0-9]*/stat')]\n"
+        "    mine = str(os.getpgrp())\n"
+        "    return sorted(pid for pid, group in groups if group == mine and pid != os.getpid())\n"
+        f"print(os.getpid(), flush=True); {harm}; time.sleep(600)\n"
+    )
+    output = tmp_path / "out.txt"
+    with TeamProcess([sys.executable, "-S", "-c", code], tmp_path, output):
+        child = int(wait_for_words(output))
+    assert not runs(child)
+
+
 def test_nothing_is_left_when_the_match_is_killed(tmp_path: Path) -> None:
     output = tmp_path / "out.txt"
     match = (

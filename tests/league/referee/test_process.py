@@ -28,8 +28,8 @@ def _no_program_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv(VARIABLE, raising=False)
 
 
-def running(name: str) -> list[int]:
-    """Processes with this in their command lines."""
+def running(program: Path) -> list[int]:
+    """Processes with this in their command lines, as the fake controller has its own path."""
     found = []
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit():
@@ -37,13 +37,17 @@ def running(name: str) -> list[int]:
                 line = (folder / "cmdline").read_bytes()
             except OSError:
                 continue
-            if name.encode() in line and int(folder.name) != os.getpid():
+            if str(program).encode() in line and int(folder.name) != os.getpid():
                 found.append(int(folder.name))
     return found
 
 
-def gone(name: str) -> bool:
-    return soon(lambda: not running(name))
+def state(process: int) -> str:
+    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+
+
+def gone(program: Path) -> bool:
+    return soon(lambda: not running(program))
 
 
 def test_a_program_that_is_absent_is_said_with_where_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,16 +105,14 @@ def test_what_is_not_the_controller_is_started_once(tmp_path: Path) -> None:
 
 @pytest.mark.integration
 def test_it_publishes_nothing_and_ends_when_it_is_closed(program: Path, tmp_path: Path) -> None:
-    name = program.name
     with GameControllerProcess(program, GAME) as controller:
         # The fake ends at once when it would be heard.
         assert controller.crash() == ""
-        assert running("fake_controller")
+        assert running(program)
         folder = Path(controller._folder.name)
         assert folder.exists()
-    assert gone("fake_controller")
+    assert gone(program)
     assert not folder.exists()
-    assert not running(name)
 
 
 @pytest.mark.integration
@@ -122,8 +124,22 @@ def test_it_ends_at_once_even_if_it_minds_no_signal_and_has_started_others(
     deaf.write_text(f'#!/bin/sh\ntrap "" TERM INT HUP\n{program} "$@" & sleep 600\n')
     deaf.chmod(0o755)
     with GameControllerProcess(deaf, GAME):
-        assert running(str(deaf))
-    assert gone(str(deaf))
+        assert running(deaf)
+    assert gone(deaf)
+
+
+@pytest.mark.integration
+def test_it_ends_even_if_it_has_stopped_what_would_end_it(
+    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("robobt.league.referee.process._GONE", 1.0)
+    stops, now = tmp_path / "stops", tmp_path / "now"
+    stops.write_text(f'#!/bin/sh\n{program} "$@" & while [ ! -e {now} ]; do sleep 0.1; done; kill -STOP 0\n')
+    stops.chmod(0o755)
+    with GameControllerProcess(stops, GAME):
+        now.touch()
+        soon(lambda: all(state(process) == "T" for process in running(stops)))
+    assert gone(stops)
 
 
 @pytest.mark.integration
@@ -145,8 +161,8 @@ def test_it_ends_however_the_match_does_and_leaves_no_folder(
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     process = start_python("-c", code)
     assert process.stdout.readline() == "started\n"
-    assert running("fake_controller")
+    assert running(program)
     process.send_signal(number)
     process.wait(LIMIT)
-    assert gone("fake_controller")
+    assert gone(program)
     assert not list(tmp_path.glob("robobt-gc-*"))
