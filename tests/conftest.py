@@ -13,10 +13,17 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from robobt.config.telling import OFTEN
 
 pytest_plugins = ("tests.limits",)
+
+# The same examples in every run, however long each takes on a busy machine.
+settings.register_profile(
+    "robobt", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("robobt")
 
 StartPython = Callable[..., "subprocess.Popen[str]"]
 

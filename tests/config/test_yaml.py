@@ -24,7 +24,7 @@ def read(text: str | bytes) -> object:
 
 @pytest.mark.integration
 @given(plain)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_plain_data_written_and_read_is_the_same_and_of_the_same_types(data: object) -> None:
     assert repr(read(write_yaml(data))) == repr(data)
 

@@ -4,7 +4,7 @@ from math import hypot
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import arrival_time, axis_time, meetings, movers, out_of_reach
@@ -24,7 +24,6 @@ def arrival(me: RobotState, x: float, y: float) -> float:
 
 
 @given(st.floats(0.0, 9.0), speeds)
-@settings(deadline=None)
 def test_along_a_line_it_is_the_trapezoid(gap: float, speed: float) -> None:
     limits = (LIMITS.max_speed, LIMITS.acceleration, LIMITS.braking)
     assert axis_time(gap, speed, *limits) == pytest.approx(travel_time(gap, speed, LIMITS), abs=1e-6)
@@ -32,7 +31,6 @@ def test_along_a_line_it_is_the_trapezoid(gap: float, speed: float) -> None:
 
 
 @given(places, places, speeds, speeds, places, places)
-@settings(deadline=None)
 def test_a_turned_or_mirrored_field_takes_as_long(
     x: float, y: float, vx: float, vy: float, tx: float, ty: float
 ) -> None:
@@ -42,7 +40,6 @@ def test_a_turned_or_mirrored_field_takes_as_long(
 
 
 @given(places, places, st.floats(-3.0, 3.0))
-@settings(deadline=None)
 def test_nobody_is_there_sooner_than_at_top_speed(x: float, y: float, vx: float) -> None:
     time = arrival(robot(velocity=(vx, 0.0, 0.0)), x, y)
     assert time >= hypot(x, y) / LIMITS.max_speed - 1e-9
@@ -88,7 +85,6 @@ def test_a_ball_that_leaves_the_field_first_is_met_outside() -> None:
 
 
 @given(places, places, speeds, speeds, st.floats(0.0, 3.0))
-@settings(deadline=None)
 def test_what_is_out_of_reach_by_a_time_is_reached_later(
     x: float, y: float, vx: float, vy: float, time: float
 ) -> None:

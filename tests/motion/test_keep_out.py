@@ -70,7 +70,7 @@ def test_in_a_stop_nothing_is_changed() -> None:
     assert keep_out(frame(me, (-3.2, 0.0), game=STOP), me, RobotCommand(-2.0, 0.0)).vx == -2.0
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     st.floats(-4.4, 4.4), st.floats(-2.9, 2.9), st.floats(0.0, 0.15), st.floats(-3.0, 3.0), st.floats(-3, 3)
 )

@@ -106,7 +106,7 @@ def test_robobulls_turns_slowly_and_brakes_its_turn_more_slowly_still() -> None:
     assert min(changes) == pytest.approx(-ROBOBULLS_LIMITS.angular_braking, rel=0.1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     distance=st.floats(0.01, 3.0),
     speed=st.floats(0.0, 2.5),
@@ -126,7 +126,7 @@ def test_a_moving_robot_reaches_its_target_and_does_not_circle_it(
     assert time < patience + 0.2
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(turn=st.floats(-pi, pi), omega=st.floats(-10.0, 10.0), period=st.sampled_from(PERIODS))
 def test_it_turns_to_any_heading_the_short_way(turn: float, omega: float, period: float) -> None:
     me = robot(velocity=(0.0, 0.0, omega))

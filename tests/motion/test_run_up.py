@@ -15,7 +15,7 @@ from tests.skills.fixed_world import moved, robot
 PERIOD = 1 / 60
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     back=st.floats(1.2, 2.5),  # from nearer, a ball that rolls is met before any robot can be on its line
     slope=st.floats(-0.7, 0.7),

@@ -7,7 +7,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers_of
@@ -47,7 +47,6 @@ def cleared(
     return vx, mirror * vy
 
 
-@settings(deadline=None)
 @given(others=places, vx=speed, vy=speed, wanted=st.tuples(speed, speed), goal=st.tuples(place, place))
 def test_nobody_is_made_faster_and_left_and_right_are_the_same(
     others: list[tuple[float, float, float, float]], vx: float, vy: float, wanted: Point, goal: Point
@@ -60,7 +59,6 @@ def test_nobody_is_made_faster_and_left_and_right_are_the_same(
     assert off == pytest.approx(mirrored_off, abs=1e-6)
 
 
-@settings(deadline=None)
 @given(
     others=st.lists(st.tuples(place, place, st.floats(0, MOVES), st.just(0.0)), max_size=8),
     wanted=st.tuples(speed, speed),

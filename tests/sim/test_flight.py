@@ -215,7 +215,7 @@ def throws(draw: st.DrawFn) -> tuple[float, ...]:
 
 
 @pytest.mark.parametrize("name", ["default", "erforce", "grsim"])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(ball=throws(), robots=robots)
 def test_energy_never_grows(
     name: str, ball: tuple[float, ...], robots: list[tuple[float, float, float]]
@@ -229,7 +229,7 @@ def test_energy_never_grows(
     assert energy.max() <= energy[0] + 1e-6
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(ball=throws(), robots=robots)
 def test_left_and_right_are_alike(ball: tuple[float, ...], robots: list[tuple[float, float, float]]) -> None:
     x, y, vx, vy, z, vz = ball
@@ -239,7 +239,7 @@ def test_left_and_right_are_alike(ball: tuple[float, ...], robots: list[tuple[fl
 
 
 @pytest.mark.parametrize("name", ["default", "erforce", "grsim"])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     speed=st.floats(1.0, 8.0),
     elevation=st.floats(0.0, 0.15),
@@ -258,7 +258,7 @@ def test_no_low_ball_tunnels_through_a_robot(
         assert rows[:, 0].max() < 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     speed=st.floats(1.0, 8.0),
     elevation=st.floats(0.0, 0.2),
@@ -277,7 +277,7 @@ def test_no_low_ball_leaves_a_goal_through_its_walls(
         assert (rows[:, 0] <= LINE + DIVISION_B.goal_depth - BALL_RADIUS + 0.01).all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(ball=throws())
 def test_no_ball_leaves_the_walls_around_the_field(ball: tuple[float, ...]) -> None:
     rows = seen(thrown(ball, [(0.0, 0.0, 0.0)]), 4.0)

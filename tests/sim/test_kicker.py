@@ -49,7 +49,7 @@ def test_now_means_now_and_on_contact_waits() -> None:
         assert (world.truth().ball.vx > 3) == leaves
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(heading=st.floats(-3.1, 3.1), speed=st.floats(0.5, 6.5))
 def test_the_ball_leaves_along_the_heading(heading: float, speed: float) -> None:
     gap = preset("default").body.face + BALL_RADIUS + 0.0003
@@ -94,7 +94,7 @@ def test_a_single_kick_command_fires_once() -> None:
     assert world.kicks == []
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     speed=st.floats(2.0, 6.0),
     angle=st.floats(-0.9, 0.9),

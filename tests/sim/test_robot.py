@@ -34,7 +34,7 @@ def test_a_preset_speeds_up_and_brakes_as_measured(name: str) -> None:
     assert world.time - start - late == pytest.approx(brake, rel=0.10)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     vx=st.floats(-10, 10),
     vy=st.floats(-10, 10),

@@ -147,7 +147,7 @@ def test_boxes_stay_inside_the_picture_and_apart() -> None:
             assert x >= u + w2 or u >= x + w or y >= v + h2 or v >= y + h
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.text(min_size=1, max_size=40))
 def test_any_name_can_be_drawn(name: str) -> None:
     root = Selector(name, memory=False, children=[Drive(name=name)])

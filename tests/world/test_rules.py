@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import copysign, cos, hypot, pi, radians, sin
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS, BallState, Frame, RobotId, RobotState, Team
@@ -171,7 +171,6 @@ def _compiled_goal(x0: float, y0: float, x1: float, y1: float) -> tuple[int, tup
     return side, leaving(x0, y0, x1, y1, FIELD_SIZE[0], FIELD_SIZE[1])
 
 
-@settings(deadline=None)  # the first call compiles
 @given(inside, anywhere)
 def test_compiled_code_decides_the_same(before: Point, after: Point) -> None:
     side = goal_side(*before, *after, *FIELD_SIZE)

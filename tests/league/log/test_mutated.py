@@ -42,7 +42,7 @@ def test_mutated_logs_are_replayed_or_refused(ending: str, tmp_path: Path) -> No
             # Half of them damaged before they are packed, half after.
             data = gzip.compress(data, 1) if number % 2 else mutated(gzip.compress(original, 1), rng)
         path.write_bytes(data)
-        begun = time.monotonic()
+        begun = time.process_time()
         try:
             for _ in read_log(path):
                 pass
@@ -51,6 +51,6 @@ def test_mutated_logs_are_replayed_or_refused(ending: str, tmp_path: Path) -> No
         except RobobtError as error:
             said = str(error)
             assert "\n" not in said
-        assert time.monotonic() - begun < 10.0
+        assert time.process_time() - begun < 10.0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
     print(f"{replayed} of {count(10_000)} were replayed")

@@ -31,13 +31,13 @@ def test_mutated_shots_are_read_or_refused(ending: str, tmp_path: Path) -> None:
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for _ in range(count(10_000)):
         path.write_bytes(mutated(original, rng))
-        begun = time.monotonic()
+        begun = time.process_time()
         try:
             read += read_shots(path).num_rows > 0
         except ShotDataError as error:
             said = str(error)
             assert said.startswith(str(path))
             assert "\n" not in said
-        assert time.monotonic() - begun < 10.0
+        assert time.process_time() - begun < 10.0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
     print(f"{read} of {count(10_000)} were read")

@@ -135,7 +135,7 @@ def test_the_judge_of_the_receivers_shot_goes_by_name_too() -> None:
 places = st.tuples(st.floats(-4.4, 4.4), st.floats(-2.9, 2.9))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(mates=st.lists(places, max_size=5), opponents=st.lists(places, max_size=6), ball=places)
 def test_passes_come_best_first_and_scores_are_shares(
     mates: list[tuple[float, float]], opponents: list[tuple[float, float]], ball: tuple[float, float]
@@ -152,7 +152,7 @@ def test_passes_come_best_first_and_scores_are_shares(
         assert hypot(each.target[0] - ball[0], each.target[1] - ball[1]) >= RATER.min_distance
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(mates=st.lists(places, min_size=1, max_size=3), opponents=st.lists(places, max_size=4), more=places)
 def test_one_opponent_more_improves_no_pass(
     mates: list[tuple[float, float]], opponents: list[tuple[float, float]], more: tuple[float, float]

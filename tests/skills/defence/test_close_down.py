@@ -57,7 +57,7 @@ def test_a_ball_behind_the_line_is_not_covered() -> None:
     assert Alone(CloseDown()).tick(frame(robot(-4.3, 0.0), (-4.6, 1.0))) is Status.FAILURE
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(-4.0, 1.5), st.floats(-2.0, 2.0))
 def test_it_is_always_nearer_to_the_goal_than_the_ball(x: float, y: float) -> None:
     me = settled((x, y))

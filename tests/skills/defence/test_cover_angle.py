@@ -36,7 +36,7 @@ def test_it_leaves_as_much_on_either_side() -> None:
     assert abs(to_me - left) == pytest.approx(abs(right - to_me), abs=0.02)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(-4.4, 4.0), st.floats(-2.9, 2.9))
 def test_it_never_asks_to_leave_the_area(x: float, y: float) -> None:
     me = settled((x, y), stand_out=2.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.optimize import linear_sum_assignment
@@ -14,7 +14,6 @@ from robobt.skills.tactics.assignment import assign
 SHAPES = st.tuples(st.integers(1, 8), st.integers(1, 8))
 
 
-@settings(deadline=None)  # the first call compiles
 @given(SHAPES.flatmap(lambda shape: arrays(np.float64, shape, elements=st.floats(-50.0, 50.0))))
 def test_no_other_shares_cost_less(cost: np.ndarray) -> None:
     pairs = assign(cost)

@@ -4,7 +4,7 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
@@ -59,7 +59,6 @@ def test_with_time_the_defenders_get_between() -> None:
 
 
 @given(st.floats(-1.0, 4.0), st.floats(-2.5, 2.5), st.floats(2.0, 4.4), st.floats(-1.0, 1.0))
-@settings(deadline=None)
 def test_left_and_right_are_alike(x: float, y: float, ox: float, oy: float) -> None:
     left = chance(x, y, movers([robot(ox, oy)]))
     assert chance(x, -y, movers([robot(ox, -oy)])) == pytest.approx(left, abs=1e-9)
@@ -72,7 +71,6 @@ def test_the_angle_of_a_redirect_lies_between_where_it_comes_from_and_the_goal()
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-1.0, 1.0))
-@settings(deadline=None)
 def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, wanted: float) -> None:
     heading = aim_of(cos(wanted), sin(wanted), vx, vy)
     sideways = cos(heading) * vy - sin(heading) * vx

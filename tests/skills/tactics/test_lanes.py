@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
@@ -30,7 +30,6 @@ BALL = ball_row(DEFAULT_BALL)
 
 
 @given(st.floats(0.5, 7.0), st.floats(0.5, 4.0))
-@settings(deadline=None)
 def test_kick_and_flight_are_those_of_the_ball_model(length: float, arrival: float) -> None:
     least, most = PASS_SPEEDS
     speed = kick_speed(length, arrival, BALL)
@@ -79,7 +78,6 @@ def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
 
 
 @given(st.floats(0.3, 2.7), st.floats(-2.0, 2.0))
-@settings(deadline=None)
 def test_both_sides_of_a_lane_are_alike(x: float, y: float) -> None:
     left, right = (
         lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)]), BALL) for side in (y, -y)
@@ -91,7 +89,6 @@ place, speed_along = st.floats(-4.0, 4.0), st.floats(-3.0, 3.0)
 
 
 @given(place, place, speed_along, speed_along, st.floats(0.0, 3.0))
-@settings(deadline=None)
 def test_whoever_cannot_pass_by_a_time_passes_later(
     x: float, y: float, vx: float, vy: float, time: float
 ) -> None:
@@ -103,7 +100,6 @@ def test_whoever_cannot_pass_by_a_time_passes_later(
 
 
 @given(st.floats(1.4, LONGEST_CHIP))
-@settings(deadline=None)
 def test_a_chipped_pass_rolls_at_its_target(length: float) -> None:
     speed = chip_speed(length, BALL)
     assert speed == pytest.approx(DEFAULT_BALL.chip_speed(length, CHIP_TOUCH_DOWNS))

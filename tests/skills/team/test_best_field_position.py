@@ -78,7 +78,7 @@ def test_it_stays_where_it_wanted_to_go_while_that_is_nearly_the_best() -> None:
 places = st.builds(lambda x, y: RobotState(0, x, y), st.floats(-4.5, 4.7), st.floats(-3.0, 3.0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(opponents=st.lists(places, max_size=6), me=places)
 def test_the_place_is_always_legal(opponents: list[RobotState], me: RobotState) -> None:
     x, y = target(frame(me, held(me), opponents=tuple(opponents)))

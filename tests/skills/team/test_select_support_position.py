@@ -84,7 +84,7 @@ def test_between_looks_the_target_stands() -> None:
 places = st.builds(lambda x, y: RobotState(0, x, y), st.floats(-4.5, 4.7), st.floats(-3.0, 3.0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     opponents=st.lists(places, max_size=6),
     mates=st.lists(places, max_size=4),

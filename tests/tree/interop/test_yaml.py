@@ -146,7 +146,7 @@ def test_values_of_all_kinds_are_saved_and_read_back(root: Behaviour) -> None:
     heading=st.none() | st.floats(allow_nan=False, allow_infinity=False),
     name=st.text(min_size=1, max_size=20).filter(lambda name: name.isprintable() and name.strip()),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_whatever_a_skill_is_made_from_is_saved_and_read_back(
     target: Any, heading: float | None, name: str
 ) -> None:

@@ -27,7 +27,7 @@ def integrated(speed: float, time: float, way: float, limits: RobotLimits) -> fl
     return at
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(speed=st.floats(0.0, 3.0), time=st.floats(0.01, 2.0))
 def test_the_extent_is_what_full_acceleration_either_way_reaches(speed: float, time: float) -> None:
     limits = RobotLimits(max_speed=2.0, acceleration=2.5, braking=4.0)

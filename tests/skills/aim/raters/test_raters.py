@@ -181,7 +181,7 @@ def reflected(robots: tuple[RobotState, ...]) -> tuple[RobotState, ...]:
 
 @pytest.mark.integration
 @each_rater
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     origin=origins,
     heading=st.floats(-3.0, 3.0),
@@ -218,7 +218,7 @@ def test_a_mirrored_scene_has_the_mirrored_shot(
 
 @pytest.mark.integration
 @each_rater
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(origin=origins, others=st.lists(robots, max_size=4), more=robots, is_mate=st.booleans())
 def test_one_robot_more_never_improves_the_best_score(
     name: str, origin: Point, others: list[RobotState], more: RobotState, is_mate: bool
@@ -234,7 +234,7 @@ def test_one_robot_more_never_improves_the_best_score(
 
 @pytest.mark.integration
 @each_rater
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(origin=origins, others=st.lists(robots, max_size=6))
 def test_shots_are_at_the_goal_and_scores_are_shares(
     name: str, origin: Point, others: list[RobotState]
