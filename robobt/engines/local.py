@@ -24,6 +24,9 @@ from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 _REACTION = 0.4
 """How long a worker that is told to end may take to finish its files [s]."""
 
+_LOOK = 1.0
+"""How often to look for workers whose end nothing shows: a process that they forked keeps it open [s]."""
+
 
 def run_locally(
     work: Work[TaskT, ReportT, ResultT],
@@ -56,10 +59,14 @@ def run_locally(
                     crew.append(_Worker(packed, setup, first))
         busy = {worker.connection: worker for worker in crew}
         while busy:
-            for ready in wait(list(busy)):
+            for ready in wait(list(busy), _LOOK) or [
+                answer for answer, worker in busy.items() if not worker.process.is_alive()
+            ]:
                 assert isinstance(ready, Connection)
                 worker = busy[ready]
                 try:
+                    if not ready.poll():
+                        raise EOFError
                     kind, content = ready.recv()
                 except (EOFError, OSError):
                     worker.process.join()

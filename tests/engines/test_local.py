@@ -1,5 +1,7 @@
 import os
+import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -22,6 +24,12 @@ def _square(task: int, report: Callable[[str], None]) -> int:
         raise LookupError("unlucky")
     if task == 99:
         os._exit(7)
+    if task == 98:
+        child = os.fork()
+        if not child:
+            time.sleep(600)
+        report(str(child))
+        os._exit(8)
     report(f"{task} squared")
     return task * task
 
@@ -82,6 +90,17 @@ def test_the_traceback_of_a_worker_comes_with_its_exception():
 def test_a_worker_that_dies_is_named_with_the_task_it_died_in():
     with pytest.raises(SquareError, match=r"^square of 99: its worker process died \(exit code 7\)$"):
         list(run_tasks(SQUARES, [99, 1], 2, ahead=2))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_a_worker_that_dies_is_noticed_though_a_process_that_it_forked_lives_on():
+    children: list[str] = []
+    died = pytest.raises(SquareError, match=r"^square of 98: its worker process died \(exit code 8\)$")
+    try:
+        with died:
+            list(run_tasks(SQUARES, [98], 2, on_report=children.append))
+    finally:
+        os.kill(int(children[0]), signal.SIGKILL)
 
 
 def test_workers_are_started_outside_the_main_thread_too():
