@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import multiprocessing
+import os
 import signal
 import subprocess
 import sys
@@ -16,8 +17,13 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from robobt.config.telling import OFTEN
+from robobt.signals import TERMINATE
 
 pytest_plugins = ("tests.limits",)
+
+# Terminals and services that run tests set these, and commands print otherwise.
+for _name in ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):
+    os.environ.pop(_name, None)
 
 # The same examples in every run, however long each takes on a busy machine.
 settings.register_profile(
@@ -54,7 +60,7 @@ def _the_log_as_it_was() -> Iterator[None]:
 @pytest.fixture
 def signals_of_a_terminal() -> Iterator[None]:
     """Signals end processes, also where nohup or a script's background has them ignored from the start."""
-    usual = {signal.SIGINT: signal.default_int_handler, signal.SIGHUP: signal.SIG_DFL}
+    usual = {signal.SIGINT: signal.default_int_handler, **dict.fromkeys(TERMINATE, signal.SIG_DFL)}
     before = {number: signal.signal(number, handler) for number, handler in usual.items()}
     yield
     for number, handler in before.items():

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from pathlib import Path
 
 import pytest
 
@@ -18,8 +15,6 @@ from robobt import signals
 from robobt.signals import TERMINATE, Terminated, check, ending, uninterrupted
 from tests.conftest import StartPython
 from tests.waiting import LIMIT
-
-ROOT = Path(__file__).resolve().parents[1]
 
 
 def send(number: int) -> None:
@@ -72,14 +67,6 @@ def test_a_hang_up_that_nohup_ignores_stays_ignored() -> None:
             check()
     finally:
         signal.signal(signal.SIGHUP, before)
-
-
-@pytest.mark.integration
-def test_tests_of_signals_pass_where_nohup_or_a_script_has_them_ignored() -> None:
-    tests = f"{__file__}::test_a_signal_to_terminate_ends_the_block_with_its_own_exit_status"
-    command = ["sh", "-c", 'trap "" HUP INT; exec "$0" -m pytest --patience 20 "$1"', sys.executable, tests]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stdout
 
 
 def test_a_signal_waits_for_the_end_of_what_must_be_whole() -> None:
