@@ -124,10 +124,11 @@ class BallTrack:
             return
         self._sliding = predict_ball(self._sliding, dt, self.settings)
         self._rolling = predict_ball(self._rolling, dt, self.settings)
-        shift_x, shift_y = self._covariance.settle(dt) or (0.0, 0.0)
-        for motion in (self._sliding, self._rolling):
-            motion.x += shift_x
-            motion.y += shift_y
+        shift = self._covariance.settle(dt)
+        if shift is not None:
+            for motion in (self._sliding, self._rolling):
+                motion.x += shift[0]
+                motion.y += shift[1]
         noise = _RESTING_NOISE if hypot(self.motion.vx, self.motion.vy) < _ROLLS else _ROLLING_NOISE
         noise = _PUSHED_NOISE if near_robot else noise + self._mismatch.level * _PUSHED_NOISE
         self._covariance.predict(noise, dt)

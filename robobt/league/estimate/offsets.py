@@ -25,8 +25,11 @@ _TOGETHER = 0.1
 _DRIFT = 0.02
 """Growth of an offset's variance, as a share of its first one [1/s]: it changes with the place."""
 
-_LEARNING_RATE = 0.01
-"""Least weight of one detection in a camera's mean offset."""
+_LEARNING_EVERY = 7
+"""Number of detections of an object after which means and position are adjusted; cameras take turns."""
+
+_LEARNING_RATE = 0.05
+"""Least weight of what one object shows in a camera's mean offset."""
 
 _SETTLING_TIME = 0.5
 """Time constant with which what all cameras of an object share goes into its position [s]."""
@@ -45,6 +48,11 @@ class MeanOffsets:
         self._axes = axes
         self._means: dict[int, list[float]] = {}
         self._counts: dict[int, int] = {}
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is known, as with a single camera."""
+        return not self._means
 
     def of(self, camera: int) -> list[float]:
         """Return a camera's mean offset, one entry per axis; zeros while it is unknown."""
@@ -67,7 +75,7 @@ class MeanOffsets:
 
 @dataclass(slots=True)
 class _Camera:
-    """A camera's offset from the object's position, and how often and when it last saw it [s]."""
+    """A camera's offset from the object's position, one entry per axis, and when and how often it saw it."""
 
     offset: list[float]
     seen: float
@@ -77,6 +85,9 @@ class _Camera:
 class OffsetCovariance:
     """Covariance of position, velocity and the cameras' offsets, equal for all axes, and those offsets.
 
+    The position is where the first camera sees the object, less that camera's offset, which is not estimated;
+    those of the others are estimated against it.
+
     Args:
         velocity_variance: of the first estimate; the position is unknown.
         spread: standard deviation of an offset about the camera's mean, in the unit of the position.
@@ -84,23 +95,24 @@ class OffsetCovariance:
     """
 
     def __init__(self, velocity_variance: float, spread: float, means: MeanOffsets) -> None:
-        # Rows and columns: position, velocity, then the cameras in their order.
+        # Rows and columns: position, velocity, then the cameras but the first, in their order.
         self._matrix = [[_ANYWHERE, 0.0], [0.0, velocity_variance]]
         self._cameras: dict[int, _Camera] = {}
-        self._spread, self._means = spread * spread, means
+        self._spread, self._means = 2.0 * spread * spread, means
         self._several = False
+        self._detections = 0
+        self._unsettled = 0.0
 
     def begin(self, camera: int, time: float, noise: float) -> list[float]:
         """Take in the first detection [s], with the variance of its noise; return the camera's offset."""
-        offset = self.offset(camera)
-        self.correct(camera, time, self.detection_variance(camera) + noise, [0.0] * len(offset))
-        return offset
+        self._add(camera, time)
+        self._matrix[0][0] = noise
+        return self.offset(camera)
 
     @property
     def position_variance(self) -> float:
-        """Variance of the position, of which the cameras' common offset, which nobody can see, is no part."""
-        last = max(self._cameras, key=lambda camera: self._cameras[camera].seen, default=None)
-        return self._matrix[0][0] if last is None else self.detection_variance(last)
+        """Variance of the position, the offset that all cameras share left out."""
+        return self._matrix[0][0]
 
     def offset(self, camera: int) -> list[float]:
         """Return a camera's offset, one entry per axis."""
@@ -110,50 +122,50 @@ class OffsetCovariance:
     def knows(self, camera: int) -> bool:
         """Return whether a camera's offset is known."""
         known = self._cameras.get(camera)
-        return known is not None and known.detections >= _DETECTIONS_KNOWN
+        return known is not None and (known.detections >= _DETECTIONS_KNOWN or self._row(camera) < 2)
 
     def detection_variance(self, camera: int) -> float:
         """Return the variance of where a camera is expected to see the object, without its noise."""
         m = self._matrix
-        if camera not in self._cameras:
-            return m[0][0] + self._spread
-        i = self._row(camera)
-        return m[0][0] + 2.0 * m[0][i] + m[i][i]
+        if camera in self._cameras:
+            i = self._row(camera)
+            return m[0][0] if i < 2 else m[0][0] + 2.0 * m[0][i] + m[i][i]
+        return m[0][0] + (self._spread if self._cameras else 0.0)
 
     def predict(self, noise: float, dt: float) -> None:
         """Grow over ``dt`` seconds under an acceleration noise, in the position's unit / s^2."""
-        m, size = self._matrix, len(self._matrix)
-        # Only differences drift: a drift that all cameras share would take up what is motion.
-        if self._several:
-            count = size - 2
-            for i in range(2, size):
-                for j in range(2, size):
-                    m[i][j] += _DRIFT * self._spread * dt * ((i == j) - 1.0 / count)
+        m = self._matrix
         q = noise * noise * dt * dt
-        for j in range(size):
-            m[0][j] += dt * m[1][j]
-        for j in range(size):
-            m[j][0] += dt * m[j][1]
-        m[0][0] += q * dt * dt / 4.0
-        m[0][1] += q * dt / 2.0
-        m[1][0] = m[0][1]
-        m[1][1] += q
+        position, velocity = m[0], m[1]
+        pv = position[1] + dt * velocity[1]
+        position[0] += dt * (position[1] + pv) + q * dt * dt / 4.0
+        position[1] = velocity[0] = pv + q * dt / 2.0
+        velocity[1] += q
+        for i in range(2, len(m)):
+            position[i] += dt * velocity[i]
+            m[i][0] = position[i]
+            if self._several:
+                m[i][i] += _DRIFT * self._spread * dt
 
-    def settle(self, dt: float) -> list[float]:
-        """Return what to add to the position, one entry per axis, after ``dt`` seconds.
+    def settle(self, dt: float) -> list[float] | None:
+        """Return what to add to the position, one entry per axis, after ``dt`` seconds; None for nothing.
 
         An offset that all cameras of an object share cannot be seen. It is moved into the position, towards
         the cameras' means, so that objects seen by different cameras stay in place to each other. No
         velocity comes of it.
         """
-        if not self._cameras:
-            return []
-        share = 1.0 - exp(-dt / _SETTLING_TIME)
+        self._unsettled += dt
+        if self._means.empty or self._detections % _LEARNING_EVERY:
+            return None
         apart = [
             [b - mean for b, mean in zip(known.offset, self._means.of(camera), strict=True)]
             for camera, known in self._cameras.items()
         ]
-        shift = [share * sum(axis) / len(apart) for axis in zip(*apart, strict=True)]
+        if not apart:
+            return None
+        share = (1.0 - exp(-self._unsettled / _SETTLING_TIME)) / len(apart)
+        self._unsettled = 0.0
+        shift = [share * sum(axis) for axis in zip(*apart, strict=True)]
         for known in self._cameras.values():
             known.offset = [b - part for b, part in zip(known.offset, shift, strict=True)]
         return shift
@@ -168,7 +180,7 @@ class OffsetCovariance:
         m[0][0] = max(m[0][0], square)
         # What was learned in the last moment may have been the beginning of the jump.
         for camera, known in self._cameras.items():
-            if known.detections < _DETECTIONS_KNOWN:
+            if not self.knows(camera):
                 known.offset, known.detections = self._means.of(camera), 0
                 self._clear(self._row(camera))
 
@@ -195,42 +207,62 @@ class OffsetCovariance:
         """
         known = self._cameras.get(camera) or self._add(camera, time)
         known.seen, known.detections = max(time, known.seen), known.detections + 1
-        m, i = self._matrix, self._row(camera)
-        column = [row[0] + row[i] for row in m]
+        self._detections += 1
+        m = self._matrix
+        if len(m) == 2:
+            (pp, pv), (_, vv) = m
+            k, g = pp / variance, pv / variance
+            m[0], m[1] = [pp - k * pp, pv - k * pv], [pv - k * pv, vv - g * pv]
+            return k, g
+        i = self._row(camera)
+        column = list(m[0]) if i < 2 else [a + b for a, b in zip(m[0], m[i], strict=True)]
         gains = [entry / variance for entry in column]
-        for row, gain in zip(m, gains, strict=True):
-            for j, entry in enumerate(column):
-                row[j] -= gain * entry
-        for each, gain in zip(self._cameras.values(), gains[2:], strict=True):
+        for j, gain in enumerate(gains):
+            m[j] = [entry - gain * each for entry, each in zip(m[j], column, strict=True)]
+        for gain, each in zip(gains[2:], list(self._cameras.values())[1:], strict=True):
             each.offset = [b + gain * e for b, e in zip(each.offset, innovation, strict=True)]
-        if len(self._cameras) > 1:
-            for other in [other for other, each in self._cameras.items() if each.seen < time - _FORGOTTEN]:
-                self._drop(other)
-            self._several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
+        if self._detections % _LEARNING_EVERY == 0:
+            self._look_round(time)
         return gains[0], gains[1]
 
+    def _look_round(self, time: float) -> None:
+        """Drop cameras that no longer see the object, and find out whether several do."""
+        for other in [other for other, each in self._cameras.items() if each.seen < time - _FORGOTTEN]:
+            self._drop(other)
+        self._several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
+
     def teach(self) -> None:
-        """Let the cameras' means learn from this object's offsets."""
-        if self._several:
+        """Let the cameras' means learn from this object's offsets, now and then."""
+        if self._several and self._detections % _LEARNING_EVERY == 0:
             known = {camera: each.offset for camera, each in self._cameras.items() if self.knows(camera)}
             if len(known) > 1:
                 self._means.learn(known)
 
     def _row(self, camera: int) -> int:
-        return 2 + list(self._cameras).index(camera)
+        """Return a camera's row; 1 for the first, whose offset is not estimated."""
+        return 1 + list(self._cameras).index(camera)
 
     def _add(self, camera: int, time: float) -> _Camera:
-        for row in self._matrix:
-            row.append(0.0)
-        self._matrix.append([0.0] * (len(self._matrix) + 1))
-        added = self._cameras[camera] = _Camera(self._means.of(camera), time)
-        self._clear(len(self._matrix) - 1)
+        added = _Camera(self._means.of(camera), time)
+        if self._cameras:
+            for row in self._matrix:
+                row.append(0.0)
+            self._matrix.append([0.0] * (len(self._matrix) + 1))
+            self._clear(len(self._matrix) - 1)
+            self._several = True
+        self._cameras[camera] = added
         return added
 
     def _drop(self, camera: int) -> None:
-        i = self._row(camera)
-        del self._cameras[camera], self._matrix[i]
-        for row in self._matrix:
+        m, i = self._matrix, self._row(camera)
+        if i < 2:
+            # The next one becomes the first, and the position is where that one sees the object.
+            i = 2
+            m[0] = [a + b for a, b in zip(m[0], m[i], strict=True)]
+            for row in m:
+                row[0] += row[i]
+        del self._cameras[camera], m[i]
+        for row in m:
             del row[i]
 
     def _clear(self, i: int) -> None:

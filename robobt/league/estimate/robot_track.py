@@ -115,11 +115,13 @@ class RobotTrack:
             return
         before = self.motion
         after = self.motion = predict_robot(before, self.time, time, commands, self.limits)
-        shift_x, shift_y = self._position.settle(dt)
-        after.x += shift_x
-        after.y += shift_y
-        (shift_heading,) = self._heading.settle(dt)
-        after.heading = wrap_angle(after.heading + shift_heading)
+        shift = self._position.settle(dt)
+        if shift is not None:
+            after.x += shift[0]
+            after.y += shift[1]
+        shift = self._heading.settle(dt)
+        if shift is not None:
+            after.heading = wrap_angle(after.heading + shift[0])
         acceleration = hypot(after.vx - before.vx, after.vy - before.vy) / dt
         turn_acceleration = abs(after.omega - before.omega) / dt
         self._position.predict(
