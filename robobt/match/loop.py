@@ -100,6 +100,7 @@ class Match:
             team: Lineup([player for player in self.players if player.robot.team is team], keepers.get(team))
             for team in Team
         }
+        self._kept = {team: KeptView() for team in Team}
         self._field = self.world.truth().field
         self.referee = referee(scenario, self._field)
         refereed = self.referee is not None or self.world.refereed
@@ -226,14 +227,18 @@ class Match:
         commands: dict[RobotId, RobotCommand] = {}
         halted = frame.game.halted
         # Both views before any tree is ticked, for they may share the frame's objects.
-        views = [(lineup, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
-        for lineup, everybody in views:
+        views = [(team, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
+        for team, everybody in views:
+            lineup, kept = self._lineups[team], self._kept[team]
             # A robot that has left is not there for the trees; it is still driven.
-            view, leaving = without_absent(everybody, everybody.game), lineup.follow(everybody)
+            view = without_absent(everybody, everybody.game)
+            kept.take(view)
+            leaving = lineup.follow(everybody)
+            # It may have interrupted skills, which can change what they saw before and this view has as well.
+            kept.mend()
             for me in everybody.own if leaving else ():
                 if me.id in leaving:
                     commands[lineup.players[me.id].robot] = leave(everybody, me, leaving)
-            kept = KeptView(view)
             for me in view.own:
                 player = lineup.players.get(me.id)
                 if player is None or me.id in leaving:

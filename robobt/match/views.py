@@ -3,49 +3,103 @@
 from __future__ import annotations
 
 from operator import attrgetter
+from typing import Any
 
+from robobt.world.game import GameState, TeamStatus
 from robobt.world.state import BallState, Frame, RobotState
 
 _FRAME = tuple(Frame.__dataclass_fields__)
 _BALL = tuple(BallState.__dataclass_fields__)
 _ROBOT = tuple(RobotState.__dataclass_fields__)
-_frame, _ball = attrgetter(*_FRAME), attrgetter(*_BALL)
+_GAME = tuple(GameState.__dataclass_fields__)
+_STATUS = tuple(TeamStatus.__dataclass_fields__)
+_frame, _ball, _game, _status = (
+    attrgetter(*_FRAME),
+    attrgetter(*_BALL),
+    attrgetter(*_GAME),
+    attrgetter(*_STATUS),
+)
 
 
 class KeptView:
-    """Notices and undoes what a tree has done to the view that it shares with its team-mates'."""
+    """Notices and undoes what a tree has done to the view that it shares with its team-mates'.
 
-    def __init__(self, view: Frame) -> None:
-        self._view, self._the_ball = view, view.ball
+    The game, the field and the limits are read-only and belong to the whole match, to both teams and to later
+    ticks; a skill can still change them by way of ``object.__setattr__`` or ``vars``.
+    """
+
+    def __init__(self) -> None:
+        self._settings: dict[int, Any] = {}
+        self._values: list[dict[str, Any]] = []
+        self._values_before: list[dict[str, Any]] = []
+
+    def take(self, view: Frame) -> None:
+        """Keep this view from now on."""
+        self._view, self._the_ball, self._game, self._made = view, view.ball, view.game, view.made
         self._robots = (*view.own, *view.opponents)
+        self._teams = view.game.blue, view.game.yellow
+        settings = {id(it.limits): it.limits for it in self._robots}
+        settings[id(view.field)], settings[id(view.ball_model)] = view.field, view.ball_model
+        if settings.keys() != self._settings.keys():
+            # They mostly stay the same objects for a whole match, and for several robots.
+            self._settings = settings
+            self._values = [vars(it) for it in settings.values()]
+            self._values_before = [dict(values) for values in self._values]
         self._before = self._read()
 
     def mend(self) -> bool:
         """Put back what was changed; whether anything was."""
         try:
-            if self._read() == self._before:
+            if self._read() == self._before and self._settings_hold():
                 return False
         except Exception:
             # An attribute was deleted, or has become what does not compare to a truth.
             pass
-        frame, ball, robots = self._before
+        frame, ball, robots, game, blue, yellow, _ = self._before
         _restore(self._view, _FRAME, frame)
         _restore(self._the_ball, _BALL, ball)
+        _restore(self._game, _GAME, game)
+        for status, values in zip(self._teams, (blue, yellow), strict=True):
+            _restore(status, _STATUS, values)
         for robot, values in zip(self._robots, robots, strict=True):
             _restore(robot, _ROBOT, values)
-        self._view.made.clear()
+        for now, before in zip(self._values, self._values_before, strict=True):
+            now.clear()
+            now.update(before)
+        self._made.clear()
+        self._view._made = self._made
         return True
 
-    def _read(self) -> tuple[tuple[object, ...], tuple[object, ...], list[tuple[object, ...]]]:
+    def _read(self) -> tuple[Any, ...]:
         # Far quicker than copies for every robot, and than comparing the objects. Written out, for there the
         # interpreter remembers where an attribute is found, which attrgetter looks up each time.
         robots: list[tuple[object, ...]] = [
             (it.id, it.x, it.y, it.heading, it.vx, it.vy, it.omega, it.ball_contact, it.limits)
             for it in self._robots
         ]
-        return _frame(self._view), _ball(self._the_ball), robots
+        blue, yellow = self._teams
+        view, game = self._view, self._game
+        return (
+            _frame(view),
+            _ball(self._the_ball),
+            robots,
+            _game(game),
+            _status(blue),
+            _status(yellow),
+            id(view.made),
+        )
+
+    def _settings_hold(self) -> bool:
+        if self._values == self._values_before:
+            return True
+        for now, before in zip(self._values, self._values_before, strict=True):
+            # They also keep there what they work out when it is first asked for.
+            if now != before and {key: now[key] for key in before} != before:
+                return False
+            before.update(now)
+        return True
 
 
 def _restore(target: object, names: tuple[str, ...], values: tuple[object, ...]) -> None:
     for name, value in zip(names, values, strict=True):
-        setattr(target, name, value)
+        object.__setattr__(target, name, value)

@@ -285,7 +285,16 @@ def _odd(frame: Frame) -> None:
     frame.ball.x = np.zeros(2)  # type: ignore[assignment]
 
 
-@pytest.mark.parametrize("spoil", [_replaces, _moves, _deletes, _odd])
+def _forces(frame: Frame) -> None:
+    """Change what refuses it, and belongs to the whole match."""
+    for part in (frame.game, frame.game.yellow, frame.field, frame.ball_model, frame.own[0].limits):
+        names = getattr(type(part), "__dataclass_fields__", None) or type(part).model_fields
+        for name in names:
+            object.__setattr__(part, name, "spoilt")
+    frame.made.clear()
+
+
+@pytest.mark.parametrize("spoil", [_replaces, _moves, _deletes, _odd, _forces])
 @pytest.mark.parametrize("team", ["blue", "yellow"])
 def test_a_skill_that_spoils_its_frame_spoils_nobody_elses(
     team: str, spoil: Callable[[Frame], None], caplog: pytest.LogCaptureFixture
