@@ -59,10 +59,11 @@ class Player:
         if runner.error is not None:
             self.problem = runner.error
             return None
-        fault = _fault_of(store.command)
+        command = getattr(store, "command", None)
+        fault = _fault_of(command)
         if fault is None:
-            return store.command
-        self.problem = f"{node_path(runner.root.tip() or runner.root)}: {fault}"
+            return command
+        self.problem = f"{node_path(runner.tip())}: {fault}"
         _log.warning("tree stopped: %s", self.problem)
         runner.stop()
         if runner.on_error == "raise":

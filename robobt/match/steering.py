@@ -23,7 +23,7 @@ from robobt.tree.leaf import Leaf
 from robobt.tree.namespace import within
 from robobt.tree.parameters import Parameter, check_parameters, parameters_of
 from robobt.tree.recording import node_ids
-from robobt.tree.runner import preorder
+from robobt.tree.walk import preorder
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle

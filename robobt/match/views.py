@@ -29,7 +29,7 @@ class KeptView:
     """
 
     def __init__(self) -> None:
-        self._settings: dict[int, Any] = {}
+        self._settings: dict[int, object] = {}
         self._values: list[dict[str, Any]] = []
         self._values_before: list[dict[str, Any]] = []
 
@@ -38,7 +38,7 @@ class KeptView:
         self._view, self._the_ball, self._game, self._made = view, view.ball, view.game, view.made
         self._robots = (*view.own, *view.opponents)
         self._teams = view.game.blue, view.game.yellow
-        settings = {id(it.limits): it.limits for it in self._robots}
+        settings: dict[int, object] = {id(it.limits): it.limits for it in self._robots}
         settings[id(view.field)], settings[id(view.ball_model)] = view.field, view.ball_model
         if settings.keys() != self._settings.keys():
             # They mostly stay the same objects for a whole match, and for several robots.
@@ -67,7 +67,7 @@ class KeptView:
             now.clear()
             now.update(before)
         self._made.clear()
-        self._view._made = self._made
+        _restore(self._view, ("_made",), (self._made,))
         return True
 
     def _read(self) -> tuple[Any, ...]:

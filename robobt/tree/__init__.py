@@ -26,6 +26,6 @@ from robobt.tree.leaf import bind as bind
 from robobt.tree.registry import Registry as Registry
 from robobt.tree.runner import TreeError as TreeError
 from robobt.tree.runner import TreeRunner as TreeRunner
-from robobt.tree.runner import node_path as node_path
-from robobt.tree.runner import preorder as preorder
 from robobt.tree.svg import tree_svg as tree_svg
+from robobt.tree.walk import node_path as node_path
+from robobt.tree.walk import preorder as preorder

@@ -13,7 +13,7 @@ from py_trees.behaviour import Behaviour
 from robobt.config.errors import RobobtError
 from robobt.tree.leaf import Entries, Leaf
 from robobt.tree.parameters import members_of
-from robobt.tree.runner import node_path, preorder
+from robobt.tree.walk import fault_of, node_path, preorder
 
 
 class WiringError(RobobtError, ValueError):
@@ -42,8 +42,11 @@ def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> Non
       that does not need it itself, or is given. In which order they are ticked is
       not looked at.
 
-    Entries that are ``given`` are filled in from outside the tree.
+    Entries that are ``given`` are filled in from outside the tree. Nodes that are no tree, as where one is
+    in two places, are a fault as well.
     """
+    if (fault := fault_of(root)) is not None:
+        raise WiringError([f"{node_path(fault[0])}: {fault[1]}"])
     nodes = preorder(root)
     written = set(given)
     for node in nodes:

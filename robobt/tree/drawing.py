@@ -14,8 +14,8 @@ from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Composite, Parallel, Selector, Sequence
 from py_trees.decorators import Decorator
 
-from robobt.tree.runner import preorder
 from robobt.tree.signatures import signature_of
+from robobt.tree.walk import preorder
 
 NodeKind = Literal["composite", "decorator", "leaf"]
 

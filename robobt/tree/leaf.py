@@ -12,6 +12,7 @@ from py_trees.common import Status
 
 from robobt.config.errors import short_repr
 from robobt.tree.signatures import signature_of
+from robobt.tree.walk import preorder
 
 StoreT = TypeVar("StoreT")
 
@@ -162,6 +163,6 @@ def no_status(answer: object) -> TypeError:
 
 def bind(root: Behaviour, store: object) -> None:
     """Give every :class:`Bound` node below ``root`` the store of the robot that runs the tree."""
-    for node in root.iterate():
+    for node in preorder(root):
         if isinstance(node, Bound):
             node.store = store

@@ -19,9 +19,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from robobt.tree.engine import Marks, ticked_children
-from robobt.tree.runner import TreeRunner, text_of
+from robobt.tree.runner import TreeRunner, status_letter, text_of
 
-_LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R", "INVALID": "-"}
 _SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
 """Classes whose own nodes give no feedback."""
 
@@ -193,7 +192,7 @@ class TreeChanges:
         if state.statuses is not None:
             before, self._before = self._before, state
             for place in compress(count(), map(is_not, state.statuses, before.statuses or ())):
-                self._raw[place] = _LETTERS[state.statuses[place]._value_]
+                self._raw[place] = status_letter(state.statuses[place])
                 # The feedback of a node without a status did not count before.
                 self._messages[place] = None
             letters = self._with_ticked(state)

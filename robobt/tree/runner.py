@@ -14,20 +14,9 @@ from py_trees.visitors import VisitorBase
 from robobt.config.errors import RobobtError
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
-
-MAX_DEPTH = 200
-"""Nodes from the root of a tree down; Python itself takes some hundreds."""
+from robobt.tree.walk import fault_of, node_path, preorder
 
 _log = logging.getLogger(__name__)
-
-
-def node_path(node: Behaviour) -> str:
-    """Return the names from the root to the node, joined by slashes."""
-    names = [node.name]
-    while node.parent is not None:
-        node = node.parent
-        names.append(node.name)
-    return "/".join(reversed(names))
 
 
 class TreeError(RobobtError, RuntimeError):
@@ -54,11 +43,12 @@ class TreeRunner:
         ticks: how often the tree has been ticked.
 
     Raises:
-        TreeError: the tree is more than :data:`MAX_DEPTH` nodes deep.
+        TreeError: the nodes are no tree, or one that is more than :data:`MAX_DEPTH` nodes deep.
     """
 
     def __init__(self, root: Behaviour, store: object, on_error: Literal["stop", "raise"] = "stop") -> None:
-        _check_depth(root)
+        if (fault := fault_of(root)) is not None:
+            raise TreeError(f"{node_path(fault[0])}: {fault[1]}")
         self.root = root
         self.on_error = on_error
         self.error: str | None = None
@@ -168,7 +158,15 @@ class TreeRunner:
 
     def statuses(self) -> str:
         """Return one letter for each node in the order of ``nodes``: S, F, R or - (not ticked)."""
-        return "".join([_LETTERS[node.status._value_] for node in self.nodes])
+        return "".join([status_letter(node.status) for node in self.nodes])
+
+    def tip(self) -> Behaviour:
+        """Return the node that decided the last tick, the root where none did."""
+        try:
+            return self.root.tip() or self.root
+        except Exception:
+            # A skill has changed the tree.
+            return self.root
 
     def stop(self) -> None:
         """End the run; running leaves are interrupted, and what they raise then is logged."""
@@ -196,6 +194,11 @@ class TreeRunner:
                 if not frame.f_globals.get("__name__", "").startswith(_ENGINES):
                     place = f" ({PurePath(frame.f_code.co_filename).name}:{trace.tb_lineno})"
             trace = trace.tb_next
+        if not place or isinstance(error, RecursionError):
+            # No skill raised it, so perhaps one has changed the tree.
+            fault = fault_of(self.root, shared=True)
+            if fault is not None:
+                return fault
         return node, f"{type(error).__name__}: {text_of(error)}{place}"
 
 
@@ -213,23 +216,10 @@ def text_of(said: object) -> str:
         return f"a {type(said).__name__} whose text is a {type(error).__name__}"
 
 
-def preorder(root: Behaviour) -> list[Behaviour]:
-    """Return every node below and including ``root``, parents before children."""
-    nodes, left = [], [root]
-    while left:
-        node = left.pop()
-        nodes.append(node)
-        left += reversed(node.children)
-    return nodes
+def status_letter(status: object) -> str:
+    """Return S, F or R, or - for INVALID and for what is no status, as a skill may have set it on a node."""
+    # By value: hashing an enum's member is a Python call, hashing its string is not.
+    return _LETTERS.get(getattr(status, "_value_", ""), "-")
 
 
-def _check_depth(root: Behaviour) -> None:
-    level = [root]
-    for _ in range(MAX_DEPTH):
-        level = [child for node in level for child in node.children]
-    if level:
-        raise TreeError(f"{root.name}: a tree may be {MAX_DEPTH} nodes deep, and this one is deeper")
-
-
-# By value: hashing an enum's member is a Python call, hashing its string is not.
-_LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R", "INVALID": "-"}
+_LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R"}

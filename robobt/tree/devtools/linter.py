@@ -11,7 +11,7 @@ from py_trees.decorators import Repeat, Retry
 from py_trees.decorators import Timeout as WallClockTimeout
 from py_trees.timers import Timer as WallClockTimer
 
-from robobt.tree.runner import node_path, preorder
+from robobt.tree.walk import node_path, preorder
 
 FOR_EVER = 1_000_000
 """So many times are no bound: at 60 Hz more than four hours."""

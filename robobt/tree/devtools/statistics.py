@@ -10,7 +10,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
-from robobt.tree.runner import node_path, preorder
+from robobt.tree.walk import node_path, preorder
 
 
 @dataclass(slots=True)

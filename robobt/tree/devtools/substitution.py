@@ -15,7 +15,7 @@ from py_trees.decorators import Decorator
 
 from robobt.config.yaml import MAX_BYTES, Marked, Scalar, parse_marked, read_limited
 from robobt.tree.interop.model import TreeFileError
-from robobt.tree.runner import node_path
+from robobt.tree.walk import node_path
 
 
 class ScriptedLeaf(Behaviour):

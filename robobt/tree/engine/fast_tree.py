@@ -10,6 +10,7 @@ from py_trees.trees import BehaviourTree
 
 from robobt.tree.engine.closures import INVALID, RUNNING, Tick
 from robobt.tree.engine.dispatch import compile_tree
+from robobt.tree.walk import postorder
 
 _log = logging.getLogger(__name__)
 
@@ -84,14 +85,21 @@ def abandon(root: Behaviour) -> None:
     left: BaseException | None = None
     # Children first, as composites stop; each is asked for itself, for a half-ticked
     # parent does not know that its child runs.
-    for node in root.iterate():
-        if node.status is RUNNING:
+    for node in postorder(root):
+        if getattr(node, "status", RUNNING) is RUNNING:
             try:
                 node.stop(INVALID)
             except LEAVING as error:
                 left = error
+            except RecursionError:
+                # Of its own descendants one is itself; what raised first has been told.
+                pass
             except BaseException:
-                _log.warning("%r raised again while its tree was being stopped", node.name, exc_info=True)
+                _log.warning(
+                    "%r raised again while its tree was being stopped",
+                    getattr(node, "name", None),
+                    exc_info=True,
+                )
         node.status = INVALID
     if left is not None:
         raise left

@@ -94,8 +94,8 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
 
     def renew() -> None:
         nonlocal decorated, tick_child, stop_child
+        tick_child, stop_child = compile_node(node.decorated, visit)
         decorated = node.decorated
-        tick_child, stop_child = compile_node(decorated, visit)
         if marks is not None:
             marks.change()
 

@@ -104,5 +104,7 @@ def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan
     known = {step.child.id: step for step in plan}
     if isinstance(visit, Marks):
         visit.change()
-    children[:] = node.children
-    plan[:] = [known.get(child.id) or Step(child, visit, node) for child in children]
+    now = list(node.children)
+    # Before anything is changed: where it raises, the next tick has to find that the children are others.
+    plan[:] = [known.get(child.id) or Step(child, visit, node) for child in now]
+    children[:] = now

@@ -8,7 +8,7 @@ from robobt.tree.interop.model import Definition, Node, TreeFile
 from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import ParameterError
-from robobt.tree.runner import node_path
+from robobt.tree.walk import node_path
 
 
 def describe_tree(root: Behaviour, vocabulary: Vocabulary, name: str) -> TreeFile:

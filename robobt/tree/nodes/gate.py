@@ -67,8 +67,8 @@ class Gate(Decorator):
 
         def renew() -> None:
             nonlocal child, tick_child, stop_child
+            tick_child, stop_child = compile_node(self.decorated, visit)
             child = self.decorated
-            tick_child, stop_child = compile_node(child, visit)
 
         def tick() -> Status:
             if self.decorated is not child:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 
 from robobt.tree.interop.vocabulary import NodeType, Vocabulary
-from robobt.tree.runner import node_path
+from robobt.tree.walk import node_path
 
 
 def tree_differences(one: Behaviour, other: Behaviour, vocabulary: Vocabulary) -> list[str]:

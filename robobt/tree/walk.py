@@ -1,0 +1,97 @@
+"""Walks over the nodes of a tree, and ends even where a skill has made something else of the tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.decorators import Decorator
+
+from robobt.config.errors import short_repr
+
+MAX_DEPTH = 200
+"""Nodes from the root of a tree down; Python itself takes some hundreds."""
+
+
+def node_path(node: Behaviour) -> str:
+    """Return the names from the root to the node, joined by slashes."""
+    names: list[str] = []
+    seen: set[int] = set()
+    above: object = node
+    while isinstance(above, Behaviour) and id(above) not in seen:
+        seen.add(id(above))
+        names.append(str(getattr(above, "name", type(above).__name__)))
+        above = getattr(above, "parent", None)
+    return "/".join(reversed(names))
+
+
+def preorder(root: Behaviour) -> list[Behaviour]:
+    """Return every node below and including ``root`` once, parents before children."""
+    nodes, left, seen = [], [root], set()
+    while left:
+        node = left.pop()
+        if id(node) not in seen:
+            seen.add(id(node))
+            nodes.append(node)
+            left += reversed(_nodes_below(node))
+    return nodes
+
+
+def postorder(root: Behaviour) -> list[Behaviour]:
+    """Return every node below and including ``root`` once, children before parents."""
+    nodes, seen = [], {id(root)}
+    way = [(root, iter(_nodes_below(root)))]
+    while way:
+        below = way[-1][1]
+        child = next((each for each in below if id(each) not in seen), None)
+        if child is None:
+            nodes.append(way.pop()[0])
+        else:
+            seen.add(id(child))
+            way.append((child, iter(_nodes_below(child))))
+    return nodes
+
+
+def fault_of(root: Behaviour, shared: bool = False) -> tuple[Behaviour, str] | None:
+    """Return a node and what keeps the nodes below ``root`` from being a tree; None for a tree.
+
+    A node in two places is no fault where ``shared`` says so.
+    """
+    parents: dict[int, Behaviour | None] = {id(root): None}
+    way: list[tuple[Behaviour, Iterator[object]]] = [(root, iter(_children_of(root)))]
+    above = {id(root)}
+    while way:
+        node, below = way[-1]
+        child = next(below, way)
+        if child is way:
+            above.discard(id(way.pop()[0]))
+        elif not isinstance(child, Behaviour):
+            return node, f"one of its children is no node: {short_repr(child)}"
+        elif id(child) in above:
+            return child, "is its own descendant"
+        elif id(child) in parents:
+            if shared:
+                continue
+            one = parents[id(child)]
+            where = "twice" if one is node or one is None else f"of {node_path(one)!r} and"
+            return child, f"is a child {where} of {node_path(node)!r}; make a node for each place"
+        elif len(way) == MAX_DEPTH:
+            return root, f"a tree may be {MAX_DEPTH} nodes deep, and this one is deeper"
+        else:
+            parents[id(child)] = node
+            above.add(id(child))
+            way.append((child, iter(_children_of(child))))
+    return None
+
+
+def _children_of(node: Behaviour) -> list[object]:
+    found = getattr(node, "children", ())
+    children: list[object] = list(found) if isinstance(found, list | tuple) else [found]
+    # What a decorator ticks; its list of children says the same until somebody changes one of them.
+    if isinstance(node, Decorator) and hasattr(node, "decorated"):
+        children += [] if any(child is node.decorated for child in children) else [node.decorated]
+    return children
+
+
+def _nodes_below(node: Behaviour) -> list[Behaviour]:
+    return [child for child in _children_of(node) if isinstance(child, Behaviour)]
