@@ -14,7 +14,7 @@ import numpy as np
 from robobt.match.capture import MatchCapture
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
-from robobt.match.players import Player, make_players
+from robobt.match.players import Player, make_players, shut_down
 from robobt.match.recording.capture import Capture
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
@@ -27,6 +27,7 @@ from robobt.signals import check, let_go
 from robobt.skills.aim.raters.shot_predictor import load_shot_predictors
 from robobt.skills.ball.learned_control import load_shipped_policies
 from robobt.tree import Behaviour, TreeRunner
+from robobt.tree.namespace import within
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -111,7 +112,11 @@ class Match:
         self._spoilers: set[RobotId] = set()
         self._time = 0.0
         path = None if record is None else Path(record)
-        self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
+        try:
+            self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
+        except BaseException:
+            shut_down(self.players)
+            raise
 
     def __repr__(self) -> str:
         standing = "playing" if self.outcome is None else self.outcome.value
@@ -140,8 +145,10 @@ class Match:
     def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
         """Let the robot of ``player`` play another tree from now on; ``play`` is what that is called."""
         before = player.runner
+        with within(player.names):
+            player.runner = TreeRunner(tree, player.store, before.on_error)
         before.stop()
-        player.runner = TreeRunner(tree, player.store, before.on_error)
+        before.shutdown()
         self._captured.change_tree(before, player, play)
 
     def __enter__(self) -> Self:
@@ -151,13 +158,14 @@ class Match:
         self.close()
 
     def close(self) -> None:
-        """Let go of the referee and finish the recording; or use it in ``with``."""
+        """Let go of the referee, finish the recording and shut the trees down; or use it in ``with``."""
         let_go()
         if self.referee is not None:
             self.referee.close()
         scores = self._judge.scores
         told: dict[str, object] = {"blue": scores[Team.BLUE], "yellow": scores[Team.YELLOW]}
         self._captured.close(None if self.outcome is None else {"outcome": self.outcome.value, **told})
+        shut_down(self.players)
 
     def tick(self) -> bool:
         """Play one control period; return False when the match is over, in which case nobody has acted.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from robobt.config.errors import one_line, short_repr
@@ -72,14 +72,27 @@ class Player:
 
 
 def make_players(scenario: Scenario, start: Frame) -> list[Player]:
-    """Build every robot's tree and store, in the order of teams and scenario."""
+    """Build every robot's tree and store, and set the trees up, in the order of teams and scenario."""
     teams = {team: TeamStore() for team in Team}
-    players = []
-    for robot, setup in scenario.robots:
-        store = Store(start, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
-        runner = TreeRunner(setup.build_tree(), store, scenario.on_error)
-        players.append(Player(robot, runner, store, names=setup.owner()))
+    players: list[Player] = []
+    try:
+        for robot, setup in scenario.robots:
+            store = Store(start, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
+            tree, names = setup.build_tree(), setup.owner()
+            with within(names):
+                runner = TreeRunner(tree, store, scenario.on_error)
+            players.append(Player(robot, runner, store, names=names))
+    except BaseException:
+        shut_down(players)
+        raise
     return players
+
+
+def shut_down(players: Iterable[Player]) -> None:
+    """Shut down the trees of all players."""
+    for player in players:
+        with within(player.names):
+            player.runner.shutdown()
 
 
 def _fault_of(command: object) -> str | None:

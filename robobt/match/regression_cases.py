@@ -255,8 +255,9 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
     if player is None:
         raise RegressionCaseError(f"{recording.path}: {robot} is not in the scenario")
     commands: dict[RobotId, RobotCommand] = {}
-    for now in range(tick + 1):
-        commands = match.decide(recording.observation(now))
+    with match:
+        for now in range(tick + 1):
+            commands = match.decide(recording.observation(now))
     nodes = player.runner.nodes
     paths = [path for _, path in node_ids(nodes)]
     letters = zip(paths, player.runner.statuses(), strict=True)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import PurePath
 from typing import Literal
 
@@ -14,7 +15,7 @@ from py_trees.visitors import VisitorBase
 from robobt.config.errors import RobobtError
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
-from robobt.tree.walk import fault_of, node_path, preorder
+from robobt.tree.walk import fault_of, node_path, postorder, preorder
 
 _log = logging.getLogger(__name__)
 
@@ -24,12 +25,13 @@ class TreeError(RobobtError, RuntimeError):
 
 
 class TreeRunner:
-    """A tree bound to one store.
+    """A tree bound to one store, each of whose nodes has been set up once by its ``setup()``.
 
     What a node raises fails it and stops this tree: running nodes are interrupted, the node has
     FAILURE and the exception as its feedback, every other one INVALID, ``error`` says what
     happened and where, and the next tick starts from the root again. Only what ends the
-    program (SystemExit, KeyboardInterrupt) goes on, with the tree at rest.
+    program (SystemExit, KeyboardInterrupt) goes on, with the tree at rest. A tree of which a node raised
+    in ``setup()`` fails at every tick for that reason.
 
     Args:
         root: the tree.
@@ -58,8 +60,11 @@ class TreeRunner:
         self._stock = False
         self._visitor: VisitorBase | None = None
         self._marks: Marks | None = None
+        self._unready: Callable[[], BaseException] | None = None
+        self._set_up: list[Behaviour] = []
         bind(root, store)
         self._tick = compile_tree(root)
+        self._setup()
 
     def tick(self) -> Status:
         """Tick the tree once and return its root's status, INVALID when a node raised.
@@ -85,6 +90,31 @@ class TreeRunner:
             _log.warning("tree stopped: %s", self.error, exc_info=_log.isEnabledFor(logging.DEBUG))
             return Status.INVALID
         return self.root.status
+
+    def _setup(self) -> None:
+        """Set up every node, children first as py_trees does, up to one that raises."""
+        for node in postorder(self.root):
+            try:
+                node.setup()
+            except LEAVING:
+                self.shutdown()
+                raise
+            except BaseException as error:
+                self._unready = partial(error.with_traceback, error.__traceback__)
+                self._renew()
+                return
+            self._set_up.append(node)
+
+    def shutdown(self) -> None:
+        """Shut down, by their ``shutdown()``, the nodes that were set up; what one raises is logged."""
+        nodes, self._set_up = self._set_up, []
+        for node in nodes:
+            try:
+                node.shutdown()
+            except LEAVING:
+                raise
+            except BaseException as error:
+                _log.warning("%s: %s", node_path(node), self._raiser(error)[1])
 
     def _fail(self, error: BaseException) -> None:
         """Bring the tree to rest, with the node that raised as the one that failed."""
@@ -117,6 +147,9 @@ class TreeRunner:
 
     def _renew(self) -> None:
         """Compile the tree for whoever watches its nodes."""
+        if self._unready is not None:
+            self._tick = self._raise
+            return
         visitor, marks = self._visitor, self._marks
         visit: Visit | None = marks
         if visitor is not None:
@@ -156,6 +189,11 @@ class TreeRunner:
 
         return tick
 
+    def _raise(self) -> Status:
+        """Tick a tree that could not be set up."""
+        assert self._unready is not None
+        raise self._unready()
+
     def statuses(self) -> str:
         """Return one letter for each node in the order of ``nodes``: S, F, R or - (not ticked)."""
         return "".join([status_letter(node.status) for node in self.nodes])
@@ -188,9 +226,9 @@ class TreeRunner:
         trace = error.__traceback__
         while trace is not None:
             frame = trace.tb_frame
-            candidate = frame.f_locals.get("self", frame.f_locals.get("node"))
-            if isinstance(candidate, Behaviour):
-                node = candidate
+            candidates = [frame.f_locals.get(name) for name in ("self", "node")]
+            if behaviours := [each for each in candidates if isinstance(each, Behaviour)]:
+                node = behaviours[0]
                 if not frame.f_globals.get("__name__", "").startswith(_ENGINES):
                     place = f" ({PurePath(frame.f_code.co_filename).name}:{trace.tb_lineno})"
             trace = trace.tb_next

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.opponents.play_settings import PlaySettings
-from robobt.match.players import Player
+from robobt.match.players import Player, shut_down
 from robobt.sim.arenas import Arenas
 from robobt.sim.world import command_row, robot_states
 from robobt.skills.store import Store, TeamStore
@@ -55,6 +55,7 @@ class PlayedRobots:
         for arena in which.tolist():
             self._ticks[arena] = 0
             frame, teams = self._frame(arenas, arena), {team: TeamStore() for team in Team}
+            shut_down(self._players[arena].values())
             self._players[arena] = {}
             for index, play in self._plays.items():
                 blue = len(self._blue)

@@ -76,6 +76,8 @@ class SkillTeacher:
         for arena in which.tolist():
             self._ticks[arena] = 0
             frame = self._frame(arena)
+            if arena in self._runners:
+                self._runners[arena][0].shutdown()
             store = Store(frame, frame.own[0])
             self._runners[arena] = (TreeRunner(self._make(), store, on_error="raise"), store)
 

@@ -9,7 +9,7 @@ and defines ``make_store`` and ``before_tick`` anew where leaves work on a store
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from types import SimpleNamespace
 from typing import Any, Protocol
 
@@ -61,12 +61,14 @@ def before_tick() -> Callable[[Any, Any], None]:
 
 
 @pytest.fixture
-def tick_on(make_store: Callable[..., Any], before_tick: Callable[[Any, Any], None]) -> TickOn:
+def tick_on(make_store: Callable[..., Any], before_tick: Callable[[Any, Any], None]) -> Iterator[TickOn]:
     """Return a function that ticks a leaf or a tree on frames, see :class:`TickOn`."""
     runners: dict[Behaviour, tuple[TreeRunner, Any]] = {}
 
     def tick(tree: Behaviour, frames: Iterable[object], store: object = None) -> list[Status]:
         if tree not in runners or store is not None:
+            if tree in runners:
+                runners[tree][0].shutdown()
             own = make_store() if store is None else store
             runners[tree] = (TreeRunner(tree, own, on_error="raise"), own)
         runner, own = runners[tree]
@@ -76,4 +78,6 @@ def tick_on(make_store: Callable[..., Any], before_tick: Callable[[Any, Any], No
             statuses.append(runner.tick())
         return statuses
 
-    return tick
+    yield tick
+    for runner, _ in runners.values():
+        runner.shutdown()
