@@ -11,10 +11,11 @@ from typing import Self
 
 import numpy as np
 
+from robobt.config.process import OwnProcess
 from robobt.match.capture import MatchCapture
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
-from robobt.match.players import Player, make_players, shut_down
+from robobt.match.players import Player, make_players, run_tree, shut_down
 from robobt.match.recording.capture import Capture
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
@@ -26,8 +27,7 @@ from robobt.match.views import KeptView
 from robobt.signals import check, let_go
 from robobt.skills.aim.raters.shot_predictor import load_shot_predictors
 from robobt.skills.ball.learned_control import load_shipped_policies
-from robobt.tree import Behaviour, TreeRunner
-from robobt.tree.namespace import within
+from robobt.tree import Behaviour
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -109,9 +109,10 @@ class Match:
         self._judge = EndJudge(scenario, refereed, self.world.scenario_ends)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
-        self._spoilers: set[RobotId] = set()
+        self._spoilers: set[tuple[RobotId, str]] = set()
         self._time = 0.0
-        path = None if record is None else Path(record)
+        # A recording may go on in another file later, whatever the working folder is then.
+        path = None if record is None else Path(record).absolute()
         try:
             self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
         except BaseException:
@@ -145,8 +146,7 @@ class Match:
     def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
         """Let the robot of ``player`` play another tree from now on; ``play`` is what that is called."""
         before = player.runner
-        with within(player.names):
-            player.runner = TreeRunner(tree, player.store, before.on_error)
+        player.runner = run_tree(player.robot, tree, player.store, before.on_error, player.names)
         before.stop()
         before.shutdown()
         self._captured.change_tree(before, player, play)
@@ -233,6 +233,7 @@ class Match:
         A robot that is not seen is not ticked and stands still.
         """
         commands: dict[RobotId, RobotCommand] = {}
+        process = OwnProcess()
         halted = frame.game.halted
         # Both views before any tree is ticked, for they may share the frame's objects.
         views = [(team, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
@@ -251,10 +252,14 @@ class Match:
                 player = lineup.players.get(me.id)
                 if player is None or me.id in leaving:
                     continue
-                command = player.decide(view, me)
-                if kept.mend() and player.robot not in self._spoilers:
-                    self._spoilers.add(player.robot)
-                    _log.warning("%s: a skill changes its frame, which was put right again", player.robot)
+                try:
+                    command = player.decide(view, me)
+                finally:
+                    strayed = process.hold()
+                if kept.mend():
+                    self._complain(player.robot, "its frame")
+                if strayed:
+                    self._complain(player.robot, "the working folder")
                 if command is None:
                     self._note_failure(player)
                     command = RobotCommand()
@@ -263,6 +268,11 @@ class Match:
             # Whatever the trees make of it: not every play asks the referee.
             return {robot: RobotCommand() for robot in commands}
         return commands
+
+    def _complain(self, robot: RobotId, of: str) -> None:
+        if (robot, of) not in self._spoilers:
+            self._spoilers.add((robot, of))
+            _log.warning("%s: a skill changes %s, which was put right again", robot, of)
 
     def _carry(self, frame: Frame) -> None:
         """Do what handlers do with robots that have left the field or come back."""

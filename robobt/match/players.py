@@ -5,11 +5,13 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Literal
 
 from robobt.config.errors import one_line, short_repr
+from robobt.config.process import users_code
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
-from robobt.tree import TreeError, TreeRunner, node_path
+from robobt.tree import Behaviour, TreeError, TreeRunner, node_path
 from robobt.tree.namespace import Namespace, within
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
@@ -79,8 +81,7 @@ def make_players(scenario: Scenario, start: Frame) -> list[Player]:
         for robot, setup in scenario.robots:
             store = Store(start, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
             tree, names = setup.build_tree(), setup.owner()
-            with within(names):
-                runner = TreeRunner(tree, store, scenario.on_error)
+            runner = run_tree(robot, tree, store, scenario.on_error, names)
             players.append(Player(robot, runner, store, names=names))
     except BaseException:
         shut_down(players)
@@ -88,10 +89,18 @@ def make_players(scenario: Scenario, start: Frame) -> list[Player]:
     return players
 
 
+def run_tree(
+    robot: RobotId, tree: Behaviour, store: Store, on_error: Literal["stop", "raise"], names: Namespace | None
+) -> TreeRunner:
+    """Set up a robot's tree, which looks things up in ``names`` first, and return what runs it."""
+    with within(names), users_code(str(robot)):
+        return TreeRunner(tree, store, on_error)
+
+
 def shut_down(players: Iterable[Player]) -> None:
     """Shut down the trees of all players."""
     for player in players:
-        with within(player.names):
+        with within(player.names), users_code(str(player.robot)):
             player.runner.shutdown()
 
 

@@ -19,6 +19,7 @@ from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
+from robobt.config.process import users_code
 from robobt.plays.python_files import import_files, imported_files, problem_of
 from robobt.plays.sources import NOBODYS, Sources, read_sources
 from robobt.tree.namespace import Namespace, within
@@ -67,7 +68,7 @@ class PrivateFiles(Namespace):
         for file, name in zip(shown, sources.entries, strict=True):
             try:
                 # What it prints must not end up among a command's figures.
-                with redirect_stdout(sys.stderr):
+                with redirect_stdout(sys.stderr), users_code(file):
                     import_module(f"{self.package}.{name}")
             except (Exception, SystemExit) as error:
                 for known in [known for known in sys.modules if f"{known}.".startswith(f"{self.package}.")]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from zlib import crc32
 
+from robobt.config.process import users_code
 from robobt.plays.base import PLAYS
 from robobt.plays.sources import PythonFileError, read_python
 from robobt.skills import SKILLS
@@ -59,7 +60,7 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
     undo = [registry.undo_point() for registry in (PLAYS, SKILLS, RATERS, POLICIES)]
     try:
         # What it prints must not end up among a command's figures.
-        with redirect_stdout(sys.stderr):
+        with redirect_stdout(sys.stderr), users_code(shown):
             exec(compile(source, str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
         del sys.modules[module.__name__]

@@ -13,6 +13,7 @@ from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
 from robobt.config.errors import RobobtError
+from robobt.signals import Terminated
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
 from robobt.tree.walk import fault_of, node_path, postorder, preorder
@@ -78,7 +79,10 @@ class TreeRunner:
             self._failed.feedback_message, self._failed = "", None
         try:
             self._tick()
-        except LEAVING:
+        except LEAVING as error:
+            if isinstance(error, SystemExit) and not isinstance(error, Terminated):
+                node, said = self._raiser(error)
+                _log.error("%s ends the program: %s", node_path(node), said)
             # Whoever goes on after it finds a tree at rest.
             abandon(self.root)
             raise

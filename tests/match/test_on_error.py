@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
@@ -11,8 +13,9 @@ from robobt.match import RunError, Scenario, ScenarioError, run_trials
 from robobt.match.loop import Match
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import scenario_from
-from robobt.tree import TreeError
-from tests.match.scripted import PlainWorld, data
+from robobt.signals import Terminated
+from robobt.tree import Sequence, Status, TreeError, TreeRunner
+from tests.match.scripted import PlainWorld, Scripted, data
 
 
 def breaking(breaks: str, **changes: Any) -> Scenario:
@@ -77,3 +80,24 @@ def test_a_skill_that_ends_the_program_ends_the_match_and_its_recording_is_kept(
     with pytest.raises(SystemExit), match:
         match.tick()
     assert len(load_recording(path)) == 1
+
+
+class Leaves(Scripted):
+    def on_running(self) -> Status:
+        sys.exit("enough")
+
+
+def test_a_skill_that_ends_the_program_is_named(caplog: pytest.LogCaptureFixture) -> None:
+    runner = TreeRunner(Sequence("root", False, [Leaves(speed=1.0, kick=0.0, breaks="")]), None)
+    with pytest.raises(SystemExit, match="enough"):
+        runner.tick()
+    assert "root/Leaves ends the program: SystemExit: enough (test_on_error.py:" in caplog.text
+
+
+def test_a_signal_that_arrives_in_a_skill_is_not_the_skills(caplog: pytest.LogCaptureFixture) -> None:
+    leaf = Leaves(speed=1.0, kick=0.0, breaks="")
+    for leaving in (Terminated(15), KeyboardInterrupt()):
+        leaf.on_running = Mock(side_effect=leaving)  # type: ignore[method-assign]
+        with pytest.raises(type(leaving)):
+            TreeRunner(leaf, None).tick()
+    assert caplog.text == ""

@@ -201,3 +201,14 @@ def test_what_a_file_prints_is_no_figure(tmp_path: Path, capsys: pytest.CaptureF
     import_file(tmp_path / "talks.py")
     said = capsys.readouterr()
     assert (said.out, said.err) == ("", "hello\n")
+
+
+def test_a_file_that_changes_the_working_folder_changes_nobody_elses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "strays.py"
+    file.write_text("import os\nos.chdir('/')\n")
+    import_file(file)
+    assert Path.cwd() == tmp_path
+    assert "strays.py changes the working folder" in caplog.text

@@ -9,6 +9,7 @@ from typing import Self
 from pydantic import BaseModel, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from robobt.config.errors import FieldError, RobobtError, message_of
+from robobt.config.process import users_code
 from robobt.config.validation import first_problem
 from robobt.match.scenario.starts import Part, RobotStart
 from robobt.plays.files import find_play, problem_with_play
@@ -100,7 +101,8 @@ class RobotSetup(Part):
         """Build a new tree of this robot's play."""
         with within(self.owner()):
             builder = find_play(self.play)
-            tree = builder(**check_parameters(self.play, builder, self.params))
+            with users_code(self.play):
+                tree = builder(**check_parameters(self.play, builder, self.params))
         if not self.substitute:
             return tree
         try:
