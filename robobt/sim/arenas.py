@@ -94,12 +94,11 @@ class Arenas:
                 space.collision_slop = SLOP
             self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
         self._buffer = BodyBuffer(self._spaces, count + 1) if self._spaces else None
+        self.balls = np.zeros((n, 4))
         self._rows = np.zeros((n * (count + 1), ROW)) if self._buffer is None else self._buffer.rows
-        self._arena_rows = self._rows.reshape(n, -1, ROW)
         self._arena_rows[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
         self._calls = NO_CALLS if self._buffer is None else self._buffer.calls
         self.robots = np.zeros((n, count, 6))
-        self.balls = np.zeros((n, 4))
         self.flight = np.zeros((n, FLIGHT))
         self.contact: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
         self.kicked: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
@@ -127,6 +126,11 @@ class Arenas:
         self.late = delay >= self.sub_steps
         # The command in force before the switch, the one after it, and those still on their way.
         self._pipeline = [np.zeros((n, count, COMMAND)) for _ in range(delay // self.sub_steps + 2)]
+
+    @property
+    def _arena_rows(self) -> FloatArray:
+        # Not kept: in a copy, or unpickled, it would be an array of its own.
+        return self._rows.reshape(len(self.balls), -1, ROW)
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
         """Set arenas up anew: positions and velocities, no command on its way.

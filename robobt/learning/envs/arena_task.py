@@ -100,6 +100,11 @@ class ArenaTask(ABC):
         return [self.settings.robot_limits]
 
     @property
+    def _progress_rows(self) -> FloatArray:
+        # Not kept: in a copy, or unpickled, it would be an array of its own.
+        return self._progress.view(np.float64).reshape(self.n, -1)
+
+    @property
     def ticks(self) -> FloatArray:
         """How long each arena's episode has gone on, (n,)."""
         ticks: FloatArray = self._progress["ticks"]
@@ -229,7 +234,6 @@ class ArenaTask(ABC):
         self._commands = np.zeros((n, robots, COMMAND))
         self._filled = np.zeros((n * len(self.learners), COMMAND))
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
-        self._progress_rows: FloatArray = self._progress.view(np.float64).reshape(n, -1)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)
         self.ended = None

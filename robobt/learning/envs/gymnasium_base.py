@@ -15,6 +15,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.config.errors import one_line, short_repr
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, StepResult
@@ -70,6 +71,10 @@ class Stepped(Protocol):
         """See :meth:`ArenaTask.advance`."""
 
 
+def _nowhere(_: TaskSettings) -> None:
+    return None
+
+
 @dataclass(frozen=True)
 class EnvKind:
     """What Gymnasium has to know of a task.
@@ -84,7 +89,7 @@ class EnvKind:
     task: Callable[[Any, int], Stepped]
     settings: type[TaskSettings]
     space: Callable[[Any], Box[np.float32]]
-    reach: Callable[[Any], float | None] = lambda _: None
+    reach: Callable[[Any], float | None] = _nowhere
 
 
 class _OverArenas:
@@ -106,12 +111,40 @@ class _OverArenas:
         return self.kind.space(self.task.settings)
 
     def _need_reset(self, what: str) -> None:
-        if not self._begun:
-            raise gymnasium.error.ResetNeeded(f"call reset before {what}")
+        need_reset(self._begun, what)
 
     def _picture(self, arena: int, *trails: Sequence[Point]) -> Picture:
         self._need_reset("render")
         return picture_of(self.task, arena, self._reach, *trails)
+
+
+def need_reset(begun: bool, what: str, over: bool = False) -> None:
+    """Raise where a call needs an episode and there is none.
+
+    Raises:
+        ResetNeeded: none has begun, or the last one is ``over``.
+    """
+    if over:
+        raise gymnasium.error.ResetNeeded(f"the episode is over; call reset before {what}")
+    if not begun:
+        raise gymnasium.error.ResetNeeded(f"call reset before {what}")
+
+
+def checked_action(action: ArrayLike, size: int, whose: str = "the action") -> FloatArray:
+    """Return an action of ``size`` finite numbers, (size,); ``whose`` it is stands in the error.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    try:
+        given = np.asarray(action, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{whose} must be {size} numbers, not {one_line(short_repr(action))}") from None
+    if given.size != size:
+        raise ValueError(f"{whose} must have the shape {(size,)}, not {given.shape}")
+    if not np.isfinite(given).all():
+        raise ValueError(f"{whose} is not finite: {short_repr(given.tolist())}")
+    return given.reshape(size)
 
 
 @cache
@@ -141,6 +174,7 @@ class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
     ) -> None:
         self.observation_space = self._set_up(settings, 1, render_mode)
         self.action_space = _action_space(self.task)
+        self._over = False
         self._robot_trail: deque[Point] = deque(maxlen=_TRAIL)
         self._ball_trail: deque[Point] = deque(maxlen=_TRAIL)
 
@@ -165,7 +199,7 @@ class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
             observation = self.task.reset(seed)
         else:
             observation = self.task.restart()
-        self._begun = True
+        self._begun, self._over = True, False
         self._robot_trail.clear()
         self._ball_trail.clear()
         self._leave_trail()
@@ -176,12 +210,17 @@ class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
 
         Its keys: ``is_success``, ``time`` [s], ``optimum`` (the straight line's
         time [s], nan without one), ``kick_time`` (nan without a kick [s]).
+
+        Raises:
+            ResetNeeded: no episode has begun, or it is over.
+            ValueError: the action has another shape, or is not finite.
         """
-        self._need_reset("step")
-        result = self.task.advance(np.asarray(action, dtype=np.float64).reshape(1, -1))
+        need_reset(self._begun, "step", self._over)
+        result = self.task.advance(checked_action(action, self.task.action_size)[None])
         if self.render_mode is not None:
             self._leave_trail()
         ended = self.task.ended
+        self._over = ended is not None
         return (
             result.observation[0].astype(np.float32),
             float(result.reward[0]),

@@ -210,3 +210,31 @@ def test_registering_does_not_load_the_learners() -> None:
     code = "import sys, robobt.learning; print('torch' in sys.modules, 'pymunk' in sys.modules)"
     printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert printed.split() == ["False", "False"]
+
+
+@pytest.mark.parametrize(
+    ("action", "said"),
+    [
+        (np.zeros(2), r"the action must have the shape \(\d,\), not \(2,\)"),
+        ("ahead", r"the action must be \d numbers, not 'ahead'"),
+        (None, "the action must have the shape"),
+        (np.full(3, np.nan), "the action"),
+    ],
+)
+def test_an_action_that_cannot_be_stepped_with_is_told(action: Any, said: str) -> None:
+    env = gymnasium.make("robobt/GoToBall-v0").unwrapped
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=said):
+        env.step(action)
+
+
+def test_an_episode_that_is_over_is_not_stepped_on() -> None:
+    env = gymnasium.make("robobt/GoToBall-v0", settings={"time_limit": 2}).unwrapped
+    env.reset(seed=1)
+    action = np.zeros(env.action_space.shape or 0)
+    while not any(env.step(action)[2:4]):
+        pass
+    with pytest.raises(gymnasium.error.ResetNeeded, match="the episode is over; call reset before step"):
+        env.step(action)
+    env.reset()
+    env.step(action)

@@ -154,3 +154,73 @@ def test_torchrl_wraps_it() -> None:
     libs.check_env_specs(env)
     rollout = env.rollout(10)
     assert rollout["blue", "observation"].shape[-1] == env.observation_spec["blue", "observation"].shape[-1]
+
+
+def parallel_env(name: str = "Small3v3", **settings: Any) -> Any:
+    pytest.importorskip("pettingzoo", reason="needs PettingZoo: pip install 'robobt[agents]'")
+    from robobt.learning.envs.soccer.parallel import SoccerParallelEnv
+
+    return SoccerParallelEnv(name, settings, render_mode="rgb_array")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (
+            {"blue_2": None, "yellow_1": None},
+            "no action for blue_2, yellow_1; step needs one for each of",
+        ),
+        (
+            {"red_1": np.zeros(4)},
+            "no agent is called 'red_1': .*there are blue_1, blue_2, yellow_1",
+        ),
+        ({1: np.zeros(4)}, "no agent is called 1"),
+        ({"yellow_1": np.zeros(3)}, r"yellow_1: the action must have the shape \(4,\), not \(3,\)"),
+        ({"yellow_1": 0.0}, r"yellow_1: the action must have the shape \(4,\), not \(\)"),
+        ({"blue_1": [0.0, np.nan, 0.0, 0.0]}, r"blue_1: the action is not finite: \[0.0, nan"),
+        ({"blue_1": [0.0, np.inf, 0.0, 0.0]}, "blue_1: the action is not finite"),
+        ({"blue_1": "ahead"}, "blue_1: the action must be 4 numbers, not 'ahead'"),
+        ({"blue_1": [[0.0], [0.0, 1.0]]}, "blue_1: the action must be 4 numbers"),
+    ],
+)
+def test_actions_that_cannot_be_stepped_with_name_their_agent(wrong: dict[Any, Any], said: str) -> None:
+    env = parallel_env()
+    env.reset(seed=1)
+    actions = {agent: np.zeros(4) for agent in env.agents} | wrong
+    with pytest.raises(ValueError, match=said):
+        env.step({agent: action for agent, action in actions.items() if action is not None})
+    # Nothing has been stepped, and the episode goes on.
+    env.step({agent: np.zeros(4) for agent in env.agents})
+
+
+def test_actions_of_agents_are_a_mapping() -> None:
+    env = parallel_env()
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="actions must map each agent to its action, not be a ndarray"):
+        env.step(np.zeros((4, 4)))
+
+
+def test_agents_are_stepped_in_an_episode_only() -> None:
+    env = parallel_env(time_limit=2)
+    for call in (lambda: env.step({}), env.state, env.render):
+        with pytest.raises(gymnasium.error.ResetNeeded, match="call reset before"):
+            call()
+    env.reset(seed=1)
+    actions = {agent: np.zeros(4) for agent in env.agents}
+    while env.agents:
+        env.step(actions)
+    for given in (actions, {}):
+        with pytest.raises(gymnasium.error.ResetNeeded, match="the episode is over; call reset before step"):
+            env.step(given)
+    # What it ended in can still be looked at.
+    assert env.state_space.contains(env.state())
+    assert env.render().ndim == 3
+    env.reset()
+    env.step(actions)
+
+
+def test_what_is_asked_of_an_unknown_agent_names_the_known_ones() -> None:
+    env = parallel_env()
+    for ask in (env.observation_space, env.action_space):
+        with pytest.raises(ValueError, match="no agent is called 'blue1': did you mean blue_1"):
+            ask("blue1")

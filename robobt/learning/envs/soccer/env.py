@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -61,9 +62,11 @@ def kind_of(task: str) -> EnvKind:
     if task not in TASKS:
         raise ValueError(f"no task is called {task!r}; there are {', '.join(TASKS)}")
     model = TASKS[task]
-    return EnvKind(
-        lambda settings, n: SoccerTask(model() if settings is None else settings, n), model, _all_learners
-    )
+    return EnvKind(partial(_arenas, model), model, _all_learners)
+
+
+def _arenas(model: type[SoccerSettings], settings: SoccerSettings | None, n: int) -> SoccerTask:
+    return SoccerTask(model() if settings is None else settings, n)
 
 
 class SoccerEnv(SingleEnv):

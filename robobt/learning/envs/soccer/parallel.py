@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from robobt.config.extras import need
@@ -14,7 +14,13 @@ from gymnasium.spaces import Box  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 from pettingzoo import ParallelEnv  # noqa: E402
 
-from robobt.learning.envs.gymnasium_base import Picture, picture_of  # noqa: E402
+from robobt.config.errors import unknown_name  # noqa: E402
+from robobt.learning.envs.gymnasium_base import (  # noqa: E402
+    Picture,
+    checked_action,
+    need_reset,
+    picture_of,
+)
 from robobt.learning.envs.soccer.env import kind_of, learner_space  # noqa: E402
 from robobt.learning.envs.soccer.settings import SoccerSettings  # noqa: E402
 from robobt.learning.envs.soccer.task import SoccerTask  # noqa: E402
@@ -67,11 +73,21 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
         self._begun = False
 
     def observation_space(self, agent: str) -> Box[np.float32]:
-        """Return the space of an agent's observations, always the same object."""
+        """Return the space of an agent's observations, always the same object.
+
+        Raises:
+            ValueError: there is no such agent.
+        """
+        self._check_known([agent])
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Box[np.float32]:
-        """Return the space of its actions, always the same object."""
+        """Return the space of its actions, always the same object.
+
+        Raises:
+            ValueError: there is no such agent.
+        """
+        self._check_known([agent])
         return self.action_spaces[agent]
 
     def reset(
@@ -96,10 +112,25 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     def step(
         self, actions: Mapping[str, NDArray[Any]]
     ) -> tuple[dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
-        """Let one decision pass under all agents' actions."""
+        """Let one decision pass under the actions of all ``agents``.
+
+        Raises:
+            ResetNeeded: no episode has begun, or it is over.
+            ValueError: an agent's action is missing, has another shape or is not finite, or there is no such
+                agent.
+        """
+        need_reset(self._begun, "step", self._begun and not self.agents)
         agents = self.agents
-        given = np.concatenate([np.asarray(actions[agent], dtype=np.float64) for agent in agents])
-        result, ended = self.task.advance(given[None]), self.task.ended
+        if not isinstance(actions, Mapping):
+            raise ValueError(f"actions must map each agent to its action, not be a {type(actions).__name__}")
+        self._check_known(actions)
+        if missing := [agent for agent in agents if agent not in actions]:
+            raise ValueError(
+                f"there is no action for {', '.join(missing)}; step needs one for each of {', '.join(agents)}"
+            )
+        size = self.task.action.size
+        given = [checked_action(actions[agent], size, f"{agent}: the action") for agent in agents]
+        result, ended = self.task.advance(np.concatenate(given)[None]), self.task.ended
         info: Info = {}
         if ended is not None:
             info = {"is_success": bool(ended.success[0]), "time": float(ended.time[0])}
@@ -114,7 +145,12 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
         )
 
     def state(self) -> Observation:
-        """Return the arena's true state for a central critic, see :meth:`SoccerTask.state`."""
+        """Return the arena's true state for a central critic, see :meth:`SoccerTask.state`.
+
+        Raises:
+            ResetNeeded: no episode has begun.
+        """
+        need_reset(self._begun, "state")
         state: Observation = self.task.state()[0].astype(np.float32)
         return state
 
@@ -122,7 +158,13 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
         """Draw the field as (height, width, 3) pixels in mode ``rgb_array``; None without a mode."""
         if self.render_mode is None:
             return None
+        need_reset(self._begun, "render")
         return picture_of(self.task, 0)
+
+    def _check_known(self, agents: Iterable[str]) -> None:
+        for agent in agents:
+            if agent not in self.possible_agents:
+                raise ValueError(f"no agent is called {agent!r}: {unknown_name(agent, self.possible_agents)}")
 
     def _by_agent(self, seen: FloatArray) -> dict[str, Observation]:
         rows = seen.astype(np.float32).reshape(len(self.possible_agents), -1)
