@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,10 +24,13 @@ from robobt.tree.interop.model import (
     TreeFile,
     TreeFileError,
     Value,
+    specs_of,
 )
 from robobt.tree.interop.node_types import Arguments, NodeType, split_cases
+from robobt.tree.interop.verify import sub_trees
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, parameters_of
+from robobt.tree.walk import preorder
 
 MAX_NODES = 10_000
 """Most nodes of a tree that is built from a file."""
@@ -60,7 +64,13 @@ class _Scope:
 class _Builder:
     def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
         self.file, self.vocabulary = file, vocabulary
+        # How often each tree and play of the file is put in, and how many nodes that makes.
+        self.times = _times(file)
         self.count = 0
+        self.counted: set[str] = set()
+        for name, definition in file.trees.items():
+            nodes = sum(1 for _ in specs_of(definition.root))
+            self._grow(self.times[name] * nodes, definition.line)
         self.open: list[str] = []
         self.top: _Scope | None = None
 
@@ -73,9 +83,6 @@ class _Builder:
         return root
 
     def spec(self, spec: Spec, scope: _Scope) -> Behaviour:
-        self.count += 1
-        if self.count > MAX_NODES:
-            raise self._error(spec.line, f"the tree has more than {MAX_NODES} nodes")
         return self._sub_tree(spec, scope) if isinstance(spec, SubTree) else self._node(spec, scope)
 
     def _scope(self, definition: Definition, given: Mapping[str, Value], outside: _Scope | None) -> _Scope:
@@ -110,8 +117,11 @@ class _Builder:
                 converted[name] = self._converted(known[name], value)
         with self._at(spec.line, spec.tree):
             root = play(**converted)
-            if isinstance(root, Behaviour):
-                return root
+        if isinstance(root, Behaviour):
+            if spec.tree not in self.counted:
+                self.counted.add(spec.tree)
+                self._grow(self.times[spec.tree] * (len(preorder(root)) - 1), spec.line)
+            return root
         raise self._error(spec.line, f"{spec.tree} is not a play: it made {short_repr(root)}")
 
     def _node(self, spec: Node, scope: _Scope) -> Behaviour:
@@ -195,6 +205,12 @@ class _Builder:
             f'sub-tree\'s own entry, which robobt does not have; give it {name}="{{{name}}}" or _autoremap',
         )
 
+    def _grow(self, nodes: int, line: int) -> None:
+        # Before they are built: some take milliseconds each.
+        self.count += nodes
+        if self.count > MAX_NODES:
+            raise self._error(line, f"the tree has more than {MAX_NODES} nodes")
+
     def _error(self, line: int | None, problem: str) -> TreeFileError:
         return TreeFileError(self.file.source, problem, line=line)
 
@@ -213,3 +229,25 @@ class _Builder:
         except Exception as error:
             problem = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
             raise self._error(line, f"{what}: {problem}") from error
+
+
+def _times(file: TreeFile) -> Counter[str]:
+    """Count how often every tree and play is part of a file's main tree, by itself and within others."""
+    inside = {
+        name: Counter([spec.tree for spec in sub_trees(tree.root)]) for name, tree in file.trees.items()
+    }
+    # Trees that others hold come after all of those, for no tree contains itself.
+    order: dict[str, None] = {}
+
+    def follow(name: str) -> None:
+        for inner in inside.get(name, ()):
+            if inner not in order:
+                follow(inner)
+        order[name] = None
+
+    follow(file.main)
+    times = Counter({file.main: 1})
+    for name in reversed(order):
+        for inner, count in inside.get(name, Counter()).items():
+            times[inner] += times[name] * count
+    return times

@@ -18,6 +18,7 @@ from robobt.tree.interop.model import (
     Value,
     names_in,
     parts_of,
+    specs_of,
 )
 from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.parameters import Parameter, ParameterError, check_names, parameters_of
@@ -105,9 +106,7 @@ class _Verifier:
             raise self._error(spec.line, f"the parameters of {spec.tree} cannot be read: {error}") from error
 
     def _ports(self, spec: SubTree, definition: Definition) -> None:
-        if spec.tree not in self.ports:
-            self.ports[spec.tree] = ports_of(definition, self.file)
-        ports = self.ports[spec.tree]
+        ports = ports_of(definition, self.file, self.ports)
         for name in spec.parameters:
             if name not in ports:
                 has = f"it has {', '.join(sorted(ports))}" if ports else "it has none"
@@ -162,24 +161,18 @@ def sub_trees(spec: Spec) -> Iterator[SubTree]:
             yield from sub_trees(child)
 
 
-def ports_of(definition: Definition, file: TreeFile) -> set[str]:
-    """Return what a tree of an XML file can be given: what is declared, and the names it uses."""
-    ports: set[str] = set()
-    seen: set[str] = set()
+def ports_of(definition: Definition, file: TreeFile, known: dict[str, set[str]] | None = None) -> set[str]:
+    """Return what a tree of an XML file can be given: what is declared, and the names it uses.
 
-    def collect(definition: Definition) -> None:
-        seen.add(definition.name)
-        ports.update(definition.parameters)
-        visit(definition.root)
-
-    def visit(spec: Spec) -> None:
+    ``known`` has the ports of trees that have been looked at, and gets those of this one and of all it holds.
+    """
+    known = {} if known is None else known
+    if definition.name in known:
+        return known[definition.name]
+    ports = known[definition.name] = set(definition.parameters)
+    for spec in specs_of(definition.root):
         for value in spec.parameters.values():
             ports.update(name for name in names_in(value) if not name.startswith("@"))
-        if isinstance(spec, Node):
-            for child in spec.children():
-                visit(child)
-        elif spec.autoremap and spec.tree in file.trees and spec.tree not in seen:
-            collect(file.trees[spec.tree])
-
-    collect(definition)
+        if isinstance(spec, SubTree) and spec.autoremap and spec.tree in file.trees:
+            ports |= ports_of(file.trees[spec.tree], file, known)
     return ports
