@@ -26,6 +26,7 @@ from robobt.tree.interop import (
     Vocabulary,
     describe_tree,
     load_tree_file,
+    tree_files,
     write_xml,
     write_yaml,
 )
@@ -52,7 +53,7 @@ VOCABULARY = Vocabulary(
 
 
 def load_play(path: str | Path) -> FilePlay:
-    """Load a play from a file (.yaml, .xml), to be called like those of :data:`~robobt.plays.base.PLAYS`.
+    """Load a play from a file, to be called like those of :data:`~robobt.plays.base.PLAYS`.
 
     Raises:
         TreeFileError: one line that names the file, the line and what is wrong.
@@ -61,7 +62,7 @@ def load_play(path: str | Path) -> FilePlay:
 
 
 def is_play_file(name: str) -> bool:
-    """Return whether a play's name is a file's (.yaml, .yml, .xml)."""
+    """Return whether a play's name is a file's (.yaml, .yml, .xml, .btproj)."""
     return name.endswith(FILE_ENDINGS)
 
 
@@ -88,7 +89,7 @@ def problem_with_play(name: str) -> str | None:
 
 
 def find_play(name: str, folder: str | Path = ".") -> Play:
-    """Return a play by its name, or a file's play where the name ends in .yaml, .yml or .xml.
+    """Return a play by its name, or a file's play where the name ends in .yaml, .yml, .xml or .btproj.
 
     A tree file is read again only when it has changed. A play of a Python file, ``my_team.py:striker``, has
     to be called within its :func:`~robobt.plays.private_files.private_files`.
@@ -108,21 +109,21 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
             return PLAYS[inner]
         path = Path(folder) / inner
         try:
-            stat = path.stat()
+            stats = [file.stat() for file in tree_files(path)]
         except (OSError, ValueError):
             return load_play(path)
-        return _load_once(path, stat.st_mtime_ns, stat.st_size, owner)
+        return _load_once(path, tuple([(stat.st_mtime_ns, stat.st_size) for stat in stats]), owner)
 
 
 @lru_cache(maxsize=64)
-def _load_once(path: Path, _changed: int, _size: int, _owner: Namespace | None) -> Play:
+def _load_once(path: Path, _state: tuple[tuple[int, int], ...], _owner: Namespace | None) -> Play:
     return load_play(path)
 
 
 def contents_of(name: str) -> list[bytes]:
     """Return what the files of a play's name hold, which is what it plays: nothing for a common name."""
     owner, (_, inner) = private_files(name), split_play(name)
-    tree = [Path(inner).read_bytes()] if is_play_file(inner) else []
+    tree = [file.read_bytes() for file in tree_files(inner)] if is_play_file(inner) else []
     return [*tree, *([] if owner is None else [owner.sources.digest().encode()])]
 
 

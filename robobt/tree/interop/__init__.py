@@ -8,6 +8,7 @@ from robobt.tree.interop.model import TreeFileError as TreeFileError
 from robobt.tree.interop.play import FILE_ENDINGS as FILE_ENDINGS
 from robobt.tree.interop.play import FilePlay as FilePlay
 from robobt.tree.interop.play import load_tree_file as load_tree_file
+from robobt.tree.interop.play import tree_files as tree_files
 from robobt.tree.interop.play import try_build as try_build
 from robobt.tree.interop.vocabulary import Vocabulary as Vocabulary
 from robobt.tree.interop.xml_reader import parse_xml as parse_xml

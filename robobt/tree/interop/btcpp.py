@@ -110,6 +110,31 @@ UNKNOWN_HERE: Mapping[str, str] = {
 }
 """What to say about tags of BehaviorTree.CPP that cannot be read."""
 
+VERSION_3_TAGS: Mapping[str, str] = {
+    "SubTreePlus": "it is SubTree",
+    "SequenceStar": "it is SequenceWithMemory",
+    "FallbackStar": "it is Fallback, which goes on with the child that runs",
+    **dict.fromkeys(
+        ("BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckBool", "BlackboardCheckString"),
+        "it is a script, which robobt does not have; write a condition",
+    ),
+    "ManualSelector": "there is none",
+}
+"""What became of tags of version 3 in version 4."""
+
+VERSION_3_ATTRIBUTES: Mapping[str, Mapping[str, str]] = {
+    "SubTree": {
+        "__shared_blackboard": 'it is gone; _autoremap="true" is the nearest',
+        "__autoremap": "it is _autoremap",
+    },
+    "Parallel": {
+        "success_threshold": "it is success_count",
+        "failure_threshold": "it is failure_count",
+        "threshold": "it is success_count",
+    },
+}
+"""What became of attributes of version 3, by tag."""
+
 NODE_TAGS = ("Action", "Condition", "Control", "Decorator")
 """Tags of the long form, in which the type is the attribute ``ID``."""
 

@@ -70,14 +70,14 @@ class _Builder:
         self.counted: set[str] = set()
         for name, definition in file.trees.items():
             nodes = sum(1 for _ in specs_of(definition.root))
-            self._grow(self.times[name] * nodes, definition.line)
+            self._grow(self.times[name] * nodes, definition.line, name)
         self.open: list[str] = []
         self.top: _Scope | None = None
 
     def tree(self, definition: Definition, given: Mapping[str, Value], outside: _Scope | None) -> Behaviour:
+        self.open.append(definition.name)
         scope = self._scope(definition, given, outside)
         self.top = self.top or scope
-        self.open.append(definition.name)
         root = self.spec(definition.root, scope)
         self.open.pop()
         return root
@@ -120,7 +120,7 @@ class _Builder:
         if isinstance(root, Behaviour):
             if spec.tree not in self.counted:
                 self.counted.add(spec.tree)
-                self._grow(self.times[spec.tree] * (len(preorder(root)) - 1), spec.line)
+                self._grow(self.times[spec.tree] * (len(preorder(root)) - 1), spec.line, self.open[-1])
             return root
         raise self._error(spec.line, f"{spec.tree} is not a play: it made {short_repr(root)}")
 
@@ -205,14 +205,15 @@ class _Builder:
             f'sub-tree\'s own entry, which robobt does not have; give it {name}="{{{name}}}" or _autoremap',
         )
 
-    def _grow(self, nodes: int, line: int) -> None:
+    def _grow(self, nodes: int, line: int, tree: str) -> None:
         # Before they are built: some take milliseconds each.
         self.count += nodes
         if self.count > MAX_NODES:
-            raise self._error(line, f"the tree has more than {MAX_NODES} nodes")
+            problem = f"the tree has more than {MAX_NODES} nodes"
+            raise TreeFileError(self.file.source_of(tree), problem, line=line)
 
     def _error(self, line: int | None, problem: str) -> TreeFileError:
-        return TreeFileError(self.file.source, problem, line=line)
+        return TreeFileError(self.file.source_of(self.open[-1]), problem, line=line)
 
     @contextmanager
     def _at(self, line: int, what: str) -> Iterator[None]:

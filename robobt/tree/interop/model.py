@@ -99,13 +99,14 @@ Spec: TypeAlias = "Node | SubTree"
 
 @dataclass(slots=True)
 class Definition:
-    """One tree of a file."""
+    """One tree of a file; ``source`` is the file that it stands in, where another one includes that."""
 
     name: str
     root: Spec
     parameters: dict[str, Parameter] = field(default_factory=dict)
     description: str = ""
     line: int = field(default=0, compare=False)
+    source: str | None = field(default=None, compare=False)
 
 
 @dataclass(slots=True)
@@ -120,6 +121,10 @@ class TreeFile:
     main: str
     trees: dict[str, Definition]
     language: Literal["yaml", "xml"]
+
+    def source_of(self, tree: str) -> str:
+        """Return the file in which a tree stands."""
+        return self.trees[tree].source or self.source
 
 
 def specs_of(spec: Spec) -> Iterator[Spec]:

@@ -35,6 +35,7 @@ def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
     verifier = _Verifier(file, vocabulary)
     verifier.check_cycles()
     for definition in file.trees.values():
+        verifier.source = file.source_of(definition.name)
         verifier.spec(definition.root, definition)
 
 
@@ -42,6 +43,7 @@ class _Verifier:
     def __init__(self, file: TreeFile, vocabulary: Vocabulary) -> None:
         self.file, self.vocabulary = file, vocabulary
         self.ports: dict[str, set[str]] = {}
+        self.source = file.source
 
     def check_cycles(self) -> None:
         done: set[str] = set()
@@ -49,6 +51,7 @@ class _Verifier:
         def follow(definition: Definition, path: list[str]) -> None:
             for spec in sub_trees(definition.root):
                 if spec.tree in path:
+                    self.source = self.file.source_of(definition.name)
                     raise self._error(spec.line, f"the tree {spec.tree!r} contains itself")
                 if spec.tree in self.file.trees and spec.tree not in done:
                     follow(self.file.trees[spec.tree], [*path, spec.tree])
@@ -131,7 +134,7 @@ class _Verifier:
             raise self._error(line, f"{what}: {error.parameter}: {error}") from error
 
     def _error(self, line: int, problem: str) -> TreeFileError:
-        return TreeFileError(self.file.source, problem, line=line)
+        return TreeFileError(self.source, problem, line=line)
 
 
 def unknown_type(name: str, vocabulary: Vocabulary, tags: Iterable[str] = ()) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 from robobt.tree.interop.btcpp import (
     METADATA,
@@ -12,6 +13,8 @@ from robobt.tree.interop.btcpp import (
     SCRIPTS,
     TAGS,
     UNKNOWN_HERE,
+    VERSION_3_ATTRIBUTES,
+    VERSION_3_TAGS,
     Attribute,
     Tag,
     long_tags,
@@ -25,15 +28,20 @@ from robobt.tree.interop.vocabulary import Vocabulary, is_pointer
 from robobt.tree.interop.xml_elements import Element, ElementChecker, read_element
 from robobt.tree.parameters import Parameter, ParameterError
 
+Include: TypeAlias = Callable[[str], tuple[str, bytes]]
+"""Returns the name, for messages, and the text of a file that a project includes."""
 
-def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
-    """Return the trees of an XML text.
+
+def parse_xml(
+    text: bytes | str, vocabulary: Vocabulary, source: str = "tree", include: Include | None = None
+) -> TreeFile:
+    """Return the trees of an XML text, and of the files that it includes where ``include`` reads them.
 
     The main tree is what ``main_tree_to_execute`` names, else the only tree, else
     the one that is not a sub-tree of another.
     """
     try:
-        file = _Reader(vocabulary, source).file(read_element(text, source))
+        file = _Reader(vocabulary, source, include).file(read_element(text, source))
         verify(file, vocabulary)
     except RecursionError as error:
         raise TreeFileError(source, "it is nested too deeply") from error
@@ -41,38 +49,59 @@ def parse_xml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -
 
 
 class _Reader(ElementChecker):
-    def __init__(self, vocabulary: Vocabulary, source: str) -> None:
+    def __init__(self, vocabulary: Vocabulary, source: str, include: Include | None = None) -> None:
         super().__init__(source)
-        self.vocabulary = vocabulary
+        self.vocabulary, self.include = vocabulary, include
+        self.trees: dict[str, Definition] = {}
+        self.models: list[tuple[_Reader, Element]] = []
 
     def file(self, root: Element) -> TreeFile:
+        self._parts(root)
+        if not self.trees:
+            raise self.error(root, "there is no <BehaviorTree>")
+        for reader, model in self.models:
+            reader._model(model, self.trees)
+        return TreeFile(self.source, self._main(root, self.trees), self.trees, "xml")
+
+    def _parts(self, root: Element) -> None:
+        """Read the trees and find the models, of this file and of those that it includes."""
         if root.tag != "root":
             raise self.error(root, f"the outermost tag is <root>, not <{root.tag}>")
-        self.attributes(root, ("BTCPP_format", "main_tree_to_execute"), ("BTCPP_format",))
+        self.attributes(root, ("BTCPP_format", "main_tree_to_execute", "project_name"), ())
+        if "BTCPP_format" not in root.attributes:
+            needs = '<root> needs the attribute BTCPP_format="4"; a file without it is one of version 3'
+            raise self.error(root, f"{needs} of BehaviorTree.CPP, whose tags and attributes differ")
         if root.attributes["BTCPP_format"] != "4":
             raise self.error(root, f"BTCPP_format is 4, not {root.attributes['BTCPP_format']}")
         self.no_text(root)
-        trees: dict[str, Definition] = {}
-        model: Element | None = None
+        own = False
         for part in root.children:
             if part.tag == "BehaviorTree":
                 definition = self._tree(part, only=len(root.children) == 1)
-                if definition.name in trees:
+                if definition.name in self.trees:
                     raise self.error(part, f"the tree {definition.name!r} is there twice")
-                trees[definition.name] = definition
-            elif part.tag == "TreeNodesModel" and model is None:
-                model = part
+                self.trees[definition.name] = definition
+            elif part.tag == "TreeNodesModel" and not own:
+                own = True
+                self.models.append((self, part))
             elif part.tag == "TreeNodesModel":
                 raise self.error(part, "there are two <TreeNodesModel>")
             elif part.tag == "include":
-                raise self.error(part, "<include> is not supported; put the trees into one file")
+                self._include(part)
             else:
                 raise self.error(part, f"<root> has <BehaviorTree> and <TreeNodesModel>, no <{part.tag}>")
-        if not trees:
-            raise self.error(root, "there is no <BehaviorTree>")
-        if model is not None:
-            self._model(model, trees)
-        return TreeFile(self.source, self._main(root, trees), trees, "xml")
+
+    def _include(self, part: Element) -> None:
+        if self.include is None:
+            raise self.error(part, "<include> is not supported; put the trees into one file")
+        self.attributes(part, ("path",), ("path",))
+        try:
+            source, text = self.include(self.word(part, "path"))
+        except TreeFileError as error:
+            raise self.error(part, f"<include>: {error}") from error
+        included = _Reader(self.vocabulary, source)
+        included.trees, included.models = self.trees, self.models
+        included._parts(read_element(text, source))
 
     def _main(self, root: Element, trees: dict[str, Definition]) -> str:
         named = root.attributes.get("main_tree_to_execute")
@@ -95,16 +124,29 @@ class _Reader(ElementChecker):
         if len(element.children) != 1:
             raise self.error(element, f"<BehaviorTree> has one child, not {len(element.children)}")
         name = self.word(element, "ID") if "ID" in element.attributes else "BehaviorTree"
-        return Definition(name, self._spec(element.children[0]), line=element.line)
+        return Definition(name, self._spec(element.children[0]), line=element.line, source=self.source)
 
     def _spec(self, element: Element) -> Spec:
         self.no_text(element)
+        self._check_version(element)
         for name in element.attributes:
             if name in SCRIPTS:
                 raise self.error(element, f"{name}: robobt has no scripts; write a condition")
             if name.startswith("_") and name not in METADATA and element.tag != "SubTree":
                 raise self.error(element, f"<{element.tag}> has no attribute {name}")
         return self._sub_tree(element) if element.tag == "SubTree" else self._node(element)
+
+    def _check_version(self, element: Element) -> None:
+        """Check that there is nothing of version 3 of BehaviorTree.CPP."""
+        long_form = element.tag in NODE_TAGS
+        shown = element.attributes.get("ID", "") if long_form else element.tag
+        if shown in VERSION_3_TAGS and shown not in self.vocabulary:
+            now = f"<{shown}> is a tag of BehaviorTree.CPP 3; in version 4 {VERSION_3_TAGS[shown]}"
+            raise self.error(element, f"no node is called {shown!r}; {now}")
+        for name, now in VERSION_3_ATTRIBUTES.get(shown, {}).items():
+            if name in element.attributes:
+                now = f"it is one of BehaviorTree.CPP 3; in version 4 {now}"
+                raise self.error(element, f"<{shown}> has no attribute {name}; {now}")
 
     def _sub_tree(self, element: Element) -> SubTree:
         if element.children:

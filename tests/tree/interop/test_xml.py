@@ -579,7 +579,7 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         ('<tree BTCPP_format="4"/>', "the outermost tag is <root>"),
         ("<root/>", "needs the attribute BTCPP_format"),
         ('<root BTCPP_format="3"/>', "BTCPP_format is 4, not 3"),
-        ('<root BTCPP_format="4" project_name="p"/>', "no attribute project_name"),
+        ('<root BTCPP_format="4" project="p"/>', "no attribute project"),
         ('<root BTCPP_format="4"/>', "there is no <BehaviorTree>"),
         ('<root BTCPP_format="4">words</root>', "there is text in <root>"),
         ('<root BTCPP_format="4"><include path="other.xml"/></root>', "<include> is not supported"),
