@@ -102,7 +102,7 @@ def match_with(damage: str, record: Path | None = None) -> Match:
     return Match(scenario_from(given, "test.yaml"), 1, PlainWorld, record=record)
 
 
-def _damaged(*, damage: str = "") -> Behaviour:
+def _damaged(*, damage: str = "all removed") -> Behaviour:
     does = STOPS[damage][0] if damage in STOPS else GOES_ON[damage]
     steps: list[Behaviour] = [Damages(does), Runs("after")]
     return Selector("root", memory=False, children=[Sequence("main", False, steps), Runs("rest")])
