@@ -7,8 +7,9 @@ from http import HTTPStatus
 from importlib.resources import files
 from pathlib import PurePosixPath
 
+from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
-from websockets.http11 import Response
+from websockets.http11 import Request, Response
 
 from robobt.live.page_files import page_text
 
@@ -17,6 +18,42 @@ _HEAD = '<link rel="stylesheet" href="viewer.css">\n<link rel="icon" href="data:
 _SCRIPTS = '<script type="module" src="live.js"></script>'
 
 RECORDING_TYPE = "application/vnd.apache.arrow.stream"
+
+_METHODS = (b"GET", b"HEAD")
+_LONGEST_METHOD = 32
+"""How many bytes may come before the first space of a request that is looked at."""
+
+
+class PageConnection(ServerConnection):
+    """A connection that refuses methods other than GET and HEAD.
+
+    The method is read here because websockets closes the connection without an answer when a request
+    has a body.
+    """
+
+    _begun = b""
+    _method_known = False
+
+    def data_received(self, data: bytes) -> None:
+        """Pass the data on to websockets; first refuse the request if its method is not served."""
+        if not self._method_known:
+            data = self._begun = self._begun + data
+            method, space, _ = data.partition(b" ")
+            if not space and len(data) <= _LONGEST_METHOD:
+                return
+            self._method_known = True
+            if method.isalpha() and method not in _METHODS:
+                refusal = response(HTTPStatus.METHOD_NOT_ALLOWED, b"The page is only read.\n", "127.0.0.1")
+                refusal.headers["Allow"] = b", ".join(_METHODS).decode()
+                self.protocol.send_response(refusal)
+        super().data_received(data)
+
+
+def without_body(_: ServerConnection, request: Request, answer: Response) -> None:
+    """Take the body out of the answer to a HEAD request."""
+    # websockets tells the method from version 17 on; earlier ones let nothing but GET through.
+    if getattr(request, "method", "GET") == "HEAD":
+        answer.body = b""
 
 
 def file_response(path: str, host: str) -> Response:

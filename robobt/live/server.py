@@ -21,7 +21,7 @@ from robobt.config.errors import RobobtError
 from robobt.config.extras import MissingExtraError
 from robobt.live.access import LOOPBACK, Access
 from robobt.live.audience import MOST_VIEWERS, Audience
-from robobt.live.http import RECORDING_TYPE, file_response, response
+from robobt.live.http import RECORDING_TYPE, PageConnection, file_response, response, without_body
 from robobt.live.messages import MOST_BYTES
 from robobt.live.stream import Stream
 
@@ -149,6 +149,8 @@ class Server:
             self._host,
             self._port,
             process_request=self._answer,
+            process_response=without_body,
+            create_connection=PageConnection,
             max_size=MOST_BYTES,
             max_queue=16,
             write_limit=2**16,

@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import socket
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -25,11 +26,14 @@ def session() -> Iterator[Session]:
         yield session
 
 
-def get(session: Session, path: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
+def get(
+    session: Session, path: str, method: str = "GET", body: bytes = b"", **headers: str
+) -> tuple[int, dict[str, str], bytes]:
     """Ask for a path behind the token, or an absolute one."""
     _, _, address, token, _ = session.server.url.split("/")
     connection = http.client.HTTPConnection(address, timeout=LIMIT)
-    connection.request("GET", path if path.startswith("/") else f"/{token}/{path}", headers=headers)
+    place = path if path.startswith("/") else f"/{token}/{path}"
+    connection.request(method, place, body or None, headers=headers)
     answer = connection.getresponse()
     body = answer.read()
     connection.close()
@@ -52,6 +56,40 @@ def test_files_of_the_page_are_served_and_no_others(session: Session) -> None:
     assert get(session, "live.js")[0] == 200
     for name in ("../server.py", "server.py", "%2e%2e/server.py", "viewer.html", "page/live.js", "live.js/"):
         assert get(session, name)[0] == 404
+
+
+def ask(session: Session, *pieces: bytes) -> bytes:
+    """Send bytes as they are, a piece at a time, and return all that comes back."""
+    host, _, port = session.server.url.split("/")[2].partition(":")
+    with socket.create_connection((host, int(port)), timeout=10) as connection:
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for piece in pieces:
+            connection.sendall(piece)
+        return b"".join(iter(lambda: connection.recv(65536), b""))
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "get"])
+@pytest.mark.parametrize("body", [b"", b"x" * 100_000])
+def test_methods_that_would_change_something_are_not_allowed(
+    session: Session, method: str, body: bytes
+) -> None:
+    for name in ("", "live.js", "nothing", "socket"):
+        status, headers, _ = get(session, name, method, body)
+        assert status == 405
+        assert headers["Allow"] == "GET, HEAD"
+
+
+def test_a_method_that_comes_in_pieces_or_with_a_chunked_body_is_not_allowed(session: Session) -> None:
+    head = b"OST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n"
+    assert ask(session, b"P", head).startswith(b"HTTP/1.1 405 ")
+
+
+def test_head_tells_what_get_would_without_the_content(session: Session) -> None:
+    got, head = get(session, "live.js"), get(session, "live.js", "HEAD")
+    assert head == (200, got[1], b"")
+    path = "/" + session.server.url.split("/", 3)[3] + "live.js"
+    host = session.server.url.split("/")[2]
+    assert ask(session, f"HEAD {path} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode()).endswith(b"\r\n\r\n")
 
 
 def test_without_the_token_there_is_nothing(session: Session) -> None:
