@@ -1,4 +1,4 @@
-"""Consoles, one-line errors, options, tables and progress bars that the commands share.
+"""One-line errors, options, tables and progress bars that the commands share.
 
 Nothing heavy may be imported at the top of any module of this package:
 ``robobt --help`` loads them all. A command imports what it needs itself.
@@ -18,10 +18,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
+from robobt.cli.screen import console as console
+from robobt.cli.screen import errors as errors
 from robobt.config.errors import ConfigError, RobobtError, unknown_name
 from robobt.config.extras import missing_extra
 from robobt.signals import Terminated, at_the_latest_after, ending
@@ -30,21 +31,6 @@ if TYPE_CHECKING:
     from robobt.match.loop import WorldFactory
     from robobt.tree.registry import Registry
 
-
-class _Console(Console):
-    """A console that leaves it to the command what happens when nobody reads on."""
-
-    def on_broken_pipe(self) -> None:
-        raise BrokenPipeError
-
-
-for _name in ("stdout", "stderr"):
-    if getattr(sys, _name) is None:
-        # The process was started with it closed: nobody wants to read it.
-        setattr(sys, _name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
-
-console = _Console(highlight=False)
-errors = _Console(stderr=True, highlight=False)
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 """The option of every command that can print its figures for another program."""

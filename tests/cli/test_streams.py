@@ -5,8 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from io import StringIO
 
 import pytest
+from rich.console import Console
+
+from robobt.cli import scenarios
+from robobt.cli.screen import drop_odd_sizes
 
 from tests.waiting import LIMIT
 
@@ -31,6 +36,49 @@ def test_a_stream_that_is_closed_from_the_start_is_no_failure(closed: str) -> No
     command = " ".join([*ROBOBT, "--version", closed])
     ended = subprocess.run(["sh", "-c", command], capture_output=True, check=False)
     assert (ended.returncode, ended.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize("given", ["0", "-5", "abc", "1", "", "39", "00080", "80.5", "²", "1e3", "9" * 5000])
+def test_a_width_that_makes_no_sense_is_ignored(given: str) -> None:
+    environment = {"COLUMNS": given, "LINES": given, "HOME": "/"}
+    drop_odd_sizes(environment)
+    assert "COLUMNS" not in environment
+    assert environment["HOME"] == "/"
+
+
+@pytest.mark.parametrize("given", ["40", "80", "1000"])
+def test_a_width_that_is_given_counts(given: str) -> None:
+    environment = {"COLUMNS": given, "LINES": given}
+    drop_odd_sizes(environment)
+    assert environment == {"COLUMNS": given, "LINES": given}
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize("arguments", [["scenarios"], ["scenarios", "--help"]])
+def test_a_width_of_nothing_prints_what_80_columns_print(arguments: list[str]) -> None:
+    shown = [
+        subprocess.run(
+            [*ROBOBT, *arguments],
+            env={**os.environ, "COLUMNS": width},
+            stdout=subprocess.PIPE,
+            check=True,
+            timeout=60,
+        ).stdout
+        for width in ("0", "80")
+    ]
+    assert b"scenario" in shown[0]
+    assert shown[0] == shown[1]
+
+
+@pytest.mark.integration
+def test_a_list_of_scenarios_loses_no_text_on_a_narrow_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    def printed(width: int) -> str:
+        narrow = Console(width=width, file=StringIO())
+        monkeypatch.setattr(scenarios, "console", narrow)
+        scenarios.scenarios()
+        return "".join(sorted("".join(narrow.file.getvalue().split())))  # type: ignore[attr-defined]
+
+    assert printed(12) == printed(40) == printed(1000)
 
 
 def test_warnings_are_told_but_not_each_failure_of_a_tree() -> None:
