@@ -101,21 +101,18 @@ def tree(
 
 def _build(play: str, params: list[str]) -> Behaviour:
     from robobt.config.errors import RobobtError
-    from robobt.plays.files import find_play, problem_with_play
+    from robobt.plays.files import build_play, problem_with_play
     from robobt.plays.mistakes import PlayError, mistake_in_play
-    from robobt.plays.private_files import private_files
-    from robobt.tree.namespace import within
-    from robobt.tree.parameters import ParameterError, check_parameters
+    from robobt.tree.parameters import ParameterError
 
     if problem := problem_with_play(play):
         raise typer.BadParameter(problem)
-    builder = find_play(play)
+    given = parse_assignments(params, "--param")
     try:
-        with within(private_files(play)):
-            return builder(**check_parameters(play, builder, parse_assignments(params, "--param")))
+        return build_play(play, given)
     except ParameterError as error:
         raise typer.BadParameter(f"{error.parameter}: {error}", param_hint="--param") from error
-    except (RobobtError, typer.BadParameter):
+    except RobobtError:
         raise
     except Exception as error:
         raise PlayError(mistake_in_play(error)) from error

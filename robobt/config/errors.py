@@ -46,7 +46,7 @@ class FieldError(RobobtError, ValueError):
         self.field = field
 
 
-def message_of(error: Exception) -> str:
+def message_of(error: BaseException) -> str:
     """Return the message of the exception ``error``; a KeyError's comes without quotes around it."""
     return str(error.args[0]) if error.args else type(error).__name__
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
 from robobt.config.errors import short_repr, unknown_name
+from robobt.config.process import users_code
 from robobt.models.find import rename_models
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.baselines.go_round import GoRound
+from robobt.plays.mistakes import PlayError, check_returned, mistake_in_play
 from robobt.plays.private_files import join_play, private_files, split_play
 from robobt.plays.sources import PythonFileError
 from robobt.skills import SKILLS
@@ -32,6 +34,7 @@ from robobt.tree.interop import (
 )
 from robobt.tree.interop.model import Text, Value
 from robobt.tree.namespace import Namespace, within
+from robobt.tree.parameters import check_parameters
 
 
 def _place_models(value: Value, folder: Path) -> Value:
@@ -113,6 +116,32 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
         except (OSError, ValueError):
             return load_play(path)
         return _load_once(path, tuple([(stat.st_mtime_ns, stat.st_size) for stat in stats]), owner)
+
+
+def build_play(name: str, params: Mapping[str, object]) -> Behaviour:
+    """Build a new tree of a play.
+
+    Args:
+        name: as for :func:`find_play`.
+        params: its parameters as plain data.
+
+    Raises:
+        KeyError: no play has that name.
+        ParameterError: a parameter is unknown, missing or of another type.
+        PlayError: the play does not return a tree, or ends the process.
+        Exception: whatever the play raises.
+    """
+    with within(private_files(name)):
+        builder = find_play(name)
+        given = check_parameters(name, builder, params)
+        try:
+            with users_code(name):
+                tree = builder(**given)
+        except SystemExit as error:
+            # Nothing else would say why the process has ended.
+            raise PlayError(mistake_in_play(error)) from error
+    check_returned(name, builder, tree)
+    return tree
 
 
 @lru_cache(maxsize=64)

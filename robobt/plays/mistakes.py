@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import inspect
 import traceback
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from py_trees.behaviour import Behaviour
 
-from robobt.config.errors import RobobtError, message_of
+from robobt.config.errors import RobobtError, message_of, short_repr
+from robobt.plays.sources import NOBODYS
 
 
 class PlayError(RobobtError):
-    """A play whose code raises as its tree is built."""
+    """A play whose code raises as its tree is built, or returns no tree."""
 
 
-_OURS = ("robobt", "py_trees")
+_OTHERS = NOBODYS | {"py_trees"}
+"""Modules that no play is written in, by their first names."""
 
 
-def mistake_in_play(error: Exception) -> str:
+def mistake_in_play(error: BaseException) -> str:
     """Return what an exception says that building a tree raised, with the play's file and line.
 
     An exception that no code outside robobt and py_trees has led to comes as it is.
@@ -25,24 +29,87 @@ def mistake_in_play(error: Exception) -> str:
     places = [
         (Path(frame.f_code.co_filename).name, line)
         for frame, line in traceback.walk_tb(error.__traceback__)
-        if str(frame.f_globals.get("__name__")).partition(".")[0] not in _OURS
-        # What the standard library and other packages raise, the play has asked them for.
+        if str(frame.f_globals.get("__name__")).partition(".")[0] not in _OTHERS
+        # What other packages raise, the play has asked them for.
         and "site-packages" not in frame.f_code.co_filename
         and frame.f_globals.get("__file__") is not None
     ]
-    said = _without_brackets(error) or message_of(error)
+    said = _wrong_child(error) or message_of(error)
     if not places:
         return said
-    # robobt's own errors are whole sentences; of others the kind says half.
-    kind = "" if isinstance(error, RobobtError | ValueError) else f"{type(error).__name__}: "
+    # robobt's own errors are whole sentences; of others the kind says half, or all.
+    whole = isinstance(error, RobobtError | ValueError) or not error.args
+    kind = "" if whole else f"{type(error).__name__}: "
     file, line = places[-1]
     return f"{file}:{line}: {kind}{said}"
 
 
-def _without_brackets(error: Exception) -> str | None:
-    """Return the message for a class in the place of a node, which py_trees tells by its metaclass."""
-    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
-    child = frames[-1].f_locals.get("child") if isinstance(error, TypeError) and frames else None
-    if isinstance(child, type) and issubclass(child, Behaviour):
-        return f"{child.__name__} is a class; {child.__name__}() makes a node of it"
+def check_returned(name: str, builder: Callable[..., object], returned: object) -> None:
+    """Check that what a play returned is a tree: nodes, each of them once.
+
+    Args:
+        name: the play's name.
+        builder: the play.
+        returned: what it returned.
+
+    Raises:
+        PlayError: it is none; the message names the play, its file and its line.
+    """
+    problem = _no_tree(returned)
+    if problem is not None:
+        code = getattr(inspect.unwrap(builder), "__code__", None)
+        where = "" if code is None else f"{Path(code.co_filename).name}:{code.co_firstlineno}: "
+        raise PlayError(f"{where}the play {name!r} {problem}")
+
+
+def _no_tree(returned: object) -> str | None:
+    if returned is None:
+        return "returns nothing; return the root of its tree"
+    if inspect.isgenerator(returned) or inspect.iscoroutine(returned):
+        return f"is a {type(returned).__name__}; write 'def' and 'return', without 'yield' or 'async'"
+    seen: set[int] = set()
+    left = [(returned, "")]
+    while left:
+        node, where = left.pop()
+        problem = _no_node(node)
+        if problem is not None:
+            return f"does not return a tree: {where}{problem}"
+        assert isinstance(node, Behaviour)
+        if id(node) in seen:
+            return f"has the node {node.name!r} twice in its tree; make one for each place"
+        seen.add(id(node))
+        children: object = node.children
+        if not isinstance(children, list | tuple):
+            return f"does not return a tree: the children of {node.name!r} are not a list"
+        left += [(child, f"below {node.name!r}, ") for child in children]
+    return None
+
+
+def _no_node(given: object) -> str | None:
+    """Return what is wrong with an object in the place of a node, None if it is a node."""
+    if isinstance(given, Behaviour):
+        name = type(given).__name__
+        made = hasattr(given, "children")
+        return None if made else f"{name} is not set up; let {name}.__init__ call super().__init__(...)"
+    if isinstance(given, type) and issubclass(given, Behaviour):
+        return f"{given.__name__} is a class; {given.__name__}() makes a node of it"
+    if inspect.isfunction(given) or inspect.ismethod(given):
+        return f"{given.__name__} is a function; call it, as {given.__name__}()"
+    if isinstance(given, list | tuple | set | dict):
+        return f"a {type(given).__name__} is not a node; put its nodes into a Sequence, Selector or Parallel"
+    return f"{short_repr(given)} is not a node"
+
+
+def _wrong_child(error: BaseException) -> str | None:
+    """Return what is wrong with the children that a node of py_trees refuses, else None."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        if not str(frame.f_globals.get("__name__")).startswith("py_trees."):
+            continue
+        children = frame.f_locals.get("children")
+        if children is not None and (isinstance(children, str) or not isinstance(children, Iterable)):
+            said = type(children).__name__ if isinstance(children, Behaviour) else short_repr(children)
+            return f"children takes a list of nodes, as children=[...], not {said}"
+        problem = _no_node(frame.f_locals["child"]) if "child" in frame.f_locals else None
+        if problem is not None:
+            return problem
     return None

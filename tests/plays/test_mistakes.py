@@ -15,7 +15,11 @@ from tests.registries import temporarily
 FILE = """\
 import robobt
 from robobt.skills import GoToBall, HasBall
-from robobt.tree import Sequence
+from robobt.tree import Inverter, Leaf, Sequence
+
+class Mine(Leaf):
+    def __init__(self):
+        pass
 
 
 @robobt.PLAYS.register("broken_{number}")
@@ -23,31 +27,82 @@ def broken(gain: float = 1.0):
     {line}
 """
 
-MISTAKES = [
+LINE = FILE.partition("{line}")[0].count("\n") + 1
+"""Of the play's body in the file."""
+
+RAISED = [
     ("return Sequence('s', children=[HasBall()])", "missing 1 required positional argument: 'memory'"),
-    (
-        "return Sequence('s', memory=False, children=[HasBall])",
-        "HasBall is a class; HasBall() makes a node of it",
-    ),
     ("return GoToBal()", "NameError: name 'GoToBal' is not defined"),
     ("return GoToBall(policy='nothing')", "no go-to-ball policy is called 'nothing'"),
     ("return 1 + 'a'", "unsupported operand"),
+    ("assert False", "AssertionError"),
+    ("exit()", "SystemExit"),
+    ("import json; json.loads('{')", "Expecting property name"),
+    ("return broken()", "RecursionError"),
+    *[
+        (f"return {node}", said)
+        for child, said in [
+            ("HasBall", "HasBall is a class; HasBall() makes a node of it"),
+            ("None", "None is not a node"),
+            ("'HasBall'", "'HasBall' is not a node"),
+            ("[HasBall()]", "a list is not a node; put its nodes into a Sequence"),
+            ("broken", "broken is a function; call it, as broken()"),
+        ]
+        for node in (f"Sequence('s', memory=False, children=[{child}])", f"Inverter('i', {child})")
+    ],
+    *[
+        (f"return Sequence('s', memory=False, children={children})", f"children=[...], not {said}")
+        for children, said in [("HasBall()", "HasBall"), ("3", "3"), ("'HasBall'", "'HasBall'")]
+    ],
+    ("return Sequence('s', memory=False, children=[Mine()])", "let Mine.__init__ call super().__init__(...)"),
+    ("node = HasBall(); return Sequence('s', memory=False, children=[node, node])", "already has parent"),
+]
+
+RETURNED = [
+    ("pass", "returns nothing; return the root of its tree"),
+    ("HasBall()", "returns nothing"),
+    ("return HasBall", "HasBall is a class; HasBall() makes a node of it"),
+    ("return [HasBall()]", "a list is not a node; put its nodes into a Sequence"),
+    ("return 'HasBall'", "'HasBall' is not a node"),
+    ("return robobt.PLAYS['attack_main']", "attack_main is a function; call it, as attack_main()"),
+    ("yield HasBall()", "is a generator; write 'def' and 'return'"),
+    ("return Inverter('i', Mine())", "let Mine.__init__ call super().__init__(...)"),
+    ("return Mine()", "let Mine.__init__ call super().__init__(...)"),
+    (
+        "a = HasBall(); return Sequence('s', memory=False, children=[Inverter('i', a), Inverter('j', a)])",
+        "has the node 'HasBall' twice",
+    ),
+    ("s = Sequence('s', memory=False); s.add_child(s); return s", "has the node 's' twice"),
+    ("s = Sequence('s', memory=False); s.children.append(None); return s", "below 's', None is not a node"),
+    ("s = Sequence('s', memory=False); s.children = HasBall(); return s", "children of 's' are not a list"),
 ]
 
 
-@pytest.mark.parametrize(("line", "said"), MISTAKES)
-def test_the_line_is_named(line: str, said: str, tmp_path: Path) -> None:
-    path = tmp_path / "mine.py"
-    number = MISTAKES.index((line, said))
-    path.write_text(FILE.format(number=number, line=line))
+def messages(body: str, number: int, path: Path) -> tuple[str, str]:
+    """Return what `robobt tree` and a scenario say about a play with this body."""
+    path.write_text(FILE.format(number=number, line=body))
     with temporarily(PLAYS):
         shown = CliRunner().invoke(app, ["tree", f"broken_{number}", "--import", str(path)])
         with pytest.raises(ScenarioError) as caught:
             load_scenario("striker_vs_goalie").with_robot("blue 0", play=f"broken_{number}", params={})
-    for told in (" ".join(shown.output.split()), str(caught.value)):
-        assert "mine.py:8: " in told
-        assert said in told
+    assert shown.exit_code == 1
     assert caught.value.field == "robots.blue.0.play"
+    return " ".join(shown.output.split()), str(caught.value)
+
+
+@pytest.mark.parametrize(("line", "said"), RAISED)
+def test_the_line_that_raises_is_named(line: str, said: str, tmp_path: Path) -> None:
+    for told in messages(line, RAISED.index((line, said)), tmp_path / "mine.py"):
+        assert f"mine.py:{LINE}: " in told
+        assert said in told
+
+
+@pytest.mark.parametrize(("line", "said"), RETURNED)
+def test_a_play_that_returns_no_tree_is_named_with_its_line(line: str, said: str, tmp_path: Path) -> None:
+    number = 100 + RETURNED.index((line, said))
+    for told in messages(line, number, tmp_path / "mine.py"):
+        assert f"mine.py:{LINE - 2}: the play 'broken_{number}' " in told
+        assert said in told
 
 
 def test_a_misspelt_play_is_guessed_and_the_way_to_ones_own_files_named() -> None:

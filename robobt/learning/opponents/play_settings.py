@@ -9,8 +9,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from robobt.config.errors import FieldError
 from robobt.config.validation import Settings
 from robobt.plays import PLAYS
+from robobt.plays.files import build_play
 from robobt.tree import Behaviour
-from robobt.tree.parameters import ParameterError, check_parameters
+from robobt.tree.parameters import ParameterError
 
 
 class PlaySettings(Settings):
@@ -21,8 +22,7 @@ class PlaySettings(Settings):
 
     def build_tree(self) -> Behaviour:
         """Build a new tree of the play."""
-        builder = PLAYS[self.play]
-        return builder(**check_parameters(self.play, builder, self.params))
+        return build_play(self.play, self.params)
 
     @model_validator(mode="after")
     def _buildable(self) -> Self:

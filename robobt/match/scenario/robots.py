@@ -9,18 +9,17 @@ from typing import Self
 from pydantic import BaseModel, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from robobt.config.errors import FieldError, RobobtError, message_of
-from robobt.config.process import users_code
 from robobt.config.validation import first_problem
 from robobt.match.scenario.starts import Part, RobotStart
-from robobt.plays.files import find_play, problem_with_play
+from robobt.plays.files import build_play, find_play, problem_with_play
 from robobt.plays.mistakes import mistake_in_play
 from robobt.plays.private_files import private_files
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import Behaviour, WiringError, check_tree
 from robobt.tree.devtools import substitute
 from robobt.tree.interop import TreeFileError
-from robobt.tree.namespace import Namespace, within
-from robobt.tree.parameters import ParameterError, check_parameters, parameters_of
+from robobt.tree.namespace import Namespace
+from robobt.tree.parameters import ParameterError, parameters_of
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
@@ -99,10 +98,7 @@ class RobotSetup(Part):
 
     def build_tree(self) -> Behaviour:
         """Build a new tree of this robot's play."""
-        with within(self.owner()):
-            builder = find_play(self.play)
-            with users_code(self.play):
-                tree = builder(**check_parameters(self.play, builder, self.params))
+        tree = build_play(self.play, self.params)
         if not self.substitute:
             return tree
         try:
