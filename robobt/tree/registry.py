@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
 from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from types import ModuleType
 from typing import Any, Generic, TypeVar
 
@@ -61,7 +63,8 @@ class Registry(Generic[T]):
                 source = self._sources.get(name) if namespace is None else None
                 raise ValueError(
                     f"{self.kind} {name!r} is registered twice: "
-                    f"{_say(entries[name], source)} and {_say(entry, self._loading)}"
+                    f"{_say(entries[name], source)} and {_say(entry, self._loading)}; "
+                    f"{_way_out(entries[name], entry)}"
                 )
             if namespace is not None:
                 entries[name] = entry
@@ -186,5 +189,37 @@ def _distribution(point: EntryPoint) -> str:
 
 
 def _say(entry: object, source: str | None) -> str:
-    where = f"{getattr(entry, '__module__', '?')}.{getattr(entry, '__qualname__', repr(entry))}"
-    return where if source is None else f"{where} of the distribution {source}"
+    qualname = getattr(entry, "__qualname__", repr(entry))
+    where = f"{getattr(entry, '__module__', '?')}.{qualname}"
+    if source is not None:
+        return f"{where} of the distribution {source}"
+    file, line = _place(entry)
+    return where if file is None else f"{_shown(file)}:{line}: {qualname}"
+
+
+def _place(entry: Any) -> tuple[Path | None, int]:
+    """Return the file and line where somebody's own class or function begins; no file where that is not known."""
+    try:
+        if entry.__module__.partition(".")[0] == "robobt":
+            return None, 0
+        found = inspect.unwrap(entry)
+        file = inspect.getsourcefile(found)
+        return None if file is None else Path(file), inspect.getsourcelines(found)[1]
+    except (AttributeError, TypeError, OSError):
+        return None, 0
+
+
+def _shown(file: Path) -> Path:
+    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+
+
+def _way_out(first: object, second: object) -> str:
+    """Return what to do about two things with one name."""
+    files = [_place(entry)[0] for entry in (first, second)]
+    if None in files or files[0] == files[1]:
+        return "give one of them another name"
+    blue, yellow = [f"{_shown(file)}:PLAY" for file in files if file is not None]
+    return (
+        "give one of them another name, or let two states of one team meet without --import: "
+        f"robobt match SCENARIO --blue {blue} --yellow {yellow}"
+    )

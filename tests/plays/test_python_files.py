@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from robobt.cli import app
 from robobt.match import run_trials
 from robobt.match.scenario.scenario import scenario_from
 from robobt.plays import PLAYS, python_files
@@ -131,6 +133,35 @@ def test_a_name_that_is_taken_is_told_with_both(write: Write) -> None:
         PythonFileError, match=r"mine.py:\d+: ValueError: play 'goalkeeper' is registered twice"
     ):
         import_file(path)
+
+
+def test_a_name_given_twice_in_one_file_is_told_with_both_lines(write: Write) -> None:
+    _, decorator, rest = MINE.partition("    @PLAYS")
+    path = write(MINE + decorator + rest)
+    with pytest.raises(PythonFileError) as raised:
+        import_file(path)
+    first, second = re.findall(r"mine\.py:(\d+): \w+(?= and|; give)", str(raised.value))
+    assert int(first) < int(second)
+    assert str(raised.value).endswith("; give one of them another name")
+
+
+@pytest.mark.integration
+def test_two_states_of_a_team_are_told_with_the_command_in_which_they_meet(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write()
+    (tmp_path / "old").mkdir()
+    (tmp_path / "old" / "mine.py").write_text((tmp_path / "mine.py").read_text())
+    refused = CliRunner().invoke(app, ["plays", "--import", "mine.py", "--import", "old/mine.py"])
+    told = " ".join(refused.output.split())
+    assert refused.exit_code == 1
+    assert re.search(r"registered twice: mine\.py:\d+: \w+ and old/mine\.py:\d+: \w+; ", told)
+    command = (
+        told.rpartition(": robobt ")[2].replace("SCENARIO", "striker_vs_goalie").replace("PLAY", "advance")
+    )
+    played = CliRunner().invoke(app, [*command.split(), "-n", "1", "--set", "ends.time_limit=1"])
+    assert played.exit_code == 0, played.output
 
 
 def test_a_file_that_raises_leaves_nothing_behind_and_may_be_mended(write: Write) -> None:
