@@ -10,10 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say
+from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say, warn
 
 if TYPE_CHECKING:
     from robobt.models.card import Measured
+
+
+_MOST_TOLD = 10
+"""How many shots that are left out are named."""
 
 
 class Model(StrEnum):
@@ -112,23 +116,37 @@ def score(
 ) -> None:
     """Judge a shot predictor on recorded shots.
 
-    Keys of --json: model, data, shots, goals, predicted (goals that it expects), and of
-    accuracy, log_loss and calibration_error each: value, low, high, n and interval.
+    Shots with something wrong, or without what the model needs, are left out; a warning names their rows.
+
+    Keys of --json: model, data, shots, goals, predicted (goals that it expects), left_out (shots),
+    and of accuracy, log_loss and calibration_error each: value, low, high, n and interval.
     """
-    from robobt.experiments.shot_sets import load_shot_sets
-    from robobt.shots.data.files import read_shots
+    from numpy import isfinite
+
+    from robobt.experiments.shot_sets import split_file
+    from robobt.shots.data.files import read_usable_shots
     from robobt.shots.data.inputs import goals
     from robobt.shots.predict.score import measured, predicted_by
 
-    if data.is_dir():
-        sets = load_shot_sets(data)
-        table = sets.test if part is Part.TEST else sets.train
-    else:
-        table = read_shots(data)
-    scored, expected = goals(table), predicted_by(model, table)
+    shots = read_usable_shots(split_file(data, part.value) if data.is_dir() else data)
+    lacking: dict[int, str] = {}
+    expected = predicted_by(model, shots.table, lacking)
+    shots = shots.without(lacking)
+    expected = expected[isfinite(expected)]
+    scored, left_out = goals(shots.table), list(shots.problems.values())
+    for problem in left_out[:_MOST_TOLD]:
+        warn(f"{shots.file}: {problem}")
+    if left_out:
+        unnamed = f", {len(left_out) - _MOST_TOLD} of them not named" if len(left_out) > _MOST_TOLD else ""
+        warn(f"{len(left_out)} of {len(left_out) + len(scored)} shots are left out{unnamed}")
     figures = measured(expected, scored)
     if as_json:
-        counts = {"shots": len(scored), "goals": int(scored.sum()), "predicted": float(expected.sum())}
+        counts = {
+            "shots": len(scored),
+            "goals": int(scored.sum()),
+            "predicted": float(expected.sum()),
+            "left_out": len(left_out),
+        }
         found = {key: figure.model_dump() for key, figure in figures.items()}
         print_json({"model": model, "data": str(data), **counts, **found})
         return

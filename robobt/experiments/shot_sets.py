@@ -55,17 +55,22 @@ def load_shot_sets(data: str | Path | None = None, seed: int = 0) -> ShotSets:
         return _split(read_shots(place), place, seed)
     weights = place / AUTHOR_WEIGHTS
     return ShotSets(
-        _one_of(place, "train"),
-        _one_of(place, "test"),
+        read_shots(split_file(place, "train")),
+        read_shots(split_file(place, "test")),
         author_network(weights) if weights.is_file() else None,
         str(place),
     )
 
 
-def _one_of(folder: Path, name: str) -> pa.Table:
+def split_file(folder: Path, name: str) -> Path:
+    """Return the file of a folder that holds the shots to train on ("train") or to test on ("test").
+
+    Raises:
+        ShotDataError: there is none.
+    """
     for ending in (".csv", ".parquet"):
         if (folder / f"{name}{ending}").is_file():
-            return read_shots(folder / f"{name}{ending}")
+            return folder / f"{name}{ending}"
     raise ShotDataError(f"{folder}: has neither {name}.csv nor {name}.parquet")
 
 

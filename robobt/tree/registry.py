@@ -198,7 +198,7 @@ def _say(entry: object, source: str | None) -> str:
 
 
 def _place(entry: Any) -> tuple[Path | None, int]:
-    """Return the file and line where somebody's own class or function begins; no file where that is not known."""
+    """Return where a class or function begins that is not robobt's; no file where that is not known."""
     try:
         if entry.__module__.partition(".")[0] == "robobt":
             return None, 0

@@ -62,7 +62,7 @@ def author_table(cells: Cells) -> pa.Table:
     }
     count = len(cells.rows)
     real = {
-        name: np.array(cells.convert(titles[name], parse) if name in titles else [math.nan] * count)
+        name: np.array(cells.convert(titles[name], parse, math.nan) if name in titles else [math.nan] * count)
         for name, parse in parsers.items()
     }
 
@@ -85,7 +85,7 @@ def author_table(cells: Cells) -> pa.Table:
     }
     known = {
         "schema_version": [VERSION] * count,
-        "success": cells.convert(titles["success"], _label),
+        "success": cells.convert(titles["success"], _label, 0),
         **{name: cells.columns[titles[name]] for name in _TEXTS if name in titles},
         **real,
         **lists,

@@ -5,21 +5,50 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from robobt.config.atomic import replacing
 from robobt.shots.data.author_data import author_table
-from robobt.shots.data.cells import Cells, read_cells
+from robobt.shots.data.cells import Cells, Problems, read_cells, refuse
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import COLUMNS, SCHEMA, UNKNOWN, VERSION, Row
 
 _SEPARATOR = ";"
 """Between the numbers of a list in a cell of a CSV file."""
+
+
+@dataclass(frozen=True)
+class ReadShots:
+    """Shots of a file of which some may be wrong.
+
+    Attributes:
+        file: the file.
+        table: the shots that can be used, in :data:`SCHEMA`.
+        rows: the row of each (a spreadsheet's: the header is row 1).
+        problems: what is wrong with the others, by row.
+    """
+
+    file: Path
+    table: pa.Table
+    rows: list[int]
+    problems: Problems
+
+    def without(self, lacking: Mapping[int, str]) -> ReadShots:
+        """Leave further shots out, each with the reason, by their places in the table."""
+        kept = [i for i in range(len(self.rows)) if i not in lacking]
+        more = {self.rows[i]: f"row {self.rows[i]}: {reason}" for i, reason in lacking.items()}
+        problems = dict(sorted({**more, **self.problems}.items()))
+        if not kept and problems:
+            first = next(iter(problems.values()))
+            raise ShotDataError(f"{self.file}: none of its {len(problems)} shots can be used; {first}")
+        return ReadShots(self.file, self.table.take(kept), [self.rows[i] for i in kept], problems)
 
 
 def read_shots(path: str | Path) -> pa.Table:
@@ -33,20 +62,37 @@ def read_shots(path: str | Path) -> pa.Table:
         ShotDataError: the file cannot be read, or a cell is wrong; the message
             names the file, the row (a spreadsheet's: the header is row 1) and the column.
     """
-    file = Path(path)
+    return _read(Path(path), None).table
+
+
+def read_usable_shots(path: str | Path) -> ReadShots:
+    """Read the shots of a file as :func:`read_shots` does, and leave out those with something wrong.
+
+    Raises:
+        ShotDataError: the file cannot be read, lacks a column, or holds no shot that can be used.
+    """
+    problems: Problems = {}
+    found = _read(Path(path), problems)
+    return found.without({i: "" for i, row in enumerate(found.rows) if row in problems})
+
+
+def _read(file: Path, problems: Problems | None) -> ReadShots:
     try:
         if file.suffix == ".parquet":
-            table = _checked(pq.read_table(file), file)
+            read = pq.read_table(file)
+            rows = list(range(2, 2 + read.num_rows))
+            table = _checked(read, file, rows, problems)
         else:
-            cells = read_cells(file)
+            cells = read_cells(file, problems)
+            rows = cells.rows
             own = "schema_version" in cells.columns
-            table = _checked(_own_table(cells), file, cells.rows) if own else author_table(cells)
+            table = _checked(_own_table(cells), file, rows, problems) if own else author_table(cells)
     except (OSError, UnicodeDecodeError, csv.Error, pa.ArrowException) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise ShotDataError(f"{file}: {' '.join(reason.split())}") from error
-    if table.num_rows == 0:
+    if table.num_rows == 0 and not problems:
         raise ShotDataError(f"{file}: holds no shots")
-    return table
+    return ReadShots(file, table, rows, problems or {})
 
 
 def write_shots(table: pa.Table, path: str | Path) -> None:
@@ -90,7 +136,10 @@ def _own_table(cells: Cells) -> pa.Table:
     for name in SCHEMA.names:
         if name not in cells.columns:
             raise ShotDataError(f"{cells.file}: has no column {name!r}")
-    values = {column.name: cells.convert(column.name, _PARSERS[column.type]) for column in COLUMNS}
+    values = {
+        column.name: cells.convert(column.name, _PARSERS[column.type], UNKNOWN[column.type])
+        for column in COLUMNS
+    }
     return pa.Table.from_pydict(values, SCHEMA)
 
 
@@ -118,7 +167,7 @@ def _reals(cell: str) -> list[float]:
 _PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "real": _real, "reals": _reals}
 
 
-def _checked(table: pa.Table, file: Path, rows: list[int] | None = None) -> pa.Table:
+def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | None) -> pa.Table:
     """Return a table in :data:`SCHEMA`, its columns in order, after a look at what must not be missing."""
     for column in COLUMNS:
         if column.name not in table.schema.names:
@@ -134,8 +183,7 @@ def _checked(table: pa.Table, file: Path, rows: list[int] | None = None) -> pa.T
         ("success", pc.is_in(success, pa.array([0, 1])), "is neither 1 nor 0"),
         ("distance_to_goal", pc.and_(pc.greater(distance, 0.0), pc.is_finite(distance)), "is not a distance"),
     ):
-        row = pc.index(pc.fill_null(right, False), False).as_py()
-        if row >= 0:
-            number, value = rows[row] if rows else row + 2, table.column(name)[row].as_py()
-            raise ShotDataError(f"{file}: row {number}, column {name!r}: {value} {problem}")
+        for i in np.flatnonzero(~pc.fill_null(right, False).to_numpy()):
+            value = table.column(name)[int(i)].as_py()
+            refuse(file, rows[i], f", column {name!r}: {value} {problem}", problems)
     return table

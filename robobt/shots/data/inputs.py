@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 from robobt.world.features import ABSENT, SCENE_HEAD, SCENE_OPPONENTS, SHOT_SCENE, shot_scene
 from robobt.world.geometry import FloatArray
 
+PLACES = ("robot_x", "target_x")
+"""Columns that say whether a shot's field coordinates were recorded."""
+
 _KINEMATICS = ("x", "y", "heading", "field_vx", "field_vy", "omega")
 _HELD = 0.11
 """Shooter's centre to a ball in its mouth [m]."""
@@ -23,8 +26,7 @@ def shot_inputs(table: pa.Table) -> FloatArray:
     that a predictor that needs them refuses the data.
     """
     scenes = _from_shot_frame(table)
-    column = {name: table.column(name).to_numpy() for name in ("robot_x", "target_x", "robot_field_vx")}
-    placed = np.isfinite(column["robot_x"]) & np.isfinite(column["target_x"])
+    placed = np.logical_and(*[np.isfinite(table.column(name).to_numpy()) for name in PLACES])
     counts = np.array([len(entry) for entry in table.column("opponents_x").to_pylist()])
     moving = np.array([len(entry) for entry in table.column("opponents_vx").to_pylist()]) == counts
     # Rows with equally many opponents are worked out together.

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from robobt.models.card import Measured
 from robobt.models.policy import load_policy
-from robobt.shots.data.inputs import asked_inputs
+from robobt.shots.data.inputs import PLACES, asked_inputs
 from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import COLUMNS, SCHEMA
 from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.validation import judge
 from robobt.statistics import calibration_error, mean_interval, wilson_interval
@@ -20,25 +21,53 @@ from robobt.world.geometry import FloatArray
 
 RESAMPLES = 1000
 _SURE = 1e-6
+_NUMBERS = [column for column in COLUMNS if column.type in ("real", "reals") and column.name not in PLACES]
 
 
-def predicted_by(model: str | Path, table: pa.Table) -> FloatArray:
+def predicted_by(model: str | Path, table: pa.Table, lacking: dict[int, str] | None = None) -> FloatArray:
     """Return the probability of a goal (n,) that a shot predictor gives each shot of a table.
 
     It is asked as a rater asks it in play: about a kick that goes out along the line to the target.
+
+    Args:
+        model: a shipped model's name, or a file.
+        table: the shots, in the package's table.
+        lacking: takes what is missing, by index, of the shots that lack something the model needs; their
+            probability is not-a-number. With None such a shot is an error.
 
     Raises:
         ModelError: there is no such model, or it is no shot predictor.
         ShotDataError: a shot lacks what the model needs to know.
     """
     policy = load_policy(model, kind="shot_predictor")
+    pairs = policy.card.observation.name == SHOT.name
+    inputs = _inputs(table, pairs)
+    known = np.isfinite(inputs).all(axis=1)
+    for index in np.flatnonzero(~known).tolist():
+        problem = f"lacks {_lacking(table, index, pairs)}, which {policy.card.name} needs to know"
+        if lacking is None:
+            raise ShotDataError(f"shot {index + 1}: {problem}")
+        lacking[index] = problem
+    answers = np.full(len(inputs), np.nan)
+    if known.any():
+        answers[known] = np.asarray(policy(inputs[known].astype(np.float32)), dtype=np.float64).reshape(-1)
+    return answers
+
+
+def _inputs(table: pa.Table, pairs: bool) -> FloatArray:
     scenes = asked_inputs(table)
-    inputs = pair_features(scenes) if policy.card.observation.name == SHOT.name else scenes
-    unknown = np.flatnonzero(~np.isfinite(inputs).all(axis=1))
-    if len(unknown):
-        raise ShotDataError(f"shot {unknown[0] + 1}: lacks something that {policy.card.name} needs to know")
-    answers: FloatArray = np.asarray(policy(inputs.astype(np.float32)), dtype=np.float64)
-    return answers.reshape(len(inputs))
+    return pair_features(scenes) if pairs else scenes
+
+
+def _lacking(table: pa.Table, index: int, pairs: bool) -> str:
+    """Return the columns without which the inputs of a shot are not finite."""
+    shot = table.slice(index, 1).to_pylist()[0]
+    known = {column.name: np.nan_to_num(shot[column.name], posinf=0.0, neginf=0.0) for column in _NUMBERS}
+    unknown = [name for name in known if not np.isfinite(shot[name]).all()]
+    # Each is tried alone, all others known.
+    tried = pa.Table.from_pylist([{**shot, **known, name: shot[name]} for name in unknown], SCHEMA)
+    needed = np.flatnonzero(~np.isfinite(_inputs(tried, pairs)).all(axis=1))
+    return ", ".join([repr(unknown[i]) for i in needed])
 
 
 def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> dict[str, Measured]:
@@ -51,12 +80,15 @@ def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> d
     goal = np.asarray(scored) == 1
     judged = judge(p, goal)
     right = wilson_interval(round(judged.accuracy * judged.shots), judged.shots)
-    loss = mean_interval(-np.where(goal, np.log(p), np.log1p(-p)))
+    losses = -np.where(goal, np.log(p), np.log1p(-p))
+    loss = mean_interval(losses)
+    # One shot alone tells nothing about the others' losses: they may be any.
+    lowest, highest = (loss.low, loss.high) if len(losses) > 1 else (0.0, -float(np.log(_SURE)))
     drawn = np.random.default_rng(0).integers(0, len(p), (RESAMPLES, len(p)))
     low, high = np.quantile([calibration_error(p[rows], goal[rows]) for rows in drawn], (0.025, 0.975))
     figures = {
         "accuracy": (judged.accuracy, right.low, right.high, "95 % Wilson"),
-        "log_loss": (judged.log_loss, loss.low, loss.high, "95 % Student"),
+        "log_loss": (judged.log_loss, lowest, highest, "95 % Student"),
         "calibration_error": (judged.calibration_error, float(low), float(high), "95 % bootstrap"),
     }
     return {
