@@ -120,7 +120,7 @@ def _build(play: str, params: list[str]) -> Behaviour:
 
 def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool) -> bool:
     """Write the tree to those of the four files that are named; whether there was one."""
-    from robobt.config.errors import naming
+    from robobt.config.atomic import write_atomically
     from robobt.plays.files import tree_xml, tree_yaml
     from robobt.tree.drawing import tree_dot
     from robobt.tree.svg import tree_svg
@@ -133,9 +133,7 @@ def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool)
     ]
     for path, write in zip(paths, writers, strict=True):
         if path is not None:
-            text = write()
-            with naming(path):
-                path.write_text(text, encoding="utf-8")
+            write_atomically(path, write())
             if not quiet:
                 say(f"Tree: {path}")
     return any(path is not None for path in paths)

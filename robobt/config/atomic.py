@@ -25,20 +25,25 @@ def replacing(path: Path) -> Iterator[Path]:
     """Give the path of a temporary file that takes the place of ``path`` when the block ends.
 
     The temporary file lies in the same folder and its name ends like that of ``path``. It is removed when the
-    block raises.
+    block raises. A link stays, and what it leads to is replaced. A device or a pipe, such as ``/dev/stdout``,
+    is written to as it is.
 
     Raises:
         OSError: the file cannot be put in place; the error names ``path``.
     """
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        yield path
+        return
+    target = path.resolve()
+    temporary = target.with_name(f".{os.getpid()}.{target.name}")
     try:
         yield temporary
         with naming(path):
             _sync(temporary, os.O_RDWR)
-            temporary.replace(path)
+            temporary.replace(target)
             # A rename is on disk once its folder is; some systems cannot open folders.
             if hasattr(os, "O_DIRECTORY"):
-                _sync(path.parent, os.O_RDONLY | os.O_DIRECTORY)
+                _sync(target.parent, os.O_RDONLY | os.O_DIRECTORY)
     finally:
         temporary.unlink(missing_ok=True)
 

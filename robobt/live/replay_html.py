@@ -10,7 +10,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from robobt.config.errors import naming
+from robobt.config.atomic import write_atomically
 from robobt.live.page_data import ChunkEncoder, header_data
 from robobt.live.page_files import bundle, page_text
 from robobt.match.recording import Recording, load_recording
@@ -41,8 +41,7 @@ def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
     path = Path(path)
-    with naming(path):
-        path.write_text(replay_html(recording), encoding="utf-8")
+    write_atomically(path, replay_html(recording))
     return path
 
 

@@ -47,3 +47,24 @@ def test_a_block_that_raises_leaves_the_old_file_alone(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="no plot"):
         draw()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_stays_and_what_it_leads_to_is_replaced(tmp_path: Path) -> None:
+    path, target = tmp_path / "link.json", tmp_path / "there" / "file.json"
+    target.parent.mkdir()
+    path.symlink_to(target)
+    for content in ("old", "new"):
+        write_atomically(path, content)
+        assert target.read_text() == content
+    assert path.is_symlink()
+    assert list(target.parent.iterdir()) == [target]
+
+
+def test_a_pipe_is_written_to_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    write_atomically(path, "said")
+    assert os.read(reader, 100) == b"said"
+    os.close(reader)
+    assert path.is_fifo()

@@ -74,9 +74,7 @@ class Recorder:
                 self._writer = new_stream(self._file, self.header)
                 self._file.flush()
             except BaseException:
-                # What is buffered cannot be written either.
-                with suppress(OSError):
-                    self._file.close()
+                self._discard()
                 raise
         self.capture.takers.append(self._take)
         # For a process that ends without closing it.
@@ -116,15 +114,32 @@ class Recorder:
         batch = self._encoder.encode(self._ticks).batch()
         self._ticks = []
         with naming(self.path):
-            self._writer.write_batch(batch)
-            self._file.flush()
+            try:
+                self._writer.write_batch(batch)
+                self._file.flush()
+            except OSError:
+                self._discard()
+                raise
 
     def _release(self) -> None:
         if self._file.closed:
             return
         atexit.unregister(self._release)
-        with naming(self.path), self._file:
-            if self._ticks and (left := self.capture.events_left()):
-                self._add_to_last({"events": [*self._ticks[-1].changes.get("events", ()), *left]})
-            self._flush()
-            self._writer.close()
+        try:
+            with naming(self.path), self._file:
+                if self._ticks and (left := self.capture.events_left()):
+                    self._add_to_last({"events": [*self._ticks[-1].changes.get("events", ()), *left]})
+                self._flush()
+                self._writer.close()
+        except OSError:
+            self._discard()
+            raise
+
+    def _discard(self) -> None:
+        """Close the file, which cannot be written, and remove the piece of it that is there."""
+        atexit.unregister(self._release)
+        # What is buffered cannot be written either.
+        with suppress(OSError):
+            self._file.close()
+        if self.path.is_file():
+            self.path.unlink()

@@ -1,0 +1,51 @@
+"""A command that cannot write its file to the end leaves nothing of it."""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from tests.match.recording.made_recording import record
+
+pytestmark = pytest.mark.integration
+
+MATCH = ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=2", "--replay"]
+OUTPUTS = [
+    ([*MATCH, "{}/a.html"], 50_000),
+    ([*MATCH, "{}/a.robobt.arrows"], 5_000),
+    (["tree", "attack_main", "--svg", "{}/a.svg"], 1000),
+    (["tree", "attack_main", "--xml", "{}/a.xml"], 1000),
+    (["replay", "{recording}", "--gif", "{}/a.gif"], 1000),
+    (["replay", "{recording}", "--html", "{}/a.html"], 1000),
+    (["record", "export", "{recording}", "--btlog", "--robot", "blue 1", "--out", "{}/a.btlog"], 200),
+]
+
+
+@contextmanager
+def files_no_longer_than(size: int) -> Iterator[None]:
+    """Fail writes beyond this size, in the middle of a file, as a full disk does [bytes]."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize(("arguments", "size"), OUTPUTS)
+def test_a_full_disk_leaves_no_piece_of_a_file(arguments: list[str], size: int, tmp_path: Path) -> None:
+    recording, folder = tmp_path / "made.robobt.arrows", tmp_path / "out"
+    record(recording)
+    folder.mkdir()
+    given = [text.format(folder, recording=recording) for text in arguments]
+    with files_no_longer_than(size):
+        ended = CliRunner().invoke(app, given)
+    assert ended.exit_code == 1
+    assert "File too large" in " ".join(ended.output.split())
+    assert list(folder.iterdir()) == []
