@@ -217,6 +217,15 @@ def parse_assignments(texts: Iterable[str], option: str) -> dict[str, object]:
     return given
 
 
+@contextmanager
+def blaming(option: str) -> Iterator[None]:
+    """Name the option, rather than a file that it changes, where what it says is wrong."""
+    try:
+        yield
+    except ConfigError as error:
+        raise ConfigError(option, error.problem, error.field) from error
+
+
 def cores() -> int:
     """Return how many tasks are run at a time by default: this process's cores, or those of its engine."""
     from robobt.engines.run import engine

@@ -19,6 +19,7 @@ from robobt.cli.common import (
     Progress,
     Seed,
     Workers,
+    blaming,
     console,
     cores,
     import_files,
@@ -124,8 +125,15 @@ def scenario_of(scenario: str, settings: list[str] | None) -> Scenario:
     """Load a scenario with the changes of ``--set``."""
     from robobt.match import load_scenario
     from robobt.match.scenario.changes import changed
+    from robobt.worlds import scenario_settings
 
-    return changed(load_scenario(scenario), parse_assignments(settings or [], "--set"))
+    loaded = load_scenario(scenario)
+    if settings:
+        with blaming("--set"):
+            loaded = changed(loaded, parse_assignments(settings, "--set"))
+            # Settings of the simulator are free until it is known which.
+            scenario_settings(loaded)
+    return loaded
 
 
 def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
@@ -135,8 +143,10 @@ def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
 
     for team, text in ((Team.BLUE, blue), (Team.YELLOW, yellow)):
         if text:
-            play, params = parse_play(text, f"--{team.value}")
-            scenario = with_team(scenario, team, play or None, params)
+            option = f"--{team.value}"
+            play, params = parse_play(text, option)
+            with blaming(option):
+                scenario = with_team(scenario, team, play or None, params)
     return scenario
 
 

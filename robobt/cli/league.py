@@ -13,6 +13,7 @@ import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ def serve(
     rules = RefereeSettings() if referee else None
     if scenario is None:
         if field not in FIELDS:
-            there = f"there is no field {field!r}; there are {', '.join(FIELDS)}"
+            there = f"there is no field {field!r}; {unknown_name(field, FIELDS)}"
             raise typer.BadParameter(there, param_hint="--field")
         served = served_line_up(FIELDS[field], robots, preset or "grsim", realism, seed)
     else:

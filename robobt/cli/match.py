@@ -21,6 +21,7 @@ from robobt.cli.common import (
     Progress,
     Seed,
     Where,
+    blaming,
     complete_scenario,
     console,
     cores,
@@ -242,7 +243,8 @@ def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]
         ((_, script),) = parse_assignments([f"{path}={status}"], "--substitute").items()
         rules.append((" ".join(robot.split()), path, script))
     if rules:
-        scenario = substituted(scenario, rules)
+        with blaming("--substitute"):
+            scenario = substituted(scenario, rules)
     if on_error is not None:
         scenario = scenario.model_copy(update={"on_error": on_error.value})
     return scenario

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import Json, Progress, console, print_json, say, table
+from robobt.config.errors import unknown_name
 
 if TYPE_CHECKING:
     from robobt.experiments.table3 import Table3
@@ -121,7 +122,7 @@ def table3(
     torch.set_num_threads(1)
     for name in model or ():
         if name not in PREDICTORS:
-            raise typer.BadParameter(f"no predictor is called {name!r}; there are {', '.join(PREDICTORS)}")
+            raise typer.BadParameter(f"no predictor is called {name!r}; {unknown_name(name, PREDICTORS)}")
     sets = load_shot_sets(data)
     models = model or list(PREDICTORS)
     with Progress("table 3", len(models)) as progress:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from robobt.learning.training.progress import Progress as Standing
     from robobt.learning.training.results import TrainResult
+    from robobt.learning.training.settings import TrainSettings
 
 Task = Annotated[
     str,
@@ -83,9 +84,8 @@ def train(
     """
     from robobt.learning.training.results import figures_of
     from robobt.learning.training.seeds import train_seeds
-    from robobt.learning.training.settings import load_settings
 
-    settings = load_settings(task, preset, parse_assignments(changes or [], "--set"))
+    settings = _settings(task, preset, changes or [])
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
     first = settings.seed if seed is None else seed
     if live and (seeds > 1 or workers not in (None, 1)):
@@ -119,6 +119,20 @@ def train(
         return
     console.print(_results(results))
     say(f"In {folder}.")
+
+
+def _settings(task: str, preset: str, changes: list[str]) -> TrainSettings:
+    """Load settings; what --set changes is not blamed on the preset's file."""
+    from robobt.learning.training.settings import SettingsError, load_settings
+
+    given = parse_assignments(changes, "--set")
+    try:
+        return load_settings(task, preset, given)
+    except SettingsError as error:
+        for name in given:
+            if f"{error.field}.".startswith(f"{name}.") or f"{name}.".startswith(f"{error.field}."):
+                raise SettingsError("--set", error.problem, error.field) from error
+        raise
 
 
 def demonstrations(

@@ -64,12 +64,39 @@ def short_repr(value: object) -> str:
     return shown if len(shown) <= 60 else shown[:57] + "..."
 
 
-def unknown_name(name: object, known: Iterable[str]) -> str:
-    """Return how a message about an unknown name ends: which was meant, or which there are."""
+FEW = 5
+"""So many names are listed even where one was probably meant."""
+
+
+def unknown_name(name: object, known: Iterable[str], there_are: str = "there are") -> str:
+    """Return how a message about an unknown name ends: which was meant, or which there are, or both if few.
+
+    Args:
+        name: the unknown name.
+        known: the names there are.
+        there_are: what comes before their list.
+    """
     there = list(known)
-    close = get_close_matches(str(name), there, n=3, cutoff=0.7)
-    meant = f"did you mean {' or '.join(close)}? " if close else ""
-    return f"{meant}there are {', '.join(there)}"
+    meant = close_names(str(name), there) if len(there) > 1 else []
+    guess = f"did you mean {' or '.join(meant)}?"
+    if meant and len(there) > FEW:
+        return guess
+    listed = f"{there_are} {', '.join(there) or 'none'}"
+    return f"{listed}; {guess}" if meant else listed
+
+
+def close_names(name: str, known: Iterable[str]) -> list[str]:
+    """Return the three known names at most that are most like this one, whatever their case and hyphens."""
+    plain = {_plain(each): each for each in known}
+    asked = _plain(name)
+    close = get_close_matches(asked, plain, n=3, cutoff=0.66)
+    if len(asked) >= 3:
+        close += [each for each in plain if asked in each and each not in close]
+    return [plain[each] for each in close[:3]]
+
+
+def _plain(name: str) -> str:
+    return name.lower().replace("_", "").replace("-", "").replace(" ", "")
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import get_args
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from robobt.config.errors import FieldError, message_of, one_line, short_repr
+from robobt.config.errors import FieldError, message_of, one_line, short_repr, unknown_name
 
 _WORDS = {
     "valid array": "list",
@@ -46,8 +46,8 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     elif problem["type"] == "missing":
         message = "is missing"
     elif problem["type"] == "extra_forbidden":
-        known = ", ".join(_fields_at(model, problem["loc"][:-1]))
-        message = f"there is no such field; there are {known}"
+        known = _fields_at(model, problem["loc"][:-1])
+        message = f"there is no such field; {unknown_name(problem['loc'][-1], known)}"
     elif not isinstance(problem["input"], Mapping | list):
         message = f"{message}, not {short_repr(problem['input'])}"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
+from robobt.config.errors import close_names
 from robobt.config.resources import models_folder
 from robobt.models.file import SUFFIXES, ModelError, UnknownModelError
 
@@ -38,8 +39,11 @@ def find_model(name_or_path: str | Path) -> Path:
         raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
     for path in found.values():
         return path
-    there = ", ".join(sorted({path.stem for folder in folders for path in list_models(folder)})) or "none"
-    raise UnknownModelError(f"no model is called {text!r}; installed: {there}; or give the path of a file")
+    there = sorted({path.stem for folder in folders for path in list_models(folder)})
+    meant = close_names(text, there)
+    guess = f"did you mean {' or '.join(meant)}? " if meant else ""
+    known = f"installed: {', '.join(there) or 'none'}; {guess}or give the path of a file"
+    raise UnknownModelError(f"no model is called {text!r}; {known}")
 
 
 def is_path(text: str) -> bool:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
+from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings
 from robobt.sim.robot_settings import (
     BodySettings,
@@ -261,7 +262,7 @@ def preset(name: str, **changes: object) -> SimSettings:
         KeyError: no such preset; the message lists those there are.
     """
     if name not in PRESETS:
-        raise KeyError(f"no simulator preset is called {name!r}; there are {', '.join(sorted(PRESETS))}")
+        raise KeyError(f"no simulator preset is called {name!r}; {unknown_name(name, sorted(PRESETS))}")
     return PRESETS[name].model_copy(update=changes)
 
 
@@ -272,7 +273,7 @@ def realism_level(name: str) -> RealismSettings:
         KeyError: no such level; the message lists those there are.
     """
     if name not in REALISM:
-        raise KeyError(f"no realism level is called {name!r}; there are {', '.join(REALISM)}")
+        raise KeyError(f"no realism level is called {name!r}; {unknown_name(name, REALISM)}")
     return REALISM[name]
 
 

@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError, FieldError
+from robobt.config.errors import ConfigError, FieldError, close_names
 from robobt.config.resources import bundled_scenarios, models_folder
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
@@ -268,9 +268,11 @@ def _part(robot: RobotSetup) -> Part:
 
 
 def _unknown(name: str) -> str:
-    bundled = ", ".join(bundled_scenarios())
+    bundled = bundled_scenarios()
+    meant = close_names(name, [*PLAYS, *bundled])
+    there = f"Plays are {', '.join(PLAYS)}; scenarios {', '.join(bundled)}"
     return PLAYS.problem_with(name) or (
         f"no play is called {name!r}; an entrant is a play, a file (.yaml), or a scenario's side, as in "
-        f"six_v_six:blue, or a Python file's, as in my_team.py:striker. Plays are {', '.join(PLAYS)}; "
-        f"scenarios {bundled}"
+        "six_v_six:blue, or a Python file's, as in my_team.py:striker. "
+        + (f"Did you mean {' or '.join(meant)}?" if meant else there)
     )

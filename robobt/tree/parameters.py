@@ -15,7 +15,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
-from robobt.config.errors import RobobtError, short_repr
+from robobt.config.errors import RobobtError, short_repr, unknown_name
 from robobt.tree.signatures import signature_of
 
 
@@ -125,7 +125,7 @@ def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, o
     """Check that every given name is known and every parameter without a default is given."""
     for name in given:
         if name not in known:
-            there = f"it has {', '.join(known)}" if known else "it has none"
+            there = unknown_name(name, known, "it has")
             raise ParameterError(name, f"{what} has no such parameter; {there}")
     for name, parameter in known.items():
         if parameter.required and name not in given:

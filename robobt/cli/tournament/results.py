@@ -12,6 +12,7 @@ from rich.markup import escape
 
 from robobt.cli.common import Json, console, print_json, say, table
 from robobt.cli.tournament.tables import lead_text, print_encounters, print_standings
+from robobt.config.errors import unknown_name
 
 if TYPE_CHECKING:
     from robobt.tournament.played import PlayedMatch
@@ -74,7 +75,7 @@ def results(
         known, played, found = list(held.entrants()), held.played, held.matches()
     for name in [*(entrant or []), *(compare or ()), *([lost_by] if lost_by else [])]:
         if name not in known:
-            raise typer.BadParameter(f"no entrant is called {name!r}; there are {', '.join(known)}")
+            raise typer.BadParameter(f"no entrant is called {name!r}; {unknown_name(name, known)}")
     if compare is not None and compare[0] == compare[1]:
         raise typer.BadParameter("needs two different entrants", param_hint="--compare")
     ends = sorted({match.outcome for match in found})

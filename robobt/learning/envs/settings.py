@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings
 from robobt.models.actions import ActionScaling
 from robobt.sim.settings import SimSettings, preset, settings_from
@@ -44,7 +45,7 @@ def by_name(named: Mapping[str, object], noun: str) -> BeforeValidator:
     def look_up(value: object) -> object:
         if isinstance(value, str):
             if value not in named:
-                raise ValueError(f"no {noun} is called {value!r}; there are {', '.join(named)}")
+                raise ValueError(f"no {noun} is called {value!r}; {unknown_name(value, named)}")
             return named[value]
         return value
 

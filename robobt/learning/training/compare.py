@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from robobt.config.atomic import write_atomically
+from robobt.config.errors import unknown_name
 from robobt.config.yaml import read_yaml
 from robobt.learning.training.preset_files import SWITCHES
 from robobt.learning.training.progress import OnProgress
@@ -69,7 +70,7 @@ def compare(
     found = variants(task, changes)
     for name in only:
         if name not in found:
-            raise SettingsError("", f"no variant is called {name!r}; there are {', '.join(found)}")
+            raise SettingsError("", f"no variant is called {name!r}; {unknown_name(name, found)}")
     summaries: dict[str, Summary] = {}
     for name, settings in found.items():
         if only and name not in only:

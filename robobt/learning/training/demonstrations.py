@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from robobt import __version__
 from robobt.config.atomic import replacing
-from robobt.config.errors import RobobtError, naming
+from robobt.config.errors import RobobtError, naming, unknown_name
 from robobt.learning.agents.nstep import NStep, Transitions
 from robobt.learning.envs import ArenaTask, TaskSettings, make_task
 from robobt.learning.envs.task import BoolArray, FloatArray
@@ -151,7 +151,7 @@ def record(
         ValueError: no such teacher, or no episodes.
     """
     if teacher not in TEACHERS:
-        raise ValueError(f"no teacher is called {teacher!r}; there are {', '.join(TEACHERS)}")
+        raise ValueError(f"no teacher is called {teacher!r}; {unknown_name(teacher, TEACHERS)}")
     if episodes < 1:
         raise ValueError(f"episodes must be at least 1, not {episodes}")
     task = make_task(environment, min(episodes, _ARENAS))

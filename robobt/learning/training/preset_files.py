@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from robobt.config.errors import ConfigError
+from robobt.config.errors import ConfigError, unknown_name
 from robobt.config.yaml import read_yaml
 from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL
 
@@ -41,8 +41,8 @@ def read_preset(task: str, preset: str, seen: tuple[str, ...] = ()) -> tuple[dic
     if bundled is None and path.suffix not in (".yaml", ".yml"):
         known = presets(task)
         if not known:
-            raise SettingsError("", f"no task is called {task!r}; there are {', '.join(ENVIRONMENTS)}")
-        raise SettingsError("", f"no preset of {task} is called {preset!r}; there are {', '.join(known)}")
+            raise SettingsError("", f"no task is called {task!r}; {unknown_name(task, ENVIRONMENTS)}")
+        raise SettingsError("", f"no preset of {task} is called {preset!r}; {unknown_name(preset, known)}")
     data = read_yaml(path, SettingsError)
     base = data.pop("extends", None)
     if base is None:

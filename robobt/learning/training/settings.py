@@ -7,6 +7,7 @@ from typing import Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
+from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings, first_problem
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import GoToBallSettings, TaskSettings
@@ -138,7 +139,7 @@ def load_settings(
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
     if settings.task not in ENVIRONMENTS:
-        problem = f"there is no {settings.task!r}; there are {', '.join(ENVIRONMENTS)}"
+        problem = f"there is no {settings.task!r}; {unknown_name(settings.task, ENVIRONMENTS)}"
         raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
     if settings.central and settings.task not in SEVERAL:

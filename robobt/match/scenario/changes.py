@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from pydantic import BaseModel, ValidationError
 
+from robobt.config.errors import unknown_name
 from robobt.config.validation import first_problem
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario
@@ -63,7 +64,8 @@ def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:
     key, _, inner = name.partition(".")
     fields = [field for field in Scenario.model_fields if field != "robots"]
     if key not in fields:
-        problem = f"there is no such field; there are {', '.join(fields)}, and robots such as 'blue 0'"
+        robots = [str(robot) for robot, _ in scenario.robots]
+        problem = f"there is no such field; {unknown_name(key, [*fields, *robots])}"
         raise scenario.error(problem, name)
     data = {field: getattr(scenario, field) for field in scenario.model_fields_set}
     data[key] = _frozen(_nested(data.get(key), inner, value) if inner else value)

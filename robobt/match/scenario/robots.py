@@ -73,10 +73,10 @@ class RobotSetup(Part):
             # Settings of an object that the play makes of its parameters, such as a rater.
             field, problem = first_problem(error, BaseModel)
             if field.partition(".")[0] not in self.params:
-                raise FieldError(self._blamed(), f"{field}: {problem}") from error
+                raise FieldError(self._blamed(error), f"{field}: {problem}") from error
             raise FieldError(f"params.{field}", problem) from error
         except Exception as error:
-            field = self._blamed()
+            field = self._blamed(error)
             said = mistake_in_play(error) if field in ("play", "params") else message_of(error)
             raise FieldError(field, said) from error
         if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
@@ -84,16 +84,20 @@ class RobotSetup(Part):
             raise FieldError("play", f"{self.play} {problem}")
         return self
 
-    def _blamed(self) -> str:
-        """Return the field of the parameter without which the tree can be built, if it is one alone."""
+    def _blamed(self, error: Exception) -> str:
+        """Return the field of the parameter that makes building the tree fail, if it is one alone."""
+        if not self.params:
+            return "play"
         blamed = []
         for name in self.params:
             others = {other: value for other, value in self.params.items() if other != name}
             with suppress(Exception):
                 self.model_copy(update={"params": others}).build_tree()
                 blamed.append(name)
-        if not self.params:
-            return "play"
+        if not blamed:
+            # Several are wrong, or it is one that the play needs: the message tells a file or name.
+            said = str(error)
+            blamed = [name for name, value in self.params.items() if isinstance(value, str) and value in said]
         return f"params.{blamed[0]}" if len(blamed) == 1 else "params"
 
     def build_tree(self) -> Behaviour:

@@ -103,7 +103,7 @@ class Scenario(Part):
         if not isinstance(value, str):
             return value
         if value not in FIELDS:
-            raise ValueError(f"no field is called {short_repr(value)}; there are {', '.join(FIELDS)}")
+            raise ValueError(f"no field is called {short_repr(value)}; {unknown_name(value, FIELDS)}")
         return FIELDS[value]
 
     @field_validator("simulator", mode="before")
@@ -187,7 +187,7 @@ class Scenario(Part):
         name = " ".join(str(robot).split())
         named = {str(identity): (identity, setup) for identity, setup in self.robots}
         if name not in named:
-            raise self.error(f"there is no robot {name!r}; there are {', '.join(named)}", "robots")
+            raise self.error(f"there is no robot {name!r}; {unknown_name(name, named)}", "robots")
         identity, setup = named[name]
         place = f"robots.{identity.team.value}.{self.robots.of(identity.team).index(setup)}"
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from robobt.config.errors import unknown_name
 from robobt.match.scenario.scenario import Scenario
 
 
@@ -25,7 +26,7 @@ def substituted(scenario: Scenario, rules: Iterable[tuple[str, str, object]]) ->
         names = [name for name in added if who in (name, name.partition(" ")[0])]
         if not names:
             raise scenario.error(
-                f"there is no robot {who!r} to substitute nodes of; there are {', '.join(added)}", "robots"
+                f"there is no robot {who!r} to substitute nodes of; {unknown_name(who, added)}", "robots"
             )
         for name in names:
             added[name][pattern] = script

@@ -103,7 +103,7 @@ def test_settings_survive_being_written_and_read():
     ("changes", "said"),
     [
         ({"agent.gamma": 1.0}, r"fast\.yaml, with agent\.gamma changed: agent\.gamma: .*less than 1"),
-        ({"agent.tauu": 1.0}, r"agent\.tauu: there is no such field; there are hidden"),
+        ({"agent.tauu": 1.0}, r"agent\.tauu: there is no such field; did you mean tau\?"),
         ({"agent.atoms": 1}, r"agent: .*atoms must be 0 or at least 2"),
         (
             {"evaluation.every": 100},

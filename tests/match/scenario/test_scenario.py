@@ -181,7 +181,7 @@ class TestFields:
             ({"unknown": 1}, "unknown: there is no such field; there are name, description, field"),
             (
                 {"referee": {"max_dribbel": 1}},
-                "referee.max_dribbel: there is no such field; there are opening",
+                "referee.max_dribbel: there is no such field; did you mean max_dribble?",
             ),
             ({"referee": "on"}, "referee: input should be"),
             ({"referee": {"opening_spot": [50, 0]}}, "referee.opening_spot: (50, 0) lies outside the field"),
