@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, Workers, cores, errors, print_json, say
+from robobt.cli.outputs import make_folders
 
 
 class Scenario(StrEnum):
@@ -90,6 +91,7 @@ def shots(
         seed=seed,
         goalkeepers=population,
     )
+    make_folders({"--out": out})
     total = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)
     with Progress("shots", total) as progress:
         done = collect_shots(settings, out, total, workers or cores(), progress.advance)

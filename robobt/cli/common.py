@@ -90,11 +90,6 @@ Bundled = Annotated[
 ]
 """The argument of commands that play a scenario."""
 
-RECORDING = ".robobt.arrows"
-"""How the name of a recorded match ends."""
-
-PAGE = ".html"
-
 log = logging.getLogger("robobt")
 _P = ParamSpec("_P")
 _T = TypeVar("_T")

@@ -29,6 +29,7 @@ from robobt.cli.common import (
     warn,
     world_of,
 )
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from robobt.experiments.compare import Compared, Difference
@@ -105,6 +106,7 @@ def compare(
     used = base.seed if seed is None else seed
     if out is not None and out.exists() and not out.is_dir():
         raise typer.BadParameter(f"'{out}' is not a folder", param_hint="--out")
+    make_folders({"--out": out}, folders=True)
     results: dict[str, list[MatchResult]] = {}
     with Progress("compare", count * len(variants)) as progress:
         for label, (variant, address) in variants.items():

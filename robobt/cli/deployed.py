@@ -21,6 +21,7 @@ from robobt.cli.common import (
     table,
     world_of,
 )
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -111,6 +112,7 @@ def deployed(
     used = SEED if seed is None else seed
     if world != SIM and workers not in (None, 1):
         raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
+    make_folders({"--out": out, "--picture": picture})
     processes = workers or (cores() if world == SIM else 1)
     total = len(situations) * len(attackers) * shots
     with Progress("deployed", total) as progress, world_of(world) as factory:

@@ -9,6 +9,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Json, console, errors, print_json, say, table, warn
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,6 +45,7 @@ def export(
     from robobt.learning.training.export_run import export_run
     from robobt.models.file import read_model_file
 
+    make_folders({"--out": out}, folders=True)
     with errors.status(f"exporting {escape(str(run))}"):
         formats: tuple[Format, ...] = ("torchscript", "onnx") if onnx else ("torchscript",)
         files = export_run(run, name, run if out is None else out, formats, force=force)

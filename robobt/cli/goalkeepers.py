@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say
+from robobt.cli.outputs import make_folders
 
 
 def goalkeepers(
@@ -39,6 +40,7 @@ def goalkeepers(
 
     if out is not None and out.exists() and not force:
         raise ShotDataError(f"{out}: is there already; give another --out, or --force")
+    make_folders({"--out": out})
     table = shots_to_fit(data)
     with Progress("fits", FOLDS + 1) as progress:
         found = explain(table, seed, progress.advance)

@@ -13,6 +13,7 @@ import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.outputs import make_folders
 from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
 
@@ -268,6 +269,7 @@ def log_packets(
         tracker=_address("--tracker", tracker),
         referee=_address("--referee", referee),
     )
+    make_folders({"OUT": out})
     written = {
         kind.name.lower(): count for kind, count in log_field(out, endpoints, interface, seconds).items()
     }

@@ -14,8 +14,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from robobt.cli.common import (
-    PAGE,
-    RECORDING,
     Imports,
     Json,
     Progress,
@@ -37,6 +35,7 @@ from robobt.cli.common import (
 from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.outputs import PAGES, RECORDING, make_folders
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
 from robobt.cli.team_figures import team_figures
 
@@ -180,10 +179,9 @@ def match(
         replay = Path(f"{name}-{record}{RECORDING}")
     if replay is not None:
         _check_replay(replay, out)
-        # Now, not when an hour of trials has been played.
-        replay.parent.mkdir(parents=True, exist_ok=True)
+    make_folders({"--replay": replay, "--out": out})
     with tempfile.TemporaryDirectory() as folder:
-        page = replay is not None and replay.suffix.lower() == PAGE
+        page = replay is not None and replay.name.lower().endswith(PAGES)
         recording = Path(folder) / f"trial{RECORDING}" if page else replay
         with ExitStack() as stack:
             play: Callable[[Match], MatchResult] = Match.play
@@ -252,7 +250,7 @@ def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]
 
 def _check_replay(path: Path, out: Path | None) -> None:
     """Refuse a name that is more likely another file's: what is there is replaced."""
-    ends = (PAGE, RECORDING)
+    ends = (*PAGES, RECORDING)
     if not path.name.lower().endswith(ends):
         there = f"takes a name that ends in {', '.join(ends)}, not '{path}'"
         raise typer.BadParameter(there, param_hint="--replay")

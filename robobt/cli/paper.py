@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import Json, Progress, console, print_json, say, table
+from robobt.cli.outputs import make_folders
 from robobt.config.errors import unknown_name
 
 if TYPE_CHECKING:
@@ -123,6 +124,7 @@ def table3(
     for name in model or ():
         if name not in PREDICTORS:
             raise typer.BadParameter(f"no predictor is called {name!r}; {unknown_name(name, PREDICTORS)}")
+    make_folders({"--picture": picture})
     sets = load_shot_sets(data)
     models = model or list(PREDICTORS)
     with Progress("table 3", len(models)) as progress:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import RECORDING, Imports, Json, console, import_files, print_json, say
+from robobt.cli.common import Imports, Json, console, import_files, print_json, say
+from robobt.cli.outputs import RECORDING, make_folders
 from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def export(
     stem = recording.name.removesuffix(RECORDING)
     target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out
     _spare(recording, target)
+    make_folders({"--out": target})
     say(f"Log: {write_btlog(loaded, who, target)}")
 
 
@@ -62,6 +64,7 @@ def case(
     loaded = load_recording(recording)
     who = recorded_robot(loaded, robot)
     _spare(recording, out)
+    make_folders({"--out": out})
     say(f"Regression case: {save_regression_case(loaded, who, tick, out)}")
 
 

@@ -10,8 +10,9 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import PAGE, RECORDING, say
+from robobt.cli.common import say
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.outputs import PAGE, RECORDING, make_folders
 
 _LOGS = (".log", ".log.gz")
 
@@ -74,6 +75,7 @@ def replay(
     for target, option in ((html, "--html"), (gif, "--gif"), (png, "--png")):
         if target is not None and target.exists() and target.samefile(recording):
             raise typer.BadParameter("is the recording itself; give another name", param_hint=option)
+    make_folders({"--html": html, "--gif": gif, "--png": png})
     if html is not None:
         from robobt.live.replay_html import write_html
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say, warn
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from robobt.models.card import Measured
@@ -76,6 +77,7 @@ def train(
 
     target = out / f"{name or model.value}{SUFFIXES['torchscript']}"
     refuse_to_replace(target, force)
+    make_folders({"--out": out}, folders=True)
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])
     recorded = None if real is None else load_shot_sets(real).test
@@ -184,6 +186,7 @@ def draw(
     """
     from robobt.experiments.goal_map import draw_goal_map, goal_map
 
+    make_folders({"--picture": picture})
     found = goal_map(model, spacing)
     draw_goal_map(found, picture)
     if as_json:

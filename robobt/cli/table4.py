@@ -23,6 +23,7 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -130,6 +131,7 @@ def table4(
     if (human or world != SIM) and workers not in (None, 1):
         here = "with a person at the robot" if human else "to play over the network"
         raise typer.BadParameter(f"must be 1 {here}", param_hint="--workers")
+    make_folders({"--out": out, "--picture": picture})
     combinations, chosen = tuple(only or COMBINATIONS), tuple(limits or LIMITS)
     if human:
         combinations, chosen = tuple(only or ()), tuple(limits or ("paper",))

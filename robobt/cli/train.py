@@ -24,6 +24,7 @@ from robobt.cli.common import (
     table,
 )
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -87,6 +88,7 @@ def train(
 
     settings = _settings(task, preset, changes or [])
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
+    make_folders({"--out": folder}, folders=True)
     first = settings.seed if seed is None else seed
     if live and (seeds > 1 or workers not in (None, 1)):
         raise typer.BadParameter("takes one seed and one worker", param_hint="--live")
@@ -163,6 +165,7 @@ def demonstrations(
         f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
     }
     environment = environment_of(load_settings(task, "fast", given))
+    make_folders({"--out": out})
     with Progress(f"recording {task}", episodes) as progress:
         recorded = record(environment, episodes, by, seed, lambda _: progress.advance())
     recorded.write(out)

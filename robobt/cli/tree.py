@@ -22,6 +22,7 @@ from robobt.cli.common import (
     say,
     warn,
 )
+from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from robobt.tree import Behaviour
@@ -76,6 +77,7 @@ def tree(
         raise typer.BadParameter("is for --statistics", param_hint="--seed")
     import_files(imports)
     root = _build(play, param or [])
+    make_folders({"--svg": svg, "--dot": dot, "--yaml": yaml, "--xml": xml})
     written = _write(root, Path(play).stem, [svg, dot, yaml, xml], quiet=as_json)
     data: dict[str, object] = {"play": play}
     wiring = _wiring(root)

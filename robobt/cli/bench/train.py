@@ -9,6 +9,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Json, console, errors, parse_assignments, print_json, table
+from robobt.cli.outputs import make_folders
 
 
 def bench_train(
@@ -37,6 +38,7 @@ def bench_train(
 
     given = parse_assignments(changes or [], "--set")
     folder = out or Path("runs") / f"compare-{task}"
+    make_folders({"--out": out}, folders=True)
     with errors.status(f"comparing settings of {escape(task)}") as status:
         compared = compare(
             task,

@@ -26,6 +26,7 @@ from robobt.cli.common import (
     warn,
 )
 from robobt.cli.compare import Set, parse_play, scenario_of
+from robobt.cli.outputs import make_folders
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
     ALPHA,
@@ -156,6 +157,7 @@ def sweep(
         base.seed if seed is None else seed,
         referee=referees,
     )
+    make_folders({"--out": out})
     crew = cores() if workers is None else workers
     running = None
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:

@@ -26,6 +26,7 @@ from robobt.cli.common import (
     warn,
 )
 from robobt.cli.compare import Set, scenario_of
+from robobt.cli.outputs import make_folders
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
 from robobt.cli.tournament.asked import (
     ALPHA,
@@ -178,6 +179,7 @@ def tournament(
     test = None if asked is None else RunningTest(asked, *plan.pairings[0])
     recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
     count = len(plan.fixtures())
+    make_folders({"--out": out, "--html": html})
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
         path = Path(folder) / "tournament.sqlite" if out is None else out
         with plan.open_store(path) as store, Progress("tournament", count) as progress:

@@ -106,10 +106,21 @@ def test_a_report_that_cannot_be_written_costs_no_figures(
     from robobt.tournament.job import Job
     from tests.tournament.made_up import played
 
+    def full(path: Path, *_: object) -> None:
+        raise OSError(28, "No space left on device", str(path))
+
     monkeypatch.setattr(Job, "play", lambda _, fixture, __: played(*fixture))
-    shown = invoke("take_shot", "attack_main", *QUICK, "--html", tmp_path, "--json")
+    monkeypatch.setattr("robobt.tournament.report.write_report", full)
+    report = tmp_path / "report.html"
+    shown = invoke("take_shot", "attack_main", *QUICK, "--html", report, "--json")
     assert json.loads(shown.stdout)["matches"] == 2
-    assert (shown.exit_code, str(tmp_path) in shown.stderr) == (1, True)
+    assert (shown.exit_code, str(report) in shown.stderr) == (1, True)
+
+
+def test_a_folder_in_the_place_of_a_report_is_refused_before_the_first_match(tmp_path: Path) -> None:
+    shown = invoke("take_shot", "attack_main", *QUICK, "--html", tmp_path)
+    assert (shown.exit_code, shown.stdout) == (1, "")
+    assert "--html" in shown.stderr
 
 
 @pytest.mark.parametrize(
