@@ -10,8 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.markup import escape
-from rich.table import Table
 
 from robobt.cli.common import (
     Imports,
@@ -21,29 +19,26 @@ from robobt.cli.common import (
     Where,
     blaming,
     complete_scenario,
-    console,
     cores,
     errors,
     import_files,
     parse_assignments,
     print_json,
     say,
-    table,
-    warn,
     world_of,
 )
 from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
 from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.match_summary import TREES_FAILED, print_summary, tell_failures
 from robobt.cli.outputs import PAGES, RECORDING, make_folders
 from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
-from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robobt.match import Run, Scenario, Summary
-    from robobt.match.results.results import MatchResult, Spread
+    from robobt.match import Scenario
+    from robobt.match.results.results import MatchResult
 
 
 class OnError(StrEnum):
@@ -153,6 +148,8 @@ def match(
     and variance;
     real_time_factor: simulated over computing time, a core; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
+
+    Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
     from robobt.match import Match, run_trials
     from robobt.worlds import SIM, scenario_settings
@@ -221,11 +218,14 @@ def match(
         }
         print_json({**summary.to_json(), **extra})
     else:
-        _print_summary(summary, run, count)
+        print_summary(summary, run, count)
         if written is not None:
             say(f"Replay of trial {recorded}: {written}")
+    failed = tell_failures(summary, loaded.on_error)
     if run.interrupted:
         raise typer.Exit(130)
+    if failed:
+        raise typer.Exit(TREES_FAILED)
 
 
 def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]) -> Scenario:
@@ -256,64 +256,3 @@ def _check_replay(path: Path, out: Path | None) -> None:
         raise typer.BadParameter(there, param_hint="--replay")
     if out is not None and path.resolve() == out.resolve():
         raise typer.BadParameter("the replay and the results need a file each", param_hint="--replay")
-
-
-def _print_summary(summary: Summary, run: Run, requested: int) -> None:
-    played = f"{summary.trials} trial{'s' if summary.trials > 1 else ''}"
-    stopped = f" of {requested} (stopped)" if run.interrupted else ""
-    console.print(f"[bold]{escape(summary.scenario)}[/bold]: {played}{stopped}, seed {summary.seed}")
-    listed = table("outcome", "trials", "rate", "95 % interval")
-    for outcome, rate in summary.outcomes.items():
-        listed.add_row(
-            outcome.replace("_", " "),
-            str(rate.count),
-            f"{rate.rate:.1%}",
-            rate.interval(1),
-        )
-    console.print(listed)
-    if summary.distinct < summary.trials:
-        warn(
-            f"only {summary.distinct} of {summary.trials} trials differ; vary the starts or add noise, "
-            "as with --set simulator.realism=friendly"
-        )
-    console.print(_teams(summary) if summary.teams else _times(summary))
-    pace = summary.real_time_factor
-    goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
-    say(
-        f"Goals: {goals}. Mean time {summary.time.mean:.1f} s, ball in play {summary.in_play:.0%} of it. "
-        f"{pace:.{0 if pace >= 10.0 else 1}f} times real time a core. Trace {summary.trace}."
-    )
-    for name, robot in summary.robots.items():
-        if robot.errors:
-            first = " ".join(str(robot.first_error).split())
-            errors.print(
-                f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; the first: {escape(first)}",
-                soft_wrap=True,
-            )
-
-
-def _times(summary: Summary) -> Table:
-    listed = table("robot", "to the ball, s", "ball to kick, s", "to the kick, s", "kicks")
-    for name, robot in summary.robots.items():
-        if robot.go_to_ball.n:
-            spreads = [robot.go_to_ball, robot.shoot, robot.total]
-            kicks = robot.kicks.mean or 0.0
-            listed.add_row(name, *[_spread_text(spread) for spread in spreads], f"{kicks:.1f}")
-    return listed
-
-
-def _teams(summary: Summary) -> Table:
-    means = {
-        name: {figure: spread.mean or 0.0 for figure, spread in team.items()}
-        for name, team in summary.teams.items()
-    }
-    listed = team_figures(means, "a trial")
-    scored = [f"{count.trials.rate:.0%} ({count.trials.interval()})" for count in summary.goals.values()]
-    listed.add_row("trials with a goal", *scored)
-    return listed
-
-
-def _spread_text(spread: Spread) -> str:
-    if spread.mean is None:
-        return "-"
-    return f"{spread.mean:.3f}" + ("" if spread.variance is None else f" (var. {spread.variance:.4f})")

@@ -200,10 +200,26 @@ class TestMatch:
         broken = data()
         broken["robots"]["blue"][0]["params"] = {"breaks": "raise"}
         scenario.write_text(write_yaml({**broken, "ends": {"time_limit": 0.1}}))
-        result = robobt("match", scenario)
+        result = robobt("match", scenario, code=3)
         assert (
             "blue 0: its tree failed in 5 ticks; the first: Scripted: RuntimeError: broken" in result.stderr
         )
+        *_, last = result.stderr.splitlines()
+        assert last.startswith("robobt: trees failed, so the exit status is 3; --on-error raise ends the run")
+        figures = json.loads(robobt("match", scenario, "--json", code=3).stdout)
+        assert figures["robots"]["blue 0"]["errors"] == 5
+
+    @pytest.mark.parametrize(
+        ("trials", "said"),
+        [("1", "One trial says little"), ("9", "9 trials say little"), ("10", None)],
+    )
+    def test_few_trials_are_told_to_say_little(self, scenario: Path, trials: str, said: str | None):
+        shown = robobt("match", scenario, "-n", trials, "-w", "1", "--set", "ends.time_limit=0.1").stdout
+        assert said in shown if said else "little" not in shown
+
+    def test_a_page_may_end_in_htm(self, scenario: Path, tmp_path: Path):
+        robobt("match", scenario, "--replay", tmp_path / "x.HTM")
+        assert (tmp_path / "x.HTM").read_text().startswith("<!")
 
     def test_a_tree_that_fails_can_end_the_run(self, scenario: Path):
         broken = data()
