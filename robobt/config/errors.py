@@ -64,7 +64,7 @@ def short_repr(value: object) -> str:
     return shown if len(shown) <= 60 else shown[:57] + "..."
 
 
-FEW = 5
+FEW = 6
 """So many names are listed even where one was probably meant."""
 
 

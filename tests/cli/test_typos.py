@@ -63,7 +63,7 @@ def test_few_names_are_listed_and_of_many_the_nearest() -> None:
     assert unknown_name("x", ["a", "b"]) == "there are a, b"
     assert unknown_name("seed", ["seeds", "b"]) == "there are seeds, b; did you mean seeds?"
     assert unknown_name("a", []) == "there are none"
-    many = [f"name_{letter}" for letter in "abcdefgh"]
+    many = [f"name_{letter}" for letter in "abcdefghij"]
     assert unknown_name("other", many) == f"there are {', '.join(many)}"
     assert unknown_name("name_c", many).count("name_") == 3
     assert close_names("NAME-a", many)[0] == "name_a"
