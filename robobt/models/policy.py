@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from robobt.config.errors import one_line
 from robobt.models.card import Kind, ModelCard
+from robobt.models.checks.limits import BATCH
 from robobt.models.checks.onnx_file import check_onnx
 from robobt.models.checks.operations import check_frozen, check_loaded
 from robobt.models.checks.source import checked_members
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float32]
 
 _MOST_LOADED = 100
-_PROBES = 64
 _ORDER = 1e-3
 """How far the order of summation may move an output in single precision."""
 _SLACK = 1e-4
@@ -64,6 +64,7 @@ class Policy:
 
         Raises:
             ValueError: the inputs have the wrong shape.
+            ModelError: the network fails on them; the message names the file and says why.
         """
         given = np.asarray(inputs, dtype=np.float32)
         size = self.card.observation.size
@@ -71,15 +72,33 @@ class Policy:
             raise ValueError(f"{self.card.name} takes ({size},) or (n, {size}), not {given.shape}")
         if not len(given):
             return np.zeros((0, len(self.card.outputs)))
-        answers = self.network.batch(np.ascontiguousarray(given.reshape(-1, size)))
+        rows = np.ascontiguousarray(given.reshape(-1, size))
+        with _telling(f"{self.path}: fails on an observation"):
+            answers = self.network.batch(rows) if len(rows) == 1 else self._in_batches(rows)
         return answers.astype(np.float64).reshape(*given.shape[:-1], len(self.card.outputs))
+
+    def _in_batches(self, rows: Floats) -> Floats:
+        # What a network takes may depend on how many observations there are: it was tried on these.
+        missing = -len(rows) % BATCH
+        filled = np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)])
+        answers = [self.network.batch(filled[at : at + BATCH]) for at in range(0, len(filled), BATCH)]
+        return np.concatenate(answers)[: len(rows)]
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
         """Return a quick function of one observation, for one robot's control loop.
 
-        It does not check its input, and has memory of its own.
+        It does not check its input, and has memory of its own. It raises a ModelError where the network
+        fails on an observation.
         """
-        return self.network.single()
+        infer = self.network.single()
+
+        def told(observation: ArrayLike) -> list[float]:
+            try:
+                return infer(observation)
+            except Exception as error:
+                raise ModelError(f"{self.path}: fails on an observation: {_first_line(error)}") from error
+
+        return told
 
 
 def load_policy(
@@ -136,6 +155,7 @@ class _TorchScript:
         with _telling("needs torch to run (pip install torch)"):
             import torch
 
+        from robobt.models.checks.arguments import check_arguments
         from robobt.models.checks.bounds import Bounds
 
         archive = pack_archive(checked_members(unpack_archive(file.content)))
@@ -145,12 +165,15 @@ class _TorchScript:
                 loaded = torch.jit.load(BytesIO(archive), map_location="cpu")  # type: ignore[no-untyped-call]
                 loaded.eval()
                 check_loaded(loaded.inlined_graph)
+                check_arguments(loaded._c)
                 # Freezing runs whatever does not depend on the input.
-                with Bounds():
+                with Bounds(BATCH):
                     module = torch.jit.freeze(loaded)
-                check_frozen(module.inlined_graph)
-            with _telling(f"fails on an observation of {size} entries"), torch.inference_mode(), Bounds():
-                module(torch.zeros(_PROBES, size))
+                constants = check_frozen(module.inlined_graph)
+            with _telling(f"fails on an observation of {size} entries"), torch.inference_mode():
+                for count in (BATCH, 1):
+                    with Bounds(count, constants):
+                        module(torch.zeros(count, size))
         self.module = module
         self._torch = torch
         self._size = size
@@ -196,7 +219,7 @@ class _Onnx:
     """A session of onnxruntime on one thread."""
 
     def __init__(self, file: ModelFile) -> None:
-        check_onnx(file.content, _PROBES, file.card.observation.size)
+        check_onnx(file.content, file.card.observation.size)
         with _telling('needs onnxruntime to run (pip install "robobt[onnx]")'):
             import onnxruntime  # type: ignore[import-untyped]
 
@@ -236,13 +259,13 @@ _LOADED: dict[tuple[Path, str], Policy] = {}
 def _probe(network: Network, card: ModelCard) -> None:
     """Try the network on zeros and on inputs of the size of those on a field."""
     size, outputs = card.observation.size, len(card.outputs)
-    inputs = np.random.default_rng(0).normal(0.0, 2.0, (_PROBES, size)).astype(np.float32)
+    inputs = np.random.default_rng(0).normal(0.0, 2.0, (BATCH, size)).astype(np.float32)
     inputs[0] = 0.0
     low, high = card.output_range
     with _telling(f"fails on an observation of {size} entries"):
         first, again = network.batch(inputs), network.batch(inputs)
-        if first.shape != (_PROBES, outputs):
-            raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({_PROBES}, {outputs})")
+        if first.shape != (BATCH, outputs):
+            raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({BATCH}, {outputs})")
         one = network.single()
         singles = np.array([one(row.tolist()) for row in inputs])
     if not np.isfinite(first).all():
@@ -257,7 +280,11 @@ def _probe(network: Network, card: ModelCard) -> None:
 
 def _first_line(error: Exception) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    return f"{type(error).__name__}: {lines[0][:200]}" if lines else type(error).__name__
+    if not lines:
+        return type(error).__name__
+    # The interpreter begins with where it failed, and ends with why.
+    said = lines[-1] if "TorchScript interpreter" in lines[0] else lines[0]
+    return f"{type(error).__name__}: {said[:200]}"
 
 
 @contextmanager

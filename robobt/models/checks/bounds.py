@@ -1,29 +1,49 @@
-"""Bounds on what a network may take, found out with tensors that have a shape and no memory."""
+"""Bounds on what a network may do, found out with tensors that have a shape and no memory."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
 
 import torch
 from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
-from robobt.models.checks.onnx_file import MAX_BYTES, MAX_PRODUCTS
+from robobt.models.checks.limits import ELEMENT, MAX_BYTES, OTHER_TYPE, largest_work
+from robobt.models.checks.operations import MOST_PIECES, TRAPPING
 from robobt.models.file import ModelError
+
+_CONTRACTIONS = frozenset({"mm", "addmm", "bmm", "baddbmm", "addmv", "mv", "dot", "linear", "matmul"})
+_GATES = 8
 
 
 class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
-    """Within it torch runs nothing that would take more memory or time than a network of ours.
+    """Within it torch runs nothing that would take more memory or time than a network of ours, or trap.
 
-    Each operation is first tried on tensors without memory, which says how large its answers would be.
+    Each operation is first tried on tensors without memory, which says how large its answers would be
+    and of which type. Processors trap where an integer is divided by 0, or the smallest one by -1.
+
+    Leaving it raises the first error of an operation: torch replaces errors from within by its own,
+    or goes on.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, batch: int, constants: Collection[Tensor] | None = None) -> None:
+        """Bound one run on ``batch`` observations.
+
+        Args:
+            batch: how many observations it is given.
+            constants: tensors that hold the same numbers in every run; None where all do.
+        """
         super().__init__()  # type: ignore[no-untyped-call]
+        self._failure: Exception | None = None
+        self._constants = None if constants is None else {one.data_ptr() for one in constants}
+        self._largest_work = largest_work(batch)
         self._bytes = 0
-        self._products = 0
+        self._work = 0
+        self._changes = False
+        self._divides = False
 
     def __torch_dispatch__(
         self,
@@ -34,23 +54,84 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
     ) -> object:
         del types
         given = dict(kwargs or {})
-        if torch.Tag.data_dependent_output not in func.tags:
-            self._add(func, args, given)
-        return func(*args, **given)
+        try:
+            if torch.Tag.data_dependent_output not in func.tags:
+                self._check(func, args, given)
+            return func(*args, **given)
+        except Exception as error:
+            self._failure = self._failure or error
+            raise
 
-    def _add(self, func: torch._ops.OpOverload, args: Sequence[object], kwargs: dict[str, object]) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: Any) -> None:
+        super().__exit__(kind, error, trace)  # type: ignore[no-untyped-call]
+        if self._failure is not None:
+            raise self._failure
+
+    def _check(self, func: torch._ops.OpOverload, args: Sequence[object], kwargs: dict[str, object]) -> None:
+        name = func._schema.name.removeprefix("aten::")
+        named = dict(zip([each.name for each in func._schema.arguments], args, strict=False)) | kwargs
+        if _pieces(name, named) > MOST_PIECES:
+            raise ModelError(f"aten::{name} would cut a tensor into more than {MOST_PIECES} pieces")
         tensors = [one for one in tree_leaves((args, kwargs)) if isinstance(one, Tensor)]
         without = tree_map(_without_memory, kwargs)
         if not tensors or "device" in kwargs:
             without["device"] = torch.device("meta")
         answers = tree_leaves(func(*tree_map(_without_memory, args), **without))
         found = [one for one in answers if isinstance(one, Tensor)]
-        longest = max([size for one in tensors for size in one.shape], default=1)
-        self._products += sum([one.numel() for one in found]) * longest
+        if name.rstrip("_") in TRAPPING and not any(one.is_floating_point() for one in found):
+            self._check_division(name, named["other"])
+        self._changes |= func._schema.is_mutable
+        if self._changes and self._divides:
+            raise ModelError("divides integers by a tensor, and changes a tensor in place")
+        self._work += _work(name, tensors, found)
         if all(each.alias_info is None for each in func._schema.returns):
             self._bytes += sum([math.prod(one.shape) * one.element_size() for one in found])
-        if self._bytes > MAX_BYTES or self._products > MAX_PRODUCTS:
-            raise ModelError("takes more memory or time than a model does")
+        if self._bytes > MAX_BYTES or self._work > self._largest_work:
+            raise ModelError(f"takes more memory or time than a model does, at aten::{name}")
+
+    def _check_division(self, name: str, divisor: object) -> None:
+        if isinstance(divisor, Tensor):
+            if self._constants is not None:
+                if divisor.data_ptr() not in self._constants:
+                    raise ModelError(
+                        f"aten::{name} divides integers by a tensor that may hold 0; "
+                        "divide by a constant, or divide floating-point numbers"
+                    )
+                self._divides = True
+            trapping = bool(((divisor == 0) | (divisor == -1)).any())
+        else:
+            trapping = divisor in (0, -1)
+        if trapping:
+            raise ModelError(f"aten::{name} divides integers by 0 or -1")
+
+
+def _pieces(name: str, named: Mapping[str, object]) -> int:
+    whole, axis = named.get("self"), named.get("dim", 0)
+    if not isinstance(whole, Tensor) or not isinstance(axis, int) or not -whole.dim() <= axis < whole.dim():
+        return 0
+    match name, named:
+        case "unbind", _:
+            return whole.shape[axis]
+        case "split" | "unsafe_split", {"split_size": int(length)}:
+            return whole.shape[axis] // max(length, 1)
+        case "chunk" | "unsafe_chunk", {"chunks": int(count)}:
+            return min(whole.shape[axis], count)
+    return 0
+
+
+def _work(name: str, tensors: Sequence[Tensor], found: Sequence[Tensor]) -> int:
+    """Return how long an operation takes, in multiplications of a product of matrices."""
+    taken, made = sum([one.numel() for one in tensors]), sum([one.numel() for one in found])
+    steps = 0
+    if "rnn" in name:
+        steps = _GATES * made * max([size for one in tensors for size in one.shape], default=1)
+    elif name in _CONTRACTIONS:
+        # The axis that both factors have is no longer than the longest of either.
+        factors = tensors[-2:] if "add" in name else tensors[:2]
+        steps = made * min([max(one.shape, default=1) for one in factors], default=1)
+        if any(one.dtype != torch.float32 for one in factors):
+            steps *= OTHER_TYPE
+    return steps + ELEMENT * max(taken if name not in _CONTRACTIONS else 0, made)
 
 
 def _without_memory(value: object) -> object:

@@ -6,25 +6,22 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from robobt.models.checks.limits import BATCH, ELEMENT, MAX_BYTES, OTHER_TYPE, largest_work
 from robobt.models.file import ModelError
 from robobt.models.protobuf import fields
 
 if TYPE_CHECKING:
     import onnx
 
-MAX_BYTES = 64 * 2**20
-"""What all steps of a network may answer together, whatever runs it, for a small batch [bytes]."""
-
-MAX_PRODUCTS = 10**10
-"""How many multiplications all steps of a network may take together, for a small batch."""
-
 _NODES = """
-Abs Add And Atan BatchNormalization Cast Celu Clip Concat Constant ConstantOfShape Cos Div Dropout Elu Equal
-Erf Exp Expand Flatten GRU Gather Gelu Gemm Greater GreaterOrEqual HardSigmoid HardSwish Identity LSTM
-LayerNormalization LeakyRelu Less LessOrEqual Log LogSoftmax MatMul Max Mean Min Mish Mul Neg Not Or PRelu
-Pow RNN Reciprocal ReduceL2 ReduceMax ReduceMean ReduceMin ReduceProd ReduceSum Relu Reshape Selu Shape
-Sigmoid Sign Sin Slice Softmax Softplus Softsign Split Sqrt Squeeze Sub Sum Tan Tanh Transpose Unsqueeze
-Where
+Abs Add And ArgMax ArgMin Atan BatchNormalization Cast Ceil Celu Clip Concat Constant ConstantOfShape Cos Div
+Dropout Elu Equal Erf Exp Expand Flatten Floor GRU Gather GatherElements Gelu Gemm Greater GreaterOrEqual
+HardSigmoid HardSwish Identity LSTM LayerNormalization LeakyRelu Less LessOrEqual Log LogSoftmax MatMul Max
+Mean Min Mish Mod Mul Neg Not Or PRelu Pow RNN Reciprocal ReduceL2 ReduceMax ReduceMean ReduceMin ReduceProd
+ReduceSum Relu Reshape Round Selu Shape Sigmoid Sign Sin Slice Softmax Softplus Softsign Split Sqrt Squeeze
+Sub Sum Tan Tanh Tile Transpose Unsqueeze Where Xor
 """
 _OPERATIONS = frozenset(_NODES.split())
 
@@ -55,11 +52,20 @@ _ITEM_SIZES = {1: 4, 2: 1, 3: 1, 6: 4, 7: 8, 9: 1, 10: 2, 11: 8}
 """Bytes of an item by ONNX's number of the type: no texts, and nothing exotic."""
 
 
-def check_onnx(content: bytes, batch: int, size: int) -> None:
+_FLOAT = 1
+_FLOATS = frozenset({1, 10, 11})
+"""ONNX's numbers of the types that are no integers."""
+
+_DIVISIONS = frozenset({"Div", "Mod"})
+_RECURRENT = frozenset({"GRU", "LSTM", "RNN"})
+_GATES = 8
+
+
+def check_onnx(content: bytes, size: int) -> None:
     """Check that an ONNX file consists of plain operations, with bounded answers and all weights in it.
 
-    ``content`` is the file without card and seal; it will be tried on ``batch`` observations of ``size``
-    numbers.
+    ``content`` is the file without card and seal; it is run on one observation of ``size`` numbers, or
+    :data:`~robobt.models.checks.limits.BATCH`.
     """
     import onnx
 
@@ -76,8 +82,8 @@ def check_onnx(content: bytes, batch: int, size: int) -> None:
             raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign))}")
         if len(model.graph.node) > _MOST_NODES:
             raise ModelError("holds more than a model does")
-        _check_shapes(model, batch, size)
-        _check_shapes(model, 1, size)
+        for batch in (BATCH, 1):
+            _check_shapes(model, batch, size)
     except ModelError:
         raise
     except Exception as error:
@@ -141,23 +147,60 @@ def _check_shapes(model: onnx.ModelProto, batch: int, size: int) -> None:
         raise ModelError(
             f"has shapes in it that do not fit: {str(error).strip().splitlines()[0][:200]}"
         ) from error
+    values = [*told.input, *told.value_info, *told.output]
+    types = {one.name: one.type.tensor_type.elem_type for one in values}
+    types |= {tensor.name: tensor.data_type for tensor in model.graph.initializer}
     shapes = {
         one.name: [
             dim.dim_value if dim.HasField("dim_value") else -1 for dim in one.type.tensor_type.shape.dim
         ]
-        for one in [*told.input, *told.value_info, *told.output]
+        for one in values
         if one.type.tensor_type.HasField("shape")
     }
     shapes |= {tensor.name: list(tensor.dims) for tensor in model.graph.initializer}
-    taken = products = 0
+    taken = work = 0
     for node in told.node:
-        longest = max([length for name in node.input for length in shapes.get(name, [])], default=1)
         for name in node.output:
             shape = shapes.get(name)
             if name and (shape is None or min(shape, default=0) < 0):
                 raise ModelError(f"has a size in it that depends on more than its input: {name[:80]}")
-            count = math.prod(shape or ())
-            taken += 8 * count
-            products += count * longest
-    if taken > MAX_BYTES or products > MAX_PRODUCTS:
+            if name and types.get(name) not in _ITEM_SIZES:
+                raise ModelError(f"has values of a type that no network needs: {name[:80]}")
+            taken += 8 * math.prod(shape or ())
+        work += _work(node, shapes, types)
+    if taken > MAX_BYTES or work > largest_work(batch):
         raise ModelError("takes more memory or time than a model does")
+    _check_divisions(told, types)
+
+
+def _work(node: onnx.NodeProto, shapes: Mapping[str, list[int]], types: Mapping[str, int]) -> int:
+    """Return how long a node takes, in multiplications of a product of matrices."""
+    taken = [shapes.get(name, []) for name in node.input]
+    made = sum([math.prod(shapes.get(name, [])) for name in node.output])
+    if node.op_type in _RECURRENT:
+        return _GATES * made * max([length for shape in taken for length in shape], default=1)
+    if node.op_type not in ("Gemm", "MatMul"):
+        return ELEMENT * max(sum([math.prod(shape) for shape in taken]), made)
+    # The axis that both factors have is no longer than the longest of either.
+    steps = made * min([max(shape, default=1) for shape in taken[:2]], default=1)
+    return ELEMENT * made + (steps if types.get(node.input[0]) == _FLOAT else OTHER_TYPE * steps)
+
+
+def _check_divisions(graph: onnx.GraphProto, types: Mapping[str, int]) -> None:
+    """Refuse to divide integers by what may be 0 or -1, which ends the process."""
+    from onnx import numpy_helper
+
+    known = {tensor.name: tensor for tensor in graph.initializer}
+    known |= {
+        node.output[0]: field.t
+        for node in graph.node
+        for field in node.attribute
+        if node.op_type == "Constant" and field.name == "value"
+    }
+    for node in graph.node:
+        if node.op_type not in _DIVISIONS or types.get(node.output[0]) in _FLOATS:
+            continue
+        divisor = known.get(node.input[1])
+        if divisor is None or np.isin(numpy_helper.to_array(divisor), (0, -1)).any():
+            where = f"{node.op_type} {node.name or node.output[0]}"
+            raise ModelError(f"divides integers by what may be 0 or -1, at {where[:80]}")

@@ -219,7 +219,21 @@ def as_an_observation_says() -> onnx.ModelProto:
     return onnx_model(nodes, [weights(), constant("first", [0])])
 
 
+def product_of_integers() -> onnx.ModelProto:
+    nodes = [
+        PRODUCT,
+        helper.make_node("Expand", ["one", "shape"], ["large"]),
+        helper.make_node("MatMul", ["large", "large"], ["larger"]),
+        helper.make_node("Cast", ["larger"], ["numbers"], to=TensorProto.FLOAT),
+        helper.make_node("ReduceMax", ["numbers"], ["m"], keepdims=0),
+        helper.make_node("Mul", ["sum", "m"], ["z"]),
+        helper.make_node("Tanh", ["z"], ["output"]),
+    ]
+    return onnx_model(nodes, [weights(), constant("one", [1]), constant("shape", [900, 900])])
+
+
 BOMBS = {
+    "a product of integers": product_of_integers,
     "doubled columns": lambda: doubled(1),
     "doubled rows": lambda: doubled(0),
     "doubled constants": doubled_constants,
@@ -235,3 +249,49 @@ def test_a_network_that_would_fill_the_memory_is_refused(what: str, tmp_path: Pa
     with pytest.raises(ModelError, match=r"memory or time|depends on more|shapes in it"):
         load_policy(sealed_onnx(tmp_path, BOMBS[what]()))
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit - before < 200e6
+
+
+def divided(kind: str, divisor: int | None, to: int) -> onnx.ModelProto:
+    """The plain model with a division of integers that adds nothing; None: by what an observation says."""
+    far = numpy_helper.from_array(np.array(9.0, dtype=np.float32), "far")
+    numbers = numpy_helper.from_array(
+        np.array(divisor or 0, dtype=helper.tensor_dtype_to_np_dtype(to)), "divisor" if divisor else "nought"
+    )
+    nodes = [
+        PRODUCT,
+        helper.make_node("Cast", ["observation"], ["integers"], to=to),
+        helper.make_node("Greater", ["observation", "far"], ["beyond"]),
+        helper.make_node("Cast", ["beyond"], ["unusual"], to=to),
+        helper.make_node(kind, ["integers", "divisor" if divisor else "unusual"], ["quotient"]),
+        helper.make_node("ReduceMax", ["quotient"], ["most"], keepdims=0),
+        helper.make_node("Cast", ["most"], ["m"], to=TensorProto.FLOAT),
+        helper.make_node("Clip", ["m", "zero", "zero"], ["none"]),
+        helper.make_node("Add", ["sum", "none"], ["z"]),
+        helper.make_node("Tanh", ["z"], ["output"]),
+    ]
+    zero = numpy_helper.from_array(np.array(0.0, dtype=np.float32), "zero")
+    return onnx_model(nodes, [weights(), zero, far, numbers])
+
+
+@pytest.mark.parametrize("to", [TensorProto.INT64, TensorProto.INT32])
+@pytest.mark.parametrize("divisor", [-1, None])
+@pytest.mark.parametrize("kind", ["Div", "Mod"])
+def test_a_division_of_integers_that_may_end_the_process_is_refused(
+    kind: str, divisor: int | None, to: int, tmp_path: Path
+) -> None:
+    with pytest.raises(ModelError, match=f"divides integers by what may be 0 or -1, at {kind} quotient"):
+        load_policy(sealed_onnx(tmp_path, divided(kind, divisor, to)))
+
+
+@pytest.mark.parametrize("kind", ["Div", "Mod"])
+def test_a_division_of_integers_by_a_constant_is_loaded(kind: str, tmp_path: Path) -> None:
+    loaded = load_policy(sealed_onnx(tmp_path, divided(kind, 2, TensorProto.INT64)))
+    for value in (0.0, 9.5, 1e9, -np.inf, np.nan):
+        loaded(np.full((3, 6), value))
+
+
+def test_a_divisor_of_zeros_is_refused(tmp_path: Path) -> None:
+    model = divided("Div", 2, TensorProto.INT64)
+    model.graph.initializer[-1].CopyFrom(constant("divisor", [1, 2, 3, 0, 1, 1]))
+    with pytest.raises(ModelError, match="divides integers"):
+        load_policy(sealed_onnx(tmp_path, model))

@@ -241,6 +241,24 @@ BOMBS = {
         ]
     ),
     "expanded": many(["x1 = torch.mul(torch.expand(torch.zeros([1]), [100000, 100000]), 2)"]),
+    "pieces": many(["x1 = torch.expand(torch.zeros([1]), [10000000])", "l = torch.unbind(x1)", "x2 = l[0]"]),
+    "work in place": many(
+        [f"x1 = torch.add(torch.zeros({[2] * 20}), torch.sum(observation))", *["x2 = torch.tanh_(x1)"] * 900]
+    ),
+    "a product of integers": many(
+        [
+            "x1 = torch.to(torch.add(torch.zeros([900, 900]), torch.sum(observation)), 4)",
+            "x2 = torch.to(torch.matmul(x1, x1), 6)",
+        ]
+    ),
+    "a range": many(["x1 = torch.arange(100000000000)"]),
+    "as many classes as an observation says": many(["x1 = torch.one_hot(torch.to(_1, 4), -1)"]),
+    "a tensor in a complaint": PLAIN.replace(
+        "    return _1\n",
+        "    if torch.eq(torch.dim(observation), 3):\n"
+        '      ops.prim.RaiseException(torch.format("{}", torch.zeros([2000, 2000])), "e")\n'
+        "    else:\n      pass\n    return _1\n",
+    ),
     "lists": many(["x1 = [1, 2]", *[f"x{i + 1} = torch.add(x{i}, x{i})" for i in range(1, 40)]], "len"),
     "repeated lists": many(["x1 = torch.mul([1], 1000000000000)"], "len"),
     "texts": many(
