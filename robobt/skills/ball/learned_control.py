@@ -121,15 +121,16 @@ class LearnedControl:
             barred: whether it took a restart and may not touch the ball yet, where it minds that.
 
         Raises:
-            PolicyError: the policy's answer is not finite or lies outside [-1, 1], or it cannot be loaded.
+            PolicyError: the policy fails, its answer is not finite or lies outside [-1, 1], or it cannot be
+                loaded.
         """
-        if self._infer is None:
-            try:
+        try:
+            if self._infer is None:
                 self._infer = load_policy(self._path).single()
-            except ModelError as error:
-                raise PolicyError(str(error)) from error
-        observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
-        action = self._infer(observed)
+            observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
+            action = self._infer(observed)
+        except ModelError as error:
+            raise PolicyError(str(error)) from error
         if sketch is not None and sketch.wants(OBSERVATION):
             self._draw(sketch, observed, action)
         for entry in action:
