@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,6 +48,8 @@ _FIELDS: Mapping[str, frozenset[str]] = {
 _MOST_FIELDS = 50_000
 _LONGEST_NUMBERS = 2**20
 _MOST_NODES = 2000
+_MOST_ENTRIES = 300_000
+"""Entries of all vectors that nodes take and answer, biases among them."""
 _ITEM_SIZES = {1: 4, 2: 1, 3: 1, 6: 4, 7: 8, 9: 1, 10: 2, 11: 8}
 """Bytes of an item by ONNX's number of the type: no texts, and nothing exotic."""
 
@@ -127,39 +129,13 @@ def _check_tensors(model: onnx.ModelProto) -> None:
 
 def _check_shapes(model: onnx.ModelProto, batch: int, size: int) -> None:
     """Bound what the nodes answer to so many observations, by ONNX's own inference of shapes."""
-    import onnx
-
     weights = {tensor.name for tensor in model.graph.initializer}
     given = [one for one in model.graph.input if one.name not in weights]
     if len(given) != 1:
         raise ModelError("does not take one array of single precision and answer one")
-    trial = onnx.ModelProto()
-    trial.CopyFrom(model)
-    del trial.graph.value_info[:]
-    for one in trial.graph.input:
-        if one.name == given[0].name:
-            one.CopyFrom(onnx.helper.make_tensor_value_info(one.name, onnx.TensorProto.FLOAT, [batch, size]))
-    for one in trial.graph.output:
-        one.type.tensor_type.ClearField("shape")
-    try:
-        told = onnx.shape_inference.infer_shapes(trial, strict_mode=True, data_prop=True).graph
-    except Exception as error:
-        raise ModelError(
-            f"has shapes in it that do not fit: {str(error).strip().splitlines()[0][:200]}"
-        ) from error
-    values = [*told.input, *told.value_info, *told.output]
-    types = {one.name: one.type.tensor_type.elem_type for one in values}
-    types |= {tensor.name: tensor.data_type for tensor in model.graph.initializer}
-    shapes = {
-        one.name: [
-            dim.dim_value if dim.HasField("dim_value") else -1 for dim in one.type.tensor_type.shape.dim
-        ]
-        for one in values
-        if one.type.tensor_type.HasField("shape")
-    }
-    shapes |= {tensor.name: list(tensor.dims) for tensor in model.graph.initializer}
+    types, shapes = _inferred(model, given[0].name, [batch, size])
     taken = work = 0
-    for node in told.node:
+    for node in model.graph.node:
         for name in node.output:
             shape = shapes.get(name)
             if name and (shape is None or min(shape, default=0) < 0):
@@ -170,7 +146,77 @@ def _check_shapes(model: onnx.ModelProto, batch: int, size: int) -> None:
         work += _work(node, shapes, types)
     if taken > MAX_BYTES or work > largest_work(batch):
         raise ModelError("takes more memory or time than a model does")
-    _check_divisions(told, types)
+    _check_divisions(model.graph, types)
+
+
+_Types = dict[str, int]
+_Shapes = dict[str, list[int]]
+
+
+def _inferred(model: onnx.ModelProto, given: str, shape: list[int]) -> tuple[_Types, _Shapes]:
+    """Return the types and shapes of all values, as far as they do not depend on what is observed.
+
+    Some shapes follow from numbers that the graph calculates. ONNX finds these out as well, but makes
+    room for as many as a vector has entries: so it does as far as the vectors are known, and further.
+    """
+    import onnx
+
+    trial = onnx.ModelProto()
+    trial.CopyFrom(model)
+    del trial.graph.value_info[:], trial.graph.output[:]
+    for one in trial.graph.input:
+        if one.name == given:
+            one.CopyFrom(onnx.helper.make_tensor_value_info(given, onnx.TensorProto.FLOAT, shape))
+    nodes = list(model.graph.node)
+    types, shapes = _infer(trial, calculate=False)
+    done = -1
+    while done < len(nodes):
+        known = _known(nodes, shapes)
+        if known <= done:
+            raise ModelError(
+                f"has a size in it that depends on more than its input: {nodes[known].input[0][:80]}"
+            )
+        done = known
+        vectors = [shapes.get(name, []) for node in nodes[:done] for name in [*node.input, *node.output]]
+        if sum([sum(each) for each in vectors if len(each) == 1]) > _MOST_ENTRIES:
+            raise ModelError("has longer vectors in it than a network needs")
+        del trial.graph.node[:]
+        trial.graph.node.extend(nodes[:done])
+        more = _infer(trial, calculate=True)
+        types |= more[0]
+        shapes |= more[1]
+    return types, shapes
+
+
+def _known(nodes: Sequence[onnx.NodeProto], shapes: _Shapes) -> int:
+    """Return how many nodes, from the first on, take nothing whose shape is unknown."""
+    for place, node in enumerate(nodes):
+        if any(name and min(shapes.get(name, [-1]), default=0) < 0 for name in node.input):
+            return place
+    return len(nodes)
+
+
+def _infer(model: onnx.ModelProto, calculate: bool) -> tuple[_Types, _Shapes]:
+    import onnx
+
+    try:
+        told = onnx.shape_inference.infer_shapes(model, strict_mode=True, data_prop=calculate).graph
+    except Exception as error:
+        raise ModelError(
+            f"has shapes in it that do not fit: {str(error).strip().splitlines()[0][:200]}"
+        ) from error
+    values = [*told.input, *told.value_info, *told.output]
+    types = {one.name: one.type.tensor_type.elem_type for one in values}
+    shapes = {
+        one.name: [
+            dim.dim_value if dim.HasField("dim_value") else -1 for dim in one.type.tensor_type.shape.dim
+        ]
+        for one in values
+        if one.type.tensor_type.HasField("shape")
+    }
+    for tensor in model.graph.initializer:
+        types[tensor.name], shapes[tensor.name] = tensor.data_type, list(tensor.dims)
+    return types, shapes
 
 
 def _work(node: onnx.NodeProto, shapes: Mapping[str, list[int]], types: Mapping[str, int]) -> int:

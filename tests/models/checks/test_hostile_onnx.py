@@ -232,7 +232,26 @@ def product_of_integers() -> onnx.ModelProto:
     return onnx_model(nodes, [weights(), constant("one", [1]), constant("shape", [900, 900])])
 
 
+def long_vector(calculated: bool) -> onnx.ModelProto:
+    nodes = [
+        PRODUCT,
+        helper.make_node("Shape", ["observation"], ["size"]),
+        helper.make_node("Gather", ["size", "first"], ["count"]),
+        helper.make_node("Mul", ["count", "times"], ["calculated"]),
+        helper.make_node("Expand", ["one", "calculated" if calculated else "times"], ["long"]),
+        helper.make_node("Cast", ["long"], ["numbers"], to=TensorProto.INT64),
+        helper.make_node("Cast", ["numbers"], ["back"], to=TensorProto.FLOAT),
+        helper.make_node("ReduceMax", ["back"], ["m"], keepdims=0),
+        helper.make_node("Mul", ["sum", "m"], ["z"]),
+        helper.make_node("Tanh", ["z"], ["output"]),
+    ]
+    one = numpy_helper.from_array(np.ones(1, np.float32), "one")
+    return onnx_model(nodes, [weights(), one, constant("first", [1]), constant("times", [10_000_000])])
+
+
 BOMBS = {
+    "a long vector": lambda: long_vector(False),
+    "a long vector of a calculated size": lambda: long_vector(True),
     "a product of integers": product_of_integers,
     "doubled columns": lambda: doubled(1),
     "doubled rows": lambda: doubled(0),
@@ -246,7 +265,7 @@ BOMBS = {
 def test_a_network_that_would_fill_the_memory_is_refused(what: str, tmp_path: Path) -> None:
     unit = 1 if sys.platform == "darwin" else 1024
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-    with pytest.raises(ModelError, match=r"memory or time|depends on more|shapes in it"):
+    with pytest.raises(ModelError, match=r"memory or time|depends on more|shapes in it|longer vectors"):
         load_policy(sealed_onnx(tmp_path, BOMBS[what]()))
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit - before < 200e6
 
