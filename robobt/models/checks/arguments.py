@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robobt.models.checks.operations import TRAPPING, nodes_of
 from robobt.models.file import ModelError
 
 if TYPE_CHECKING:
-    from torch._C import Node, ScriptModule, Value
+    from torch._C import Node, Value
 
 _CODES: Mapping[str, frozenset[object]] = {
     "dtype": frozenset({None, 0, 1, 2, 3, 4, 5, 6, 7, 11, 15}),
@@ -22,8 +22,11 @@ _CODES: Mapping[str, frozenset[object]] = {
 _UNKNOWN = object()
 
 
-def check_arguments(module: ScriptModule) -> None:
+def check_arguments(module: Any) -> None:
     """Check the arguments of a loaded module's operations, as far as they are no tensors.
+
+    Args:
+        module: the module as torch holds it, of which torch's annotations do not tell all.
 
     Raises:
         ModelError: an integer is divided by what may be 0 or -1, which ends the process; a type or layout
@@ -43,7 +46,7 @@ def check_arguments(module: ScriptModule) -> None:
                 return known(node.input())
         return _UNKNOWN
 
-    def owner(value: Value) -> ScriptModule:
+    def owner(value: Value) -> Any:
         node = value.node()
         return owner(node.input()).getattr(node.s("name")) if node.kind() == "prim::GetAttr" else module
 
@@ -84,7 +87,7 @@ def _answers_integer(node: Node) -> bool:
 
 def _place(node: Node) -> str:
     """Return where in the file an operation is, as far as torch knows."""
-    lines = [line.strip() for line in node.sourceRange().splitlines()]
+    lines = [line.strip() for line in str(node.sourceRange()).splitlines()]
     for number, line in enumerate(lines):
         if line.startswith("~") and number:
             return f": {lines[number - 1][:80]}"

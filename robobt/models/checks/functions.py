@@ -17,7 +17,8 @@ from robobt.models.checks.dialect import (
     is_text,
     refusal,
 )
-from robobt.models.checks.operations import ABOUT_TENSORS, MAKE_TENSORS, TORCH
+from robobt.models.checks.divisions import FOLDED, Divisions
+from robobt.models.checks.operations import TORCH
 from robobt.models.file import ModelError
 
 _LONGEST_LIST = 1000
@@ -73,9 +74,7 @@ class _Body:
         self._known: dict[str, str] = {}
         """Modules and functions by the local names that stand for them."""
         self._texts: set[str] = set()
-        self._tensors: set[str] = set()
-        self._attributes: set[str] = set()
-        """Names of what a module's attributes hold, which torch does not know while it reads the code."""
+        self._divisions = Divisions(self._attribute)
         self.cost = 1
         given = function.args
         if given.posonlyargs or given.kwonlyargs or given.vararg or given.kwarg or function.decorator_list:
@@ -87,8 +86,7 @@ class _Body:
             check_type(one.annotation, sources)
             if dotted(one.annotation) == "str":
                 self._texts.add(one.arg)
-            if dotted(one.annotation) == "Tensor":
-                self._tensors.add(one.arg)
+            self._divisions.bind_parameter(one.arg, one.annotation)
             if place == 0 and owner is not None:
                 if dotted(one.annotation) != owner:
                     raise refusal(function)
@@ -114,7 +112,7 @@ class _Body:
                 for one in names:
                     if not isinstance(one, ast.Name):
                         raise refusal(line)
-                    self._bind(one.id, None, self._is_tensor(value))
+                    self._bind(one.id, None, value)
             case ast.AnnAssign(target=ast.Name(id=name), annotation=kind, value=ast.expr() as value):
                 check_type(kind, self._sources)
                 self._assign(name, value)
@@ -161,61 +159,17 @@ class _Body:
         text = self._is_text(value)
         if stands_for is None and not text:
             self._value(value)
-        from_attribute = self._is_attribute(value)
-        self._bind(name, stands_for, self._is_tensor(value))
-        if from_attribute:
-            self._attributes.add(name)
+        self._bind(name, stands_for, value)
         if text:
             self._texts.add(name)
 
-    def _bind(self, name: str, stands_for: str | None, tensor: bool = False) -> None:
+    def _bind(self, name: str, stands_for: str | None, value: ast.expr | None = None) -> None:
         check_variable(name)
-        # Torch lets no name change its type.
-        (self._tensors.add if tensor else self._tensors.discard)(name)
-        self._attributes.discard(name)
+        self._divisions.bind(name, value)
         if name in self._texts or (name in self._known and self._known[name] != stands_for):
             raise ModelError(f"gives {name} a second meaning")
         if stands_for is not None:
             self._known[name] = stands_for
-
-    def _is_tensor(self, value: ast.expr) -> bool:
-        """Return whether a value is surely a tensor, or several."""
-        match value:
-            case ast.Name(id=name):
-                return name in self._tensors
-            case ast.Attribute(ast.Name(id="CONSTANTS")):
-                return True
-            case ast.Attribute(owner, attribute):
-                kind = self._attribute(owner, attribute)
-                return kind is not None and dotted(kind) == "Tensor"
-            case ast.Call(ast.Name(id="annotate" | "unchecked_cast"), [kind, _]):
-                return dotted(kind) == "Tensor"
-            case ast.Call(ast.Attribute(ast.Name(id="torch"), operation), args):
-                return operation in MAKE_TENSORS or (
-                    operation not in ABOUT_TENSORS and any(self._is_tensor(one) for one in args)
-                )
-        return False
-
-    def _is_attribute(self, value: ast.expr) -> bool:
-        return isinstance(value, ast.Attribute) or (
-            isinstance(value, ast.Name) and value.id in self._attributes
-        )
-
-    def _check_division(self, call: ast.Call) -> None:
-        """Refuse a division that torch might carry out as it reads the code, and that would end the process.
-
-        It does where both numbers are known. What a module's attributes hold is seen to once it is loaded.
-        """
-        match call.args:
-            case [number, divisor] if not call.keywords:
-                if self._is_tensor(number) or self._is_tensor(divisor):
-                    return
-                if isinstance(divisor, ast.Constant | ast.UnaryOp) and is_literal(divisor):
-                    if ast.literal_eval(divisor) not in (0, -1):
-                        return
-                elif self._is_attribute(divisor):
-                    return
-        raise ModelError(f"divides an integer by what may be 0 or -1: {ast.unparse(call)[:80]}")
 
     def _is_text(self, value: ast.expr) -> bool:
         """Return whether a value is a text: what an exception says, or a piece of it.
@@ -320,8 +274,8 @@ class _Body:
             case ast.Call(ast.Attribute(ast.Name(id="torch"), operation)):
                 if operation not in TORCH:
                     raise ModelError(f"does more than arithmetic: aten::{operation}")
-                if operation in ("remainder", "floordiv"):
-                    self._check_division(call)
+                if operation in FOLDED:
+                    self._divisions.check(call)
             case _:
                 self.cost += self._function(call)
                 with_texts = True

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robobt.models.file import ModelError
 
 if TYPE_CHECKING:
-    from torch import Tensor
     from torch._C import Block, Graph, Node
 
 _ARITHMETIC = """
@@ -76,7 +75,7 @@ def check_loaded(graph: Graph) -> None:
             raise ModelError(f"does more than arithmetic: lists or texts are made by {node.kind()}")
 
 
-def check_frozen(graph: Graph) -> list[Tensor]:
+def check_frozen(graph: Graph) -> list[Any]:
     """Check a frozen graph, and return the tensors that are constants in it.
 
     What runs must not depend on more than the number of observations: of branches, only those may

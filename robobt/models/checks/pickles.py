@@ -51,6 +51,9 @@ def check_pickles(members: Mapping[str, bytes], sources: Sources) -> None:
             raise ModelError("data.pkl in it is no module")
         if name == "constants.pkl" and (not isinstance(value, tuple) or len(value) < sources.constants):
             raise ModelError("constants.pkl in it lacks what the code names")
+        if isinstance(value, tuple) and any(isinstance(one, int | float) for one in value):
+            # Torch writes numbers into the code, where they are seen.
+            raise ModelError("has numbers in constants.pkl")
         check_objects(value, sources)
     if sources.constants and "constants.pkl" not in members:
         raise ModelError("constants.pkl is missing in it")

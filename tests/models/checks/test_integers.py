@@ -9,7 +9,8 @@ import pytest
 
 from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
-from tests.models.checks.test_hostile_torchscript import PLAIN, many, plain, refused
+from tests.models.checks.test_hostile_torchscript import PLAIN, PLAIN_STATE, many, plain, refused
+from tests.models.made_models import sealed
 
 # What an observation makes of these is 0 where none of its entries is above 9, as all that loading tries.
 UNUSUAL = "u = torch.to(torch.gt(observation, 9.), 3)"
@@ -39,6 +40,7 @@ NUMBERS = {
     ],
     "by the number of axes but 2": ["m = torch.sub(torch.dim(observation), 2)", "n = torch.floordiv(5, m)"],
     "by a tensor's only entry": ["m = int(torch.zeros([]))", "n = torch.remainder(5, m)"],
+    "by less than nothing": ["n = torch.remainder(5, -inf)"],
     "of what may be no integer": ["m = torch.add(5, 0.5)", "n = torch.remainder(m, 0)"],
 }
 
@@ -65,6 +67,13 @@ def by_attribute(heads: int) -> tuple[str, bytes]:
     number = b"K%c" % heads if heads >= 0 else b"J\xff\xff\xff\xff"
     state = b"\x80\x02c__torch__\nAttack\n)\x81}(X\x08\x00\x00\x00training\x89X\x05\x00\x00\x00heads" + number
     return code, state + b"ub."
+
+
+def test_a_number_among_the_constants_is_refused(tmp_path: Path) -> None:
+    # Torch would divide by it while it reads the code.
+    code = with_number("n = torch.remainder(5, CONSTANTS.c0)").encode()
+    members = {"data.pkl": PLAIN_STATE, "version": b"3", "code/__torch__.py": code}
+    refused(sealed(tmp_path, members | {"constants.pkl": b"\x80\x02K\x00\x85."}), "numbers in constants")
 
 
 TENSORS = {
