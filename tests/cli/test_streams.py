@@ -12,7 +12,6 @@ from rich.console import Console
 
 from robobt.cli import scenarios
 from robobt.cli.screen import drop_odd_sizes
-
 from tests.waiting import LIMIT
 
 ROBOBT = [sys.executable, "-m", "robobt"]
