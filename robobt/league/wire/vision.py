@@ -108,7 +108,7 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     """Return the plausible detections of a frame; None when the frame itself is implausible.
 
     Detections that are not finite, lie far outside any field or have an
-    impossible number are left out.
+    impossible number are left out. Confidences above 1 count as 1.
     """
     captured, sent = message.t_capture, message.t_sent
     # NaN compares as false.
@@ -122,7 +122,7 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     for ball in message.balls:
         x, y, confidence = ball.x / _MM, ball.y / _MM, ball.confidence
         if on_field(x, y) and isfinite(confidence):
-            frame.balls.append(BallDetection(x, y, confidence))
+            frame.balls.append(BallDetection(x, y, min(confidence, 1.0)))
     for team, robots in ((Team.BLUE, message.robots_blue), (Team.YELLOW, message.robots_yellow)):
         for robot in robots:
             x, y, confidence = robot.x / _MM, robot.y / _MM, robot.confidence
@@ -133,7 +133,8 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
             heading = None
             if robot.HasField("orientation") and abs(robot.orientation) <= 4 * pi:
                 heading = wrap_angle(robot.orientation)
-            frame.robots.append(RobotDetection(RobotId(team, robot.robot_id), x, y, heading, confidence))
+            number = RobotId(team, robot.robot_id)
+            frame.robots.append(RobotDetection(number, x, y, heading, min(confidence, 1.0)))
     return frame
 
 

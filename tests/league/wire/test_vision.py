@@ -93,3 +93,12 @@ def test_an_empty_packet_is_counted_not_used() -> None:
     assert read_vision(b"", counts) is None
     assert counts.implausible == 1
     assert counts.accepted == 0
+
+
+@pytest.mark.parametrize("confidence", [1.5, 1e30])
+def test_no_detection_is_surer_than_certain(confidence: float) -> None:
+    packet = SSL_WrapperPacket(detection=write_frame(frame()))
+    packet.detection.balls[0].confidence = packet.detection.robots_blue[0].confidence = confidence
+    found = read(packet.SerializeToString())
+    assert found.balls[0].confidence == 1.0
+    assert found.robots[0].confidence == 1.0
