@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import RobobtError, message_of, short_repr
 from robobt.plays.sources import NOBODYS
+from robobt.tree.walk import fault_of
 
 
 class PlayError(RobobtError):
@@ -76,13 +77,15 @@ def _no_tree(returned: object) -> str | None:
             return f"does not return a tree: {where}{problem}"
         assert isinstance(node, Behaviour)
         if id(node) in seen:
-            return f"has the node {node.name!r} twice in its tree; make one for each place"
+            continue
         seen.add(id(node))
         children: object = node.children
         if not isinstance(children, list | tuple):
             return f"does not return a tree: the children of {node.name!r} are not a list"
         left += [(child, f"below {node.name!r}, ") for child in children]
-    return None
+    assert isinstance(returned, Behaviour)
+    fault = fault_of(returned)
+    return None if fault is None else f"does not return a tree: {fault[0].name}: {fault[1]}"
 
 
 def _no_node(given: object) -> str | None:

@@ -39,7 +39,8 @@ def where(picture: Image.Image, colour: tuple[int, int, int]) -> tuple[float, fl
 
 def test_a_picture_shows_robots_and_ball_where_they_were(recording: Recording, tmp_path: Path) -> None:
     path = tmp_path / "new folder" / "moment.png"
-    assert replay(recording, "--png", path, "--from", "0.5") == f"Picture: {path}\n"
+    made = f"robobt: --png: made the folder {path.parent}\n"
+    assert replay(recording, "--png", path, "--from", "0.5") == f"{made}Picture: {path}\n"
     frame = recording.frame(int(np.searchsorted(recording.times, 0.5, side="right")) - 1)
     with Image.open(path) as picture:
         assert where(picture, BLUE) == pytest.approx(frame.own[0].position, abs=0.03)

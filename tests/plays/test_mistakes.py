@@ -70,9 +70,9 @@ RETURNED = [
     ("return Mine()", "let Mine.__init__ call super().__init__(...)"),
     (
         "a = HasBall(); return Sequence('s', memory=False, children=[Inverter('i', a), Inverter('j', a)])",
-        "has the node 'HasBall' twice",
+        "HasBall: is a child of 's/i' and of 's/j'; make a node for each place",
     ),
-    ("s = Sequence('s', memory=False); s.add_child(s); return s", "has the node 's' twice"),
+    ("s = Sequence('s', memory=False); s.add_child(s); return s", "s: is its own descendant"),
     ("s = Sequence('s', memory=False); s.children.append(None); return s", "below 's', None is not a node"),
     ("s = Sequence('s', memory=False); s.children = HasBall(); return s", "children of 's' are not a list"),
 ]

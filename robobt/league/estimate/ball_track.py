@@ -31,7 +31,7 @@ class BallMotion:
     vz: float = 0.0
 
 
-_RESTING_NOISE, _ROLLING_NOISE = 0.05, 0.2
+_RESTING_NOISE, _ROLLING_NOISE = 0.05, 0.25
 """Acceleration noise of a free ball that rests or rolls: carpets differ in how they slow it [m/s^2]."""
 
 _ROLLS = 0.1
@@ -43,7 +43,7 @@ _PUSHED_NOISE = 6.0
 _KICK = 8.0
 """Standard deviation of the velocity that a kick may cause [m/s]."""
 
-_SURPRISE = 25.0
+_SURPRISE = 36.0
 """Squared innovation, in variances, that is not noise."""
 
 _CARRIED = 0.2
