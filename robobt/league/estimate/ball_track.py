@@ -43,7 +43,7 @@ _PUSHED_NOISE = 6.0
 _KICK = 8.0
 """Standard deviation of the velocity that a kick may cause [m/s]."""
 
-_SURPRISE = 36.0
+_SURPRISE = 49.0
 """Squared innovation, in variances, that is not noise."""
 
 _CARRIED = 0.2
