@@ -9,9 +9,10 @@ stands; the ball rolls along the field. Detections have the noise and gaps of *r
 
 The second draws scenes in which two to four cameras see everything, each with an offset of 0 to 5 cm in a
 direction of its own, their frames up to 1/60 s apart. It prints the largest errors of speed in all draws,
-beside those of one camera: of a ball and a robot at rest, and of both moving at 0.5 to 3 m/s. In further
-draws a robot pushes the ball along, or has it 3 cm before its mouth, or the ball rolls into the goal.
-Printed is in how many draws the filter is ever wrong about who has the ball, or who scores.
+beside those of one camera: of a ball and a robot at rest, and of both moving steadily at 0.5 to 3 m/s, where
+the filter expects the ball to slow down. In further draws a robot pushes the ball along, or has it 3 cm
+before its mouth, or the ball rolls into the goal. It prints in how many draws the filter is ever wrong about
+who has the ball, or who scores.
 """
 
 from __future__ import annotations
