@@ -58,6 +58,9 @@ _SHORTEST, _LONGEST = 0.005, 0.05
 _OFFSET = 0.03
 """Standard deviation of a camera's offset about its mean [m]."""
 
+_RELEARNT = 5
+"""Number of surprising detections after which a camera, contradicted by others, has another offset."""
+
 _SETTLING = 4
 """Detections after a kick during which its speed is still being determined."""
 
@@ -98,6 +101,8 @@ class BallTrack:
             dx, dy = self._covariance.begin(camera, time, self._r)
             x, y = x - dx, y - dy
         self._last_step = 0.0
+        self._startled: dict[int, int] = {}
+        self._last_camera: int | None = None
         self._split(BallMotion(x, y), time)
 
     def _split(self, motion: BallMotion, kicked: float) -> None:
@@ -111,6 +116,11 @@ class BallTrack:
     def motion(self) -> BallMotion:
         """The estimate at ``time``."""
         return self._rolling if self._misfit_rolling < self._misfit_sliding else self._sliding
+
+    @property
+    def settling(self) -> bool:
+        """Whether the ball has just been kicked or bounced, and its speed is still being determined."""
+        return self._settling > 0
 
     @property
     def spread(self) -> float:
@@ -161,7 +171,18 @@ class BallTrack:
         x, y = self.place(x, y, camera)
         dx, dy = x - m.x, y - m.y
         s = p.detection_variance(camera) + self._r
-        if (dx * dx + dy * dy) / s > _SURPRISE:
+        surprises = (dx * dx + dy * dy) / s > _SURPRISE
+        if not surprises:
+            self._startled.pop(camera, None)
+        elif self._may_err(camera, known, kickable):
+            if known and self._startled[camera] < _RELEARNT:
+                return
+            p.forget(camera)
+            x, y, surprises = m.x + dx, m.y + dy, False
+            s = p.detection_variance(camera) + self._r
+        self._last_camera = camera
+        if surprises:
+            self._startled.clear()
             # Kicked, bounced or touched: the past motion tells nothing about the velocity now.
             p.jump(dx * dx + dy * dy, _KICK**2)
             self._split(m, self.time - self._last_step / 2)
@@ -181,6 +202,17 @@ class BallTrack:
             # The speed lost since the kick belongs to the kick's speed.
             lost = self.settings.slide_deceleration * (self.time - self._kicked)
             m.rolls_at = self.settings.switch_share * (hypot(m.vx, m.vy) + lost)
+
+    def _may_err(self, camera: int, known: bool, kickable: bool) -> bool:
+        """Return whether a camera that sees the ball suddenly elsewhere may be wrong about it."""
+        if not self._covariance.several:
+            return False
+        if not known:
+            return True
+        before = self._startled.get(camera, 0)
+        others = set(self._startled) - {camera}
+        self._startled[camera] = before + 1
+        return not (kickable or others or (before and self._last_camera == camera))
 
     def teach(self) -> None:
         """Let the cameras' mean offsets learn from a ball that rolls along the ground."""

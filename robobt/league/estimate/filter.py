@@ -7,7 +7,7 @@ captures.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import hypot, inf
+from math import hypot, inf, isfinite
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
 from robobt.league.estimate.flight import FlightWatch
@@ -63,6 +63,9 @@ _COMMAND_MEMORY = 0.5
 
 _JUMP_BACK, _JUMP_AHEAD = 0.5, 5.0
 """A source whose capture times jump further was restarted [s]."""
+
+_LATE = 0.002
+"""A camera whose frame is this much older than the newest is late [s]."""
 
 _GAP = 0.5
 """Capture times further ahead need confirmation by more frames [s]."""
@@ -159,7 +162,12 @@ class VisionFilter:
         self._seen[frame.camera] = frame
         self.captured = time if self.captured is None else max(time, self.captured)
         detections: dict[RobotId, list[RobotDetection]] = {}
+        for ball in frame.balls:
+            ball.confidence = min(ball.confidence, 1.0)
         for robot in frame.robots:
+            robot.confidence = min(robot.confidence, 1.0)
+            if robot.heading is not None and not isfinite(robot.heading):
+                robot.heading = None
             if robot.confidence >= _MIN_CONFIDENCE:
                 detections.setdefault(robot.robot, []).append(robot)
         for number, found in detections.items():
@@ -260,8 +268,15 @@ class VisionFilter:
             (track.deviation(seen.x - m.vx * late, seen.y - m.vy * late, camera), seen) for seen in detections
         ]
         gate = _ROBOT_GATE + track.limits.max_speed * max(0.0, lag)
-        gap, own = likeliest(deviations, _ROBOT_GATE)
-        if gap > gate or (gap > _ROBOT_GATE and rivals.doubts(own.x, own.y, own.confidence, seen_before)):
+        own = likeliest(
+            [
+                (gap, seen)
+                for gap, seen in deviations
+                if gap <= _ROBOT_GATE
+                or (gap <= gate and not rivals.doubts(seen.x, seen.y, seen.confidence, seen_before))
+            ]
+        )
+        if own is None:
             return detections
         track.correct(own.x - m.vx * late, own.y - m.vy * late, camera)
         if own.heading is not None:
@@ -318,12 +333,25 @@ class VisionFilter:
             track.advance(time, kickable)
             if carried is not None:
                 track.carry(carried, time)
-        rivals = self._ball_rivals
-        gate = min(_MAX_GATE, _BALL_GATE + _MAX_BALL_SPEED * max(0.0, time - self._ball_seen))
-        gap, own = likeliest([(track.deviation(ball.x, ball.y, camera), ball) for ball in balls], _BALL_GATE)
-        if gap > gate or (gap > _BALL_GATE and rivals.doubts(own.x, own.y, own.confidence, self._ball_seen)):
+        rivals, seen_before, m = self._ball_rivals, self._ball_seen, track.motion
+        gate = min(_MAX_GATE, _BALL_GATE + _MAX_BALL_SPEED * max(0.0, time - seen_before))
+        # A camera that is late saw the ball further back.
+        late = min(0.0, time - track.time)
+        places = [(ball.x - m.vx * late, ball.y - m.vy * late, ball) for ball in balls]
+        gaps = [(track.deviation(x, y, camera), ball) for x, y, ball in places]
+        own = likeliest(
+            [
+                (gap, ball)
+                for gap, ball in gaps
+                if gap <= _BALL_GATE
+                or (gap <= gate and not rivals.doubts(ball.x, ball.y, ball.confidence, seen_before))
+            ]
+        )
+        if own is None:
             return None
-        track.correct(own.x, own.y, camera, kickable)
+        # It may have been kicked since a late camera saw it.
+        if late > -_LATE or not track.settling:
+            track.correct(own.x - m.vx * late, own.y - m.vy * late, camera, kickable)
         if self._flights.hop is None:
             track.teach()
         rivals.saw_track(camera, own.confidence, time)

@@ -92,6 +92,9 @@ class OffsetCovariance:
         velocity_variance: of the first estimate; the position is unknown.
         spread: standard deviation of an offset about the camera's mean, in the unit of the position.
         means: the cameras' mean offsets, shared by all objects.
+
+    Attributes:
+        several: whether several cameras have seen the object of late.
     """
 
     def __init__(self, velocity_variance: float, spread: float, means: MeanOffsets) -> None:
@@ -99,7 +102,7 @@ class OffsetCovariance:
         self._matrix = [[_ANYWHERE, 0.0], [0.0, velocity_variance]]
         self._cameras: dict[int, _Camera] = {}
         self._spread, self._means = 2.0 * spread * spread, means
-        self._several = False
+        self.several = False
         self._detections = 0
         self._unsettled = 0.0
 
@@ -144,7 +147,7 @@ class OffsetCovariance:
         for i in range(2, len(m)):
             position[i] += dt * velocity[i]
             m[i][0] = position[i]
-            if self._several:
+            if self.several:
                 m[i][i] += _DRIFT * self._spread * dt
 
     def settle(self, dt: float) -> list[float] | None:
@@ -182,6 +185,17 @@ class OffsetCovariance:
         for camera, known in self._cameras.items():
             if not self.knows(camera):
                 known.offset, known.detections = self._means.of(camera), 0
+                self._clear(self._row(camera))
+
+    def forget(self, camera: int) -> None:
+        """Let a camera's next detection tell its offset anew."""
+        known = self._cameras.get(camera)
+        if known is not None:
+            known.detections = 0
+            if self._row(camera) < 2:
+                # The next one becomes the first.
+                self._drop(camera)
+            else:
                 self._clear(self._row(camera))
 
     def move_since(self, dt: float, variance: float) -> None:
@@ -229,11 +243,11 @@ class OffsetCovariance:
         """Drop cameras that no longer see the object, and find out whether several do."""
         for other in [other for other, each in self._cameras.items() if each.seen < time - _FORGOTTEN]:
             self._drop(other)
-        self._several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
+        self.several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
 
     def teach(self) -> None:
         """Let the cameras' means learn from this object's offsets, now and then."""
-        if self._several and self._detections % _LEARNING_EVERY == 0:
+        if self.several and self._detections % _LEARNING_EVERY == 0:
             known = {camera: each.offset for camera, each in self._cameras.items() if self.knows(camera)}
             if len(known) > 1:
                 self._means.learn(known)
@@ -249,7 +263,7 @@ class OffsetCovariance:
                 row.append(0.0)
             self._matrix.append([0.0] * (len(self._matrix) + 1))
             self._clear(len(self._matrix) - 1)
-            self._several = True
+            self.several = True
         self._cameras[camera] = added
         return added
 

@@ -21,13 +21,16 @@ _MARGIN = 1.25
 _ENOUGH = 2.0
 """Sum of confidences that a rival needs where the track is no longer seen."""
 
+_SURE = 0.8
+"""A detection with less than this share of another's confidence is less sure."""
+
 _WEAK = 0.5
-"""A detection with less than this share of another's confidence, or of the track's usual one, is weak."""
+"""A detection with less than this share of the track's usual confidence is weak."""
 
 _SMOOTHING = 0.05
 """Weight of the newest detection in the track's usual confidence."""
 
-_LONGEST_GAP = 0.1
+_LONGEST_GAP = 0.035
 """An object that was not seen for longer is expected no further away than after this time [s]."""
 
 _MOST = 16
@@ -43,17 +46,17 @@ class _Detection(Protocol):
 Seen = TypeVar("Seen", bound=_Detection)
 
 
-def likeliest(seen: Sequence[tuple[float, Seen]], gate: float) -> tuple[float, Seen]:
-    """Return, of an object's detections in one frame, its own and how far that is from the track [m].
+def likeliest(seen: Sequence[tuple[float, Seen]]) -> Seen | None:
+    """Return which of the detections that may be an object's is its own, None if there are none.
 
-    It is the nearest to the track of those within the gate, the weak ones left out.
+    It is the nearest to the track of those that are not much less sure than another.
 
     Args:
-        seen: distance from the track and detection, of each; at least one.
-        gate: largest distance of the object's own detection [m].
+        seen: distance from the track [m] and detection, of each.
     """
-    surest = max((found.confidence for gap, found in seen if gap <= gate), default=0.0)
-    return min(seen, key=lambda each: (each[1].confidence < _WEAK * surest, each[0]))
+    surest = max((found.confidence for _, found in seen), default=0.0)
+    sure = [each for each in seen if each[1].confidence >= _SURE * surest]
+    return min(sure, key=lambda each: each[0])[1] if sure else None
 
 
 @dataclass(slots=True)
@@ -130,12 +133,13 @@ class Rivals:
         time: float,
         track: tuple[float, float] | None = None,
         occupied: bool = False,
+        confirmations: int = 0,
     ) -> bool:
         """Take in a detection away from the track; return whether that place is now believed.
 
         The ``track`` has to be restarted there then, and the place where it was is a rival. An ``occupied``
         place, where another object is tracked, is believed on better evidence only, not because the track
-        is no longer seen.
+        is no longer seen. ``confirmations``, where given, replaces the usual number.
         """
         self._forget(time)
         rival = self._at(x, y, time)
@@ -147,7 +151,8 @@ class Rivals:
             rival.detections += 1
             rival.confidence += confidence
         own, often = self._evidence.at(time), rival.evidence.at(time)
-        unseen = rival.detections >= self._confirmations and rival.confidence >= _ENOUGH
+        enough = max(_ENOUGH, _WEAK * self._usual * rival.detections)
+        unseen = rival.detections >= (confirmations or self._confirmations) and rival.confidence >= enough
         if not (unseen and not occupied) and not (often >= _ENOUGH and often > _MARGIN * own > 0.0):
             return False
         self._known.remove(rival)

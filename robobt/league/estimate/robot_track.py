@@ -49,11 +49,20 @@ _COMMAND_ERROR = 0.1
 _OFFSET, _HEADING_OFFSET = 0.03, 0.03
 """Standard deviation of a camera's offset about its mean [m, rad]."""
 
-_HEADING_GATE = 0.6
-"""Largest deviation of a heading beyond what the robot may have turned [rad]."""
+_HEADING_GATE = 6.0
+"""Largest deviation of a heading, in standard deviations."""
 
-_HEADING_CONFIRMATIONS = 10
-"""Number of headings in a row that agree and lie beyond the gate after which they are believed."""
+_HEADING_REACH = 0.6
+"""Headings this close to each other agree [rad]."""
+
+_SPIN = 15.0
+"""Turning rate that a robot may get in a collision [rad/s]."""
+
+_CONFIRMATIONS, _SPUN_CONFIRMATIONS = 10, 3
+"""Number of agreeing headings in a row beyond the gate that are believed, and of such as a spin explains."""
+
+_FRAME = 0.03
+"""Headings that come at least this often leave no gap in which a robot turns unseen [s]."""
 
 
 @dataclass(slots=True)
@@ -98,15 +107,16 @@ class RobotTrack:
         dx, dy = self._position.begin(camera, time, self._r)
         self.motion = RobotMotion(x - dx, y - dy, heading)
         self._mismatch = Mismatch()
-        self._headings = Rivals(_HEADING_CONFIRMATIONS, _HEADING_GATE, self.limits.max_turn)
+        self._headings = Rivals(_CONFIRMATIONS, _HEADING_REACH, _SPIN)
+        self._headings.saw_track(camera, 1.0, time)
         self._restart_heading(heading, time, camera)
 
     def _restart_heading(self, heading: float, time: float, camera: int) -> None:
-        self._heading = OffsetCovariance(10.0, _HEADING_OFFSET, self._sensing.heading_offsets)
+        self._heading = OffsetCovariance(_SPIN**2, _HEADING_OFFSET, self._sensing.heading_offsets)
         (offset,) = self._heading.begin(camera, time, self._rh)
         self.motion.heading, self.motion.omega = wrap_angle(heading - offset), 0.0
         self._heading_mismatch = Mismatch()
-        self._heading_seen = time
+        self._heading_seen = self._heading_used = time
 
     def advance(self, time: float, commands: SentCommands) -> None:
         """Predict the estimate to ``time`` under the commands that were in force."""
@@ -168,17 +178,27 @@ class RobotTrack:
         """
         m, p, time = self.motion, self._heading, self.time
         dh = wrap_angle(heading - p.offset(camera)[0] - m.heading)
-        turned = self.limits.max_turn * (time - self._heading_seen)
-        self._heading_seen = time
-        if abs(dh) > _HEADING_GATE + turned:
-            if self._headings.believes(cos(heading), sin(heading), camera, confidence, time):
+        s = p.detection_variance(camera) + self._rh
+        unseen, self._heading_seen = time - self._heading_seen, time
+        gate = _HEADING_GATE * sqrt(s) + self.limits.turn_acceleration * unseen**2 / 2
+        gate += self.limits.max_turn * max(0.0, unseen - _FRAME)
+        if abs(dh) > gate:
+            spun = abs(dh) < _HEADING_REACH + _SPIN * (time - self._heading_used)
+            if self._headings.believes(
+                cos(heading),
+                sin(heading),
+                camera,
+                confidence,
+                time,
+                confirmations=_SPUN_CONFIRMATIONS if spun else _CONFIRMATIONS,
+            ):
                 self._restart_heading(heading, time, camera)
             return
         self._headings.saw_track(camera, confidence, time)
-        if abs(dh) > _HEADING_GATE:
+        self._heading_used = time
+        if abs(dh) > _HEADING_REACH:
             self._restart_heading(heading, time, camera)
             return
-        s = p.detection_variance(camera) + self._rh
         k, g = p.correct(camera, time, s, [dh])
         m.heading = wrap_angle(m.heading + k * dh)
         m.omega += g * dh

@@ -37,7 +37,7 @@ class Overlap:
         self.filter = VisionFilter(DIVISION_B, SETTINGS)
         angles = self.rng.uniform(-pi, pi, cameras)
         self.offsets = [(offset * cos(angle), offset * sin(angle)) for angle in angles]
-        self.apart, self.turns, self.number = apart, [0.0] * cameras, 0
+        self.apart, self.turns, self.start = apart, [0.0] * cameras, 0.0
 
     def frames(
         self,
@@ -55,7 +55,8 @@ class Overlap:
                 time = i * PERIOD + camera * self.apart
                 a, b, c, d, e = self.rng.standard_normal(5).tolist()
                 (x, y), (rx, ry) = ball(time), robot(time)
-                seen = CameraFrame(camera, i, 100.0 + time, 100.0 + time)
+                now = 100.0 + self.start + time
+                seen = CameraFrame(camera, i, now, now)
                 if sees(camera, (x, y)) and ball_too(camera):
                     noise = NOISE.ball_noise
                     seen.balls.append(BallDetection(x + dx + a * noise, y + dy + b * noise))
@@ -64,7 +65,7 @@ class Overlap:
                     turned = wrap_angle(heading + self.turns[camera] + e * NOISE.heading_noise)
                     seen.robots.append(RobotDetection(ME, rx + dx + c * noise, ry + dy + d * noise, turned))
                 self.filter.add(seen)
-                found.append((time, self.filter.frame_at(100.0 + time)))
+                found.append((time, self.filter.frame_at(now)))
         return found
 
 
@@ -184,3 +185,35 @@ def test_mean_offsets_add_up_to_nothing(seen: list[dict[int, float]]) -> None:
     for offsets in seen:
         means.learn({camera: [offset] for camera, offset in offsets.items()})
     assert sum(means.of(camera)[0] for camera in range(4)) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("jump", [0.02, 0.05])
+@pytest.mark.parametrize("cameras", [2, 4])
+def test_a_camera_whose_offset_changes_kicks_no_ball(cameras: int, jump: float) -> None:
+    overlap = Overlap(cameras, 0.02, 0.008)
+    overlap.frames(1.0, lambda _: (0.0, 0.0), lambda _: (1.0, 0.0))
+    dx, dy = overlap.offsets[1]
+    overlap.offsets[1] = dx + jump, dy
+    overlap.start = 1.0
+    found = overlap.frames(1.0, lambda _: (0.0, 0.0), lambda _: (1.0, 0.0))
+    assert max(hypot(frame.ball.vx, frame.ball.vy) for _, frame in found) < 0.05
+
+
+@pytest.mark.parametrize("late", [0.012, 0.02, 0.03])
+def test_a_kick_is_known_although_one_camera_is_late(late: float) -> None:
+    filter_ = VisionFilter(DIVISION_B, SETTINGS)
+    kicked, speed = 0.5, 5.0
+    waiting: list[tuple[float, CameraFrame]] = []
+    for i in range(60):
+        for camera, delay in ((0, 0.0), (1, late)):
+            time = i * PERIOD + camera * 0.005
+            x = MOUTH + 0.005 + speed * max(0.0, time - kicked)
+            seen = CameraFrame(
+                camera, i, time, time, [BallDetection(x, 0.0)], [RobotDetection(ME, 0.0, 0.0, 0.0)]
+            )
+            waiting.append((time + delay, seen))
+    for arrived, seen in sorted(waiting, key=lambda each: each[0]):
+        filter_.add(seen)
+        if arrived > kicked + 0.15:
+            assert filter_.captured is not None
+            assert filter_.frame_at(filter_.captured).ball.vx == pytest.approx(speed, abs=0.5)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot, pi
+from math import hypot, nan, pi
 
 import numpy as np
 import pytest
@@ -101,10 +101,10 @@ def test_a_weak_ball_is_not_taken_for_one_that_is_hidden(seen: Seen) -> None:
     seen.see_for(60, lambda _: [(0.0, 0.0, 0.9)])
     seen.see_for(7, lambda _: [(0.9, 0.0, 0.15)])
     assert seen.ball_is_at(0.0, 0.0)
-    seen.see_for(30, lambda _: [(0.9, 0.0, 0.15)])
-    # Nothing else is seen: after half a second it is better than nothing.
+    seen.see_for(180, lambda _: [(0.9, 0.0, 0.15)])
+    # Nothing else is seen: after three seconds it is better than nothing.
     assert seen.ball_is_at(0.9, 0.0)
-    seen.see([(0.9, 0.0, 0.15), (0.0, 0.0, 0.9)])
+    seen.see_for(15, lambda _: [(0.9, 0.0, 0.15), (0.0, 0.0, 0.9)])
     assert seen.ball_is_at(0.0, 0.0)
 
 
@@ -194,3 +194,63 @@ def test_a_robot_that_is_suddenly_spun_round_is_followed(seen: Seen, turn: float
             (robot,) = seen.frame().own
             assert abs(wrap_angle(robot.heading - heading)) < 0.1
             assert robot.omega == pytest.approx(turn, rel=0.1)
+
+
+@pytest.mark.parametrize("every", [3, 5, 10])
+@pytest.mark.parametrize("turn", [0.0, 10.0])
+def test_headings_that_are_misread_by_any_angle_are_left_out(seen: Seen, every: int, turn: float) -> None:
+    rng = np.random.default_rng(2)
+    bad = 0
+    for i in range(400):
+        heading = wrap_angle(turn * i * PERIOD)
+        off = (
+            float(rng.uniform(-pi, pi)) if i % every == 0 and i > 10 else 0.01 * float(rng.standard_normal())
+        )
+        seen.see(robots=[(ME, 0.0, 0.0, wrap_angle(heading + off), 0.9)])
+        if i > 30:
+            (robot,) = seen.frame().own
+            bad += abs(wrap_angle(robot.heading - heading)) > 0.15
+    assert bad <= 4
+
+
+@pytest.mark.parametrize("off", [0.15, 0.3, 0.55])
+@pytest.mark.parametrize("every", [2, 10])
+def test_headings_that_are_misread_a_little_turn_no_robot(seen: Seen, off: float, every: int) -> None:
+    for i in range(240):
+        seen.see(robots=[(ME, 0.0, 0.0, off if i % every == 0 and i > 20 else 0.0, 0.9)])
+        if i > 20:
+            assert abs(seen.frame().own[0].heading) < 0.03
+
+
+@pytest.mark.parametrize("speed", [2.0, 4.0, 6.0])
+@pytest.mark.parametrize("surely", [0.3, 0.5, 0.7])
+def test_a_ball_that_is_kicked_beside_a_less_sure_one_is_followed(
+    seen: Seen, speed: float, surely: float
+) -> None:
+    phantom = (0.05, 0.0, surely)
+    seen.see_for(60, lambda _: [(0.0, 0.0, 0.9), phantom])
+    seen.see_for(30, lambda i: [(speed * (i + 1) * PERIOD, 0.0, 0.9), phantom])
+    assert seen.ball_is_at(speed * 30 * PERIOD, 0.0, 0.05)
+
+
+def test_scattered_weak_balls_are_not_taken_for_one_that_is_hidden(seen: Seen) -> None:
+    rng = np.random.default_rng(4)
+    seen.see_for(60, lambda _: [(0.0, 0.0, 0.9)])
+    for _ in range(60):
+        seen.see([(float(x), float(y), 0.4) for x, y in rng.uniform(-2.5, 2.5, (3, 2))])
+        # One that happens to lie where the ball may be is taken for it.
+        assert seen.ball_is_at(0.0, 0.0, within=0.25)
+
+
+@pytest.mark.parametrize("confidence", [1.5, 1e300])
+def test_no_confidence_counts_for_more_than_certainty(seen: Seen, confidence: float) -> None:
+    seen.see_for(60, lambda _: [(0.0, 0.0, 1.0)])
+    seen.see([(2.0, 0.0, confidence)])
+    seen.see_for(5, lambda _: [(0.0, 0.0, 1.0), (2.0, 0.0, confidence)])
+    assert seen.ball_is_at(0.0, 0.0)
+
+
+def test_a_heading_that_is_no_number_is_left_out(seen: Seen) -> None:
+    for i in range(60):
+        seen.see(robots=[(ME, 0.0, 0.0, nan if i % 10 == 5 else 0.5, 0.9)])
+    assert seen.frame().own[0].heading == pytest.approx(0.5, abs=0.01)
