@@ -124,8 +124,9 @@ class PictureWatch:
             stand = self._standing[robot] = _Stand(time, self._frozen(robot))
             self._notices.tell(
                 "picture",
-                f"{robot} is commanded to move, but nothing is seen to move: the cameras' picture stands "
-                "still, or the robots hear nothing; those not seen to obey stand until something moves",
+                f"{robot} is commanded to move, but vision shows no motion: either vision is frozen or the "
+                "robots receive no commands. These robots are stopped until vision shows motion; "
+                "check vision and radio",
             )
         if not moves:
             return command

@@ -111,8 +111,8 @@ class RefereeFollower:
         for name in odd:
             self._notices.tell(
                 f"referee {name}",
-                f"the game controller's messages: {name} is missing or makes no sense; it is left out, "
-                "and the rest is followed",
+                f"the game controller's field {name} is missing or invalid; it is ignored and the rest of "
+                "the message is obeyed",
             )
         placement: Point | None = None
         if message.HasField("designated_position"):

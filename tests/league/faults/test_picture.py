@@ -82,7 +82,8 @@ def test_robots_under_a_frozen_picture_are_stopped_and_told_once(
             assert world.moved[robot] - at < STOPPED
         assert abs(world.poses[ME][0] - before) < speed * 0.7
         (told,) = caplog.messages
-        assert "the cameras' picture stands" in told
+        assert "vision shows no motion" in told
+        assert "check vision and radio" in told
         # Where it goes on, so do they.
         world.fault = live
         world.play(0.1, drive)

@@ -390,3 +390,16 @@ def test_events_on_a_clock_of_their_own_are_of_now() -> None:
     follower.read(RefereePublisher().write(STOPPED, 1.0, [write_event(CRASH, 1e9, "robobt")]))
     (heard,) = follower.reported(7.0)
     assert heard.time == 7.0
+
+
+def test_an_invalid_field_is_ignored_and_reported_once_by_its_name(
+    controller: Controller, caplog: pytest.LogCaptureFixture
+) -> None:
+    controller.message.designated_position.x = controller.message.designated_position.y = nan
+    for counter in range(3):
+        controller.message.command_counter = counter
+        controller.follower.read(controller.message.SerializeToString())
+    assert caplog.messages == [
+        "the game controller's field designated_position is missing or invalid; it is ignored and the rest of "
+        "the message is obeyed"
+    ]
