@@ -38,6 +38,8 @@ from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)
 
+_MAY_READ = "a skill may only read the frame, and acts through self.store.command"
+
 WorldFactory = Callable[[Scenario], World]
 """Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
 
@@ -256,10 +258,11 @@ class Match:
                     command = player.decide(view, me)
                 finally:
                     strayed = process.hold()
-                if kept.mend():
-                    self._complain(player.robot, "its frame")
+                if (changed := kept.mend()) is not None:
+                    named = f" ({changed[0]})" if changed else ""
+                    self._complain(player.robot, "the frame", named, _MAY_READ)
                 if strayed:
-                    self._complain(player.robot, "the working folder")
+                    self._complain(player.robot, "the working folder", "", "name files by whole paths")
                 if command is None:
                     self._note_failure(player)
                     command = RobotCommand()
@@ -269,10 +272,12 @@ class Match:
             return {robot: RobotCommand() for robot in commands}
         return commands
 
-    def _complain(self, robot: RobotId, of: str) -> None:
-        if (robot, of) not in self._spoilers:
-            self._spoilers.add((robot, of))
-            _log.warning("%s: a skill changes %s, which was put right again", robot, of)
+    def _complain(self, robot: RobotId, changed: str, field: str, advice: str) -> None:
+        """Warn once for each robot that a skill changed what it may not change."""
+        if (robot, changed) not in self._spoilers:
+            self._spoilers.add((robot, changed))
+            said = f"a skill of its tree changed {changed}{field}, which was restored; {advice}"
+            _log.warning("%s: %s", robot, said)
 
     def _carry(self, frame: Frame) -> None:
         """Do what handlers do with robots that have left the field or come back."""

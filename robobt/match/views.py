@@ -36,7 +36,7 @@ class KeptView:
     def take(self, view: Frame) -> None:
         """Keep this view from now on."""
         self._view, self._the_ball, self._game, self._made = view, view.ball, view.game, view.made
-        self._robots = (*view.own, *view.opponents)
+        self._robots, self._size = (*view.own, *view.opponents), len(view.own)
         self._teams = view.game.blue, view.game.yellow
         settings: dict[int, object] = {id(it.limits): it.limits for it in self._robots}
         settings[id(view.field)], settings[id(view.ball_model)] = view.field, view.ball_model
@@ -47,28 +47,37 @@ class KeptView:
             self._values_before = [dict(values) for values in self._values]
         self._before = self._read()
 
-    def mend(self) -> bool:
-        """Put back what was changed; whether anything was."""
+    def mend(self) -> list[str] | None:
+        """Put back what was changed; return the names of the fields ("ball.x"), or None if nothing was.
+
+        A change within a field, as in a list, has no name.
+        """
         try:
             if self._read() == self._before and self._settings_hold():
-                return False
+                return None
         except Exception:
             # An attribute was deleted, or has become what does not compare to a truth.
             pass
         frame, ball, robots, game, blue, yellow, _ = self._before
-        _restore(self._view, _FRAME, frame)
-        _restore(self._the_ball, _BALL, ball)
-        _restore(self._game, _GAME, game)
-        for status, values in zip(self._teams, (blue, yellow), strict=True):
-            _restore(status, _STATUS, values)
-        for robot, values in zip(self._robots, robots, strict=True):
-            _restore(robot, _ROBOT, values)
-        for now, before in zip(self._values, self._values_before, strict=True):
+        changed = _restore(self._view, "", _FRAME, frame)
+        changed += _restore(self._the_ball, "ball.", _BALL, ball)
+        changed += _restore(self._game, "game.", _GAME, game)
+        for team, status, values in zip(("blue", "yellow"), self._teams, (blue, yellow), strict=True):
+            changed += _restore(status, f"game.{team}.", _STATUS, values)
+        for i, (robot, values) in enumerate(zip(self._robots, robots, strict=True)):
+            place = f"own[{i}]." if i < self._size else f"opponents[{i - self._size}]."
+            changed += _restore(robot, place, _ROBOT, values)
+        for it, now, before in zip(self._settings.values(), self._values, self._values_before, strict=True):
+            changed += [
+                f"{type(it).__name__}.{name}"
+                for name, value in before.items()
+                if now.get(name, _MISSING) is not value
+            ]
             now.clear()
             now.update(before)
         self._made.clear()
-        _restore(self._view, ("_made",), (self._made,))
-        return True
+        _restore(self._view, "", ("_made",), (self._made,))
+        return changed
 
     def _read(self) -> tuple[Any, ...]:
         # Far quicker than copies for every robot, and than comparing the objects. Written out, for there the
@@ -100,6 +109,15 @@ class KeptView:
         return True
 
 
-def _restore(target: object, names: tuple[str, ...], values: tuple[object, ...]) -> None:
+def _restore(target: object, prefix: str, names: tuple[str, ...], values: tuple[object, ...]) -> list[str]:
+    """Set attributes and return the names, with the prefix, of those that had another value."""
+    changed = []
     for name, value in zip(names, values, strict=True):
+        # Not by comparison, which the value that a skill has put there may refuse.
+        if getattr(target, name, _MISSING) is not value:
+            changed.append(prefix + name)
         object.__setattr__(target, name, value)
+    return changed
+
+
+_MISSING = object()

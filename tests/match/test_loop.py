@@ -315,7 +315,8 @@ def test_a_skill_that_spoils_its_frame_spoils_nobody_elses(
         plain.tick()
         spoilt.tick()
     assert spoilt.result().trace == plain.result().trace
-    assert caplog.text.count(f"{team} 0: a skill changes its frame") == 1
+    assert caplog.text.count(f"{team} 0: a skill of its tree changed the frame") == 1
+    assert "a skill may only read the frame, and acts through self.store.command" in caplog.text
 
 
 class ScriptedReferee:
