@@ -400,6 +400,6 @@ def test_an_invalid_field_is_ignored_and_reported_once_by_its_name(
         controller.message.command_counter = counter
         controller.follower.read(controller.message.SerializeToString())
     assert caplog.messages == [
-        "the game controller's field designated_position is missing or invalid; it is ignored and the rest of "
-        "the message is obeyed"
+        "the game controller's field designated_position is missing or invalid; it is ignored and "
+        "the rest of the message is obeyed"
     ]
