@@ -53,8 +53,13 @@ class Registry(Generic[T]):
         """Return a decorator that enters the decorated thing under ``name``.
 
         Raises:
+            TypeError: the name is no text, as where ``@register`` is written without parentheses.
             ValueError: the name is taken; the message names both.
         """
+        if not isinstance(name, str) or not name:
+            registry = "" if self.group is None else self.group.rpartition(".")[2].upper() + "."
+            meant = getattr(name, "__name__", "name")
+            raise TypeError(f'{registry}register takes a name: write @{registry}register("{meant}")')
 
         def enter(entry: T) -> T:
             namespace = current_namespace()

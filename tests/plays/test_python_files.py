@@ -135,6 +135,18 @@ def test_a_name_that_is_taken_is_told_with_both(write: Write) -> None:
         import_file(path)
 
 
+@pytest.mark.parametrize(
+    ("registry", "module"),
+    [("PLAYS", "plays"), ("SKILLS", "skills"), ("RATERS", "skills.aim.raters")],
+)
+def test_registering_without_a_name_says_what_to_write(write: Write, registry: str, module: str) -> None:
+    path = write(f"from robobt.{module} import {registry}\n\n@{registry}.register\ndef mine():\n    pass\n")
+    with pytest.raises(PythonFileError) as raised:
+        import_file(path)
+    advice = f'{registry}.register takes a name: write @{registry}.register("mine")'
+    assert str(raised.value) == f"{path}:3: TypeError: {advice}"
+
+
 def test_a_name_given_twice_in_one_file_is_told_with_both_lines(write: Write) -> None:
     _, decorator, rest = MINE.partition("    @PLAYS")
     path = write(MINE + decorator + rest)
