@@ -123,6 +123,8 @@ class TreeRunner:
     def _fail(self, error: BaseException) -> None:
         """Bring the tree to rest, with the node that raised as the one that failed."""
         node, said = self._raiser(error)
+        if self._unready is not None:
+            said = f"setup() failed: {said}"
         self.error = f"{node_path(node)}: {said}"
         abandon(self.root)
         node.status, node.feedback_message = Status.FAILURE, said

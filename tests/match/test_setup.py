@@ -76,12 +76,14 @@ def test_each_trial_sets_its_trees_up_and_shuts_them_down(diary: list[str]) -> N
 def test_a_robot_that_could_not_be_set_up_stands_still_and_the_others_play() -> None:
     (result,) = run_trials(scenario(breaks=True), PlainWorld, 1).results
     assert [robot.errors for robot in result.robots.values()] == [0, 0, 3]
-    assert str(result.robots["blue 2"].first_error).startswith("not/robot 2: ConnectionError: no camera")
+    assert str(result.robots["blue 2"].first_error).startswith(
+        "not/robot 2: setup() failed: ConnectionError: no camera"
+    )
 
 
 def test_in_development_the_run_ends_with_the_robot_and_the_nodes_path(diary: list[str]) -> None:
     broken = scenario(breaks=True, on_error="raise")
-    with pytest.raises(RunError, match=r"^mine\.yaml: trial 0: blue 2: not/robot 2: ConnectionError: no cam"):
+    with pytest.raises(RunError, match=r"^mine\.yaml: trial 0: blue 2: not/robot 2: setup\(\) failed: "):
         run_trials(broken, PlainWorld, 1)
     assert diary == ["robot 1 set up", "robot 1 ticked", "robot 1 shut down"]
 

@@ -96,7 +96,9 @@ def test_a_tree_that_could_not_be_set_up_fails_at_every_tick_for_that_reason() -
     for _ in range(3):
         assert runner.tick() is Status.INVALID
         assert runner.error is not None
-        assert runner.error.startswith("root/not/above/right: ConnectionError: no camera (test_setup.py:")
+        assert runner.error.startswith(
+            "root/not/above/right: setup() failed: ConnectionError: no camera (test_setup.py:"
+        )
         assert runner.statuses() == "----F-"
     # Nothing is set up after it, nothing is ticked, and only what was set up is shut down.
     runner.shutdown()
@@ -107,14 +109,18 @@ def test_what_a_node_wants_and_nobody_gives_is_told_with_its_path() -> None:
     runner = TreeRunner(Sequence("root", memory=False, children=[NeedsNode("camera")]), Notes())
     runner.tick()
     assert runner.error is not None
-    assert runner.error.startswith("root/camera: TypeError: NeedsNode.setup() missing 1 required")
+    assert runner.error.startswith(
+        "root/camera: setup() failed: TypeError: NeedsNode.setup() missing 1 required"
+    )
 
 
 def test_in_development_a_tree_that_cannot_be_set_up_raises_at_its_first_tick() -> None:
     diary: list[str] = []
     runner = TreeRunner(tree(diary, "setup"), None, on_error="raise")
     for _ in range(2):
-        with pytest.raises(TreeError, match="root/not/above/right: ConnectionError: no camera") as raised:
+        with pytest.raises(
+            TreeError, match=r"root/not/above/right: setup\(\) failed: ConnectionError: no camera"
+        ) as raised:
             runner.tick()
         assert isinstance(raised.value.__cause__, ConnectionError)
     assert diary == ["left set up", "right set up"]
