@@ -58,7 +58,8 @@ class _Reader(ElementChecker):
     def file(self, root: Element) -> TreeFile:
         self._parts(root)
         if not self.trees:
-            raise self.error(root, "there is no <BehaviorTree>")
+            lacking = "there is no <BehaviorTree>" if self.include is None else "the project includes no tree"
+            raise self.error(root, lacking)
         for reader, model in self.models:
             reader._model(model, self.trees)
         return TreeFile(self.source, self._main(root, self.trees), self.trees, "xml")
@@ -68,11 +69,11 @@ class _Reader(ElementChecker):
         if root.tag != "root":
             raise self.error(root, f"the outermost tag is <root>, not <{root.tag}>")
         self.attributes(root, ("BTCPP_format", "main_tree_to_execute", "project_name"), ())
-        if "BTCPP_format" not in root.attributes:
-            needs = '<root> needs the attribute BTCPP_format="4"; a file without it is one of version 3'
-            raise self.error(root, f"{needs} of BehaviorTree.CPP, whose tags and attributes differ")
-        if root.attributes["BTCPP_format"] != "4":
-            raise self.error(root, f"BTCPP_format is 4, not {root.attributes['BTCPP_format']}")
+        version = root.attributes.get("BTCPP_format")
+        if version != "4":
+            said = "<root> has no BTCPP_format" if version is None else f'BTCPP_format="{version}"'
+            convert = 'robobt reads version 4: convert it, then set BTCPP_format="4"'
+            raise self.error(root, f"this file is for BehaviorTree.CPP {version or 3} ({said}); {convert}")
         self.no_text(root)
         own = False
         for part in root.children:
@@ -114,8 +115,11 @@ class _Reader(ElementChecker):
         }
         outer = [name for name in trees if name not in inner]
         if len(outer) != 1:
-            which = f"{', '.join(outer)} are no sub-trees" if outer else "all are sub-trees"
-            raise self.error(root, f"which tree is the main one? {which}; name it in main_tree_to_execute")
+            which = "every tree is a sub-tree of another"
+            if outer:
+                each = "both" if len(outer) == 2 else "all"
+                which = f"{', '.join(outer[:-1])} and {outer[-1]} could {each} be the main tree"
+            raise self.error(root, f"{which}; name one in main_tree_to_execute")
         return outer[0]
 
     def _tree(self, element: Element, only: bool) -> Definition:

@@ -75,7 +75,7 @@ def test_a_mistake_is_told_with_the_file_and_the_line_in_which_it_stands(folder:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (project(), "there is no <BehaviorTree>"),
+        (project(), "the project includes no tree"),
         (project("gone.xml"), r"shooting\.btproj:1: <include>: .*gone\.xml: .*[Nn]o such file"),
         (project("main.txt"), "main.txt: a project includes files whose ending is .xml"),
         (project("main.xml", "trees/get.xml", "main.xml"), r"main\.xml:3: the tree 'Main' is there twice"),
@@ -83,6 +83,7 @@ def test_a_mistake_is_told_with_the_file_and_the_line_in_which_it_stands(folder:
         (project("main.xml", *["trees/get.xml"] * 101), "a project includes at most 100 files"),
         ('<root BTCPP_format="4"><include ros_pkg="a" path="b.xml"/></root>', "no attribute ros_pkg"),
         ('<root BTCPP_format="4"><include/></root>', "<include> needs the attribute path"),
+        (project(), r"shooting\.btproj:1: the project includes no tree"),
         (project("loop.xml"), r"loop\.xml:1: <include> is not supported"),
     ],
 )
@@ -139,5 +140,5 @@ def test_what_is_of_version_3_says_so_and_what_it_is_now(body: str, said: str) -
 
 
 def test_a_file_without_a_format_is_one_of_version_3() -> None:
-    with pytest.raises(TreeFileError, match=r'the attribute BTCPP_format="4"; .* version 3 of Behav'):
+    with pytest.raises(TreeFileError, match=r"for BehaviorTree.CPP 3 .*; robobt reads version 4: convert"):
         parse_xml('<root><BehaviorTree ID="A"><AlwaysSuccess/></BehaviorTree></root>', VOCABULARY)

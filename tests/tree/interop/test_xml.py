@@ -577,8 +577,16 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document('<SaySomething message="&a;"/>'), "undefined entity"),
         ("<?php x?>" + document(SAY), r"<\?php\?> is not allowed"),
         ('<tree BTCPP_format="4"/>', "the outermost tag is <root>"),
-        ("<root/>", "needs the attribute BTCPP_format"),
-        ('<root BTCPP_format="3"/>', "BTCPP_format is 4, not 3"),
+        (
+            "<root/>",
+            r"this file is for BehaviorTree.CPP 3 \(<root> has no BTCPP_format\); "
+            'robobt reads version 4: convert it, then set BTCPP_format="4"',
+        ),
+        (
+            '<root BTCPP_format="3"/>',
+            r'this file is for BehaviorTree.CPP 3 \(BTCPP_format="3"\); '
+            'robobt reads version 4: convert it, then set BTCPP_format="4"',
+        ),
         ('<root BTCPP_format="4" project="p"/>', "no attribute project"),
         ('<root BTCPP_format="4"/>', "there is no <BehaviorTree>"),
         ('<root BTCPP_format="4">words</root>', "there is text in <root>"),
@@ -590,11 +598,17 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document(SAY + SAY), "<BehaviorTree> has one child, not 2"),
         (
             document(SAY, '<BehaviorTree ID="Other"><AlwaysSuccess/></BehaviorTree>'),
-            "which tree is the main one",
+            "Main and Other could both be the main tree; name one in main_tree_to_execute",
+        ),
+        (
+            document(
+                SAY, "".join(f'<BehaviorTree ID="{name}"><AlwaysSuccess/></BehaviorTree>' for name in "AB")
+            ),
+            "Main, A and B could all be the main tree; name one in main_tree_to_execute",
         ),
         (
             document('<SubTree ID="B"/>', '<BehaviorTree ID="B"><SubTree ID="Main"/></BehaviorTree>'),
-            "all are sub-trees",
+            "every tree is a sub-tree of another; name one in main_tree_to_execute",
         ),
         (
             document(SAY).replace('"4"', '"4" main_tree_to_execute="Other"'),
