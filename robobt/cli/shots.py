@@ -140,7 +140,8 @@ def score(
         warn(f"{shots.file}: {problem}")
     if left_out:
         unnamed = f", {len(left_out) - _MOST_TOLD} of them not named" if len(left_out) > _MOST_TOLD else ""
-        warn(f"{len(left_out)} of {len(left_out) + len(scored)} shots are left out{unnamed}")
+        are = "is" if len(left_out) == 1 else "are"
+        warn(f"{len(left_out)} of {len(left_out) + len(scored)} shots {are} left out{unnamed}")
     figures = measured(expected, scored)
     if as_json:
         counts = {

@@ -114,6 +114,8 @@ def test_a_predictor_is_judged_on_the_shots_that_give_what_it_needs(tmp_path: Pa
     code, _, said = score("--data", str(file))
     assert code == 1
     assert "none of its 1 shots can be used; row 2: lacks 'opp_vx'" in said
+    file.write_text(text(GOOD, lacking))
+    assert score("--data", str(file))[2].endswith("1 of 2 shots is left out")
     file.write_text(text(GOOD, *[lacking] * 30))
     code, out, said = score("--data", str(file))
     assert code == 0
