@@ -101,7 +101,7 @@ def read_model_file(path: str | Path) -> ModelFile:
             content, text = _split_onnx(data)
             digest = sha256(content).hexdigest()
         else:
-            raise ModelError("is no model file, or cut short or altered")
+            raise ModelError("is not a robobt model file, or is damaged")
         if text is None:
             raise ModelError("there is no model card in it; robobt export writes files with one")
         card = read_card(text)
@@ -189,7 +189,8 @@ def unpack_archive(data: bytes) -> dict[str, bytes]:
     except Exception as error:
         # zipfile answers damage with a dozen kinds of exceptions, struct's and zlib's among them.
         # Some quote the file itself.
-        raise ModelError(f"is no intact archive ({type(error).__name__}: {str(error)[:80]})") from error
+        found_wrong = f"{type(error).__name__}: {str(error)[:80]}"
+        raise ModelError(f"is damaged or incomplete ({found_wrong}); copy or export it again") from error
     roots = {name.partition("/")[0] for name, _ in found}
     members = {name.partition("/")[2]: content for name, content in found}
     if len(roots) != 1 or not any(name.startswith("code/") for name in members):

@@ -22,7 +22,7 @@ def find_model(name_or_path: str | Path) -> Path:
 
     Raises:
         UnknownModelError: there is no model with that name.
-        ModelError: there are several, and they are not the same.
+        ModelError: there are several, and they are not the same; or it names a file of another kind.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or is_path(text):
@@ -39,6 +39,8 @@ def find_model(name_or_path: str | Path) -> Path:
         raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
     for path in found.values():
         return path
+    if Path(text).is_file():
+        raise ModelError(f"{text!r} is not a model file: model files end in {' or '.join(_ENDINGS)}")
     there = sorted({path.stem for folder in folders for path in list_models(folder)})
     meant = close_names(text, there)
     guess = f"did you mean {' or '.join(meant)}? " if meant else ""

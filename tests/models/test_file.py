@@ -229,3 +229,17 @@ def test_names_are_those_of_installed_models(folder: Path, monkeypatch: pytest.M
     assert find_model(Path("small")) == Path("small")
     with pytest.raises(UnknownModelError, match=r"'big'.*small"):
         find_model("big")
+
+
+def test_a_file_that_is_there_and_no_model_is_called_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("README.md").write_text("words")
+    with pytest.raises(
+        ModelError, match=r"^'README\.md' is not a model file: model files end in \.pt or \.onnx$"
+    ):
+        find_model("README.md")
+    Path("words.onnx").write_text("words")
+    with pytest.raises(ModelError, match="is not a robobt model file, or is damaged"):
+        read_model_file("words.onnx")

@@ -57,8 +57,8 @@ def refusal(path: Path) -> str:
 REASONS = {
     "missing": "there is no such file",
     "empty": "is empty",
-    "cut": "is no intact archive",
-    "altered": "is no intact archive",
+    "cut": "is damaged or incomplete",
+    "altered": "is damaged or incomplete",
     "foreign": "is an archive, but not a TorchScript one",
     "policy": "is a policy, not a shot predictor",
     "folder": "is no file",
