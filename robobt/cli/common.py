@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
@@ -218,7 +219,16 @@ def blaming(option: str) -> Iterator[None]:
     try:
         yield
     except ConfigError as error:
-        raise ConfigError(option, error.problem, error.field) from error
+        field, problem = error.field, error.problem
+        # The problem names the robot already; of the field only the parameter is news.
+        if (robot := _ROBOT.match(problem)) and (place := _ROBOTS_FIELD.match(field)):
+            named = (robot[1], field[place.end() :])
+            field, problem = ": ".join(filter(None, named)), problem[robot.end() :]
+        raise ConfigError(option, problem, field) from error
+
+
+_ROBOT = re.compile(r"((?:blue|yellow) \d+): ")
+_ROBOTS_FIELD = re.compile(r"robots\.\w+\.\d+\.(?:params\.|play$)?")
 
 
 def cores() -> int:

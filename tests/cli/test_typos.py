@@ -28,12 +28,12 @@ TYPOS = [
     (MATCH + "--set simulator.realism=frendly", "--set: simulator: no realism level is called 'frendly'"),
     (
         MATCH + "--blue atack_main",
-        "--blue: robots.blue.0.play: blue 0: no play is called 'atack_main'; did you",
+        "--blue: blue 0: no play is called 'atack_main'; did you",
     ),
     (MATCH + "--yellow goalkeper", "'goalkeper'; did you mean goalkeeper or"),
     (
         MATCH + "--blue attack_main:sped=2",
-        "--blue: robots.blue.0.params.sped: blue 0: attack_main has no such",
+        "--blue: blue 0: sped: attack_main has no such",
     ),
     (MATCH + "--substitute bleu:*=SUCCESS", "--substitute: robots: there is no robot 'bleu'"),
     ("match striker_vs_golie", "did you mean striker_vs_goalie?"),
@@ -85,4 +85,4 @@ def test_a_wrong_model_is_blamed_on_its_parameter_even_beside_needed_ones(value:
         ended = CliRunner().invoke(
             app, ["match", "striker_vs_goalie", "--import", str(path), "--blue", play], terminal_width=1000
         )
-    assert "--blue: robots.blue.0.params.model: " in " ".join(ended.output.split())
+    assert "--blue: blue 0: model: " in " ".join(ended.output.split())

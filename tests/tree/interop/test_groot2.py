@@ -75,7 +75,6 @@ def test_a_mistake_is_told_with_the_file_and_the_line_in_which_it_stands(folder:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (project(), "the project includes no tree"),
         (project("gone.xml"), r"shooting\.btproj:1: <include>: .*gone\.xml: .*[Nn]o such file"),
         (project("main.txt"), "main.txt: a project includes files whose ending is .xml"),
         (project("main.xml", "trees/get.xml", "main.xml"), r"main\.xml:3: the tree 'Main' is there twice"),
