@@ -49,16 +49,16 @@ class Registry(Generic[T]):
         self._loaded = group is None
         self._loading: str | None = None
 
-    def register(self, name: str) -> Callable[[T], T]:
+    def register(self, name: str = "") -> Callable[[T], T]:
         """Return a decorator that enters the decorated thing under ``name``.
 
         Raises:
-            TypeError: the name is no text, as where ``@register`` is written without parentheses.
+            TypeError: there is no name, as in ``@register`` and ``@register()``.
             ValueError: the name is taken; the message names both.
         """
         if not isinstance(name, str) or not name:
             registry = "" if self.group is None else self.group.rpartition(".")[2].upper() + "."
-            meant = getattr(name, "__name__", "name")
+            meant = getattr(name, "__name__", "foo")
             raise TypeError(f'{registry}register takes a name: write @{registry}register("{meant}")')
 
         def enter(entry: T) -> T:

@@ -145,6 +145,9 @@ def test_registering_without_a_name_says_what_to_write(write: Write, registry: s
         import_file(path)
     advice = f'{registry}.register takes a name: write @{registry}.register("mine")'
     assert str(raised.value) == f"{path}:3: TypeError: {advice}"
+    path = write(f"from robobt.{module} import {registry}\n\n{registry}.register()\n", "empty.py")
+    with pytest.raises(PythonFileError, match=rf"empty\.py:3: TypeError: {registry}.register takes a name"):
+        import_file(path)
 
 
 def test_a_name_given_twice_in_one_file_is_told_with_both_lines(write: Write) -> None:
