@@ -79,7 +79,7 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         answers = tree_leaves(func(*tree_map(_without_memory, args), **without))
         found = [one for one in answers if isinstance(one, Tensor)]
         if name.rstrip("_") in TRAPPING and not any(one.is_floating_point() for one in found):
-            self._check_division(name, named["other"])
+            self._check_division(name, named["self"], named["other"])
         self._changes |= func._schema.is_mutable
         if self._changes and self._divides:
             raise ModelError("divides integers by a tensor, and changes a tensor in place")
@@ -89,19 +89,17 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         if self._bytes > MAX_BYTES or self._work > self._largest_work:
             raise ModelError(f"takes more memory or time than a model does, at aten::{name}")
 
-    def _check_division(self, name: str, divisor: object) -> None:
-        if isinstance(divisor, Tensor):
-            if self._constants is not None:
-                if divisor.data_ptr() not in self._constants:
-                    raise ModelError(
-                        f"aten::{name} divides integers by a tensor that may hold 0; "
-                        "divide by a constant, or divide floating-point numbers"
-                    )
-                self._divides = True
-            trapping = bool(((divisor == 0) | (divisor == -1)).any())
-        else:
-            trapping = divisor in (0, -1)
-        if trapping:
+    def _check_division(self, name: str, divided: Any, divisor: Any) -> None:
+        if isinstance(divisor, Tensor) and self._constants is not None:
+            if divisor.data_ptr() not in self._constants:
+                raise ModelError(
+                    f"aten::{name} divides integers by a tensor that may hold 0; "
+                    "divide by a constant, or divide floating-point numbers"
+                )
+            self._divides = True
+        # Torch converts both to one type before it divides: 2**32 - 1 is -1 among 32-bit integers.
+        converted = torch.as_tensor(divisor).to(torch.result_type(divided, divisor))
+        if bool(((converted == 0) | (converted == -1)).any()):
             raise ModelError(f"aten::{name} divides integers by 0 or -1")
 
 

@@ -97,6 +97,45 @@ def test_a_division_of_tensors_that_may_end_the_process_is_refused(
     refused(plain(tmp_path, many(lines)), "divides integers by")
 
 
+@pytest.mark.parametrize("kind", TENSORS)
+@pytest.mark.parametrize(
+    ("type_", "divisor"),
+    [
+        (3, "4294967295"),
+        (3, "-4294967297"),
+        (3, "8589934592"),
+        (3, "torch.full([], 4294967295, dtype=4)"),
+        (3, "torch.select(torch.full([2], 4294967295, dtype=4), 0, 1)"),
+        (2, "65535"),
+        (1, "256"),
+        (1, "torch.full([], 65535, dtype=3)"),
+        (0, "256"),
+    ],
+)
+def test_a_division_by_what_becomes_0_or_minus_1_in_the_type_divided_in_is_refused(
+    kind: str, type_: int, divisor: str, tmp_path: Path
+) -> None:
+    integers = f"i = torch.to(observation, {type_})"
+    lines = [integers, f"x1 = torch.to({TENSORS[kind].format(divisor)}, 6)"]
+    refused(plain(tmp_path, many(lines)), "divides integers by 0 or -1")
+
+
+@pytest.mark.parametrize("kind", TENSORS)
+def test_a_division_of_one_number_by_what_becomes_minus_1_is_refused(kind: str, tmp_path: Path) -> None:
+    number = "i = torch.to(torch.sum(observation), 3)"
+    lines = [number, f"x1 = torch.to({TENSORS[kind].format('4294967295')}, 6)"]
+    refused(plain(tmp_path, many(lines)), "divides integers by 0 or -1")
+
+
+@pytest.mark.parametrize("kind", TENSORS)
+def test_a_division_by_what_is_minus_1_in_a_narrower_type_alone_is_loaded(kind: str, tmp_path: Path) -> None:
+    lines = [
+        "i = torch.to(observation, 3)",
+        f"x1 = torch.to({TENSORS[kind].format('torch.full([6], 4294967295, dtype=4)')}, 6)",
+    ]
+    load_policy(plain(tmp_path, many(lines)))
+
+
 def test_a_constant_divisor_that_is_changed_in_place_is_refused(tmp_path: Path) -> None:
     lines = [
         UNUSUAL,
