@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 
 class RobobtError(Exception):
@@ -58,9 +58,24 @@ def one_line(text: str, limit: int = 500) -> str:
     return shown if len(shown) <= limit else shown[: limit - 3] + "..."
 
 
+def text_of(value: object, text: Callable[[Any], str] = str) -> str:
+    """Return ``text(value)``, or a description of the error that it raised.
+
+    Args:
+        value: any object, whose class may be a user's.
+        text: makes the text.
+    """
+    try:
+        return text(value)
+    except (SystemExit, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        return f"a {type(value).__name__} whose text is a {type(error).__name__}"
+
+
 def short_repr(value: object) -> str:
     """Return the ``repr`` of a value for a message, at most 60 characters long."""
-    shown = repr(value)
+    shown = text_of(value, repr)
     return shown if len(shown) <= 60 else shown[:57] + "..."
 
 

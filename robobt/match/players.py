@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from robobt.config.errors import one_line, short_repr
+from robobt.config.errors import one_line, short_repr, text_of
 from robobt.config.process import users_code
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeError, TreeRunner, node_path
+from robobt.tree.engine import LEAVING
 from robobt.tree.namespace import Namespace, within
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
@@ -106,9 +107,14 @@ def shut_down(players: Iterable[Player]) -> None:
 
 def _fault_of(command: object) -> str | None:
     """Return why a robot cannot be sent what its tree decided, None when it can."""
-    if not isinstance(command, RobotCommand):
-        return f"command is no RobotCommand: {short_repr(command)}"
     try:
-        return None if command.finite() else f"command is not finite: {command}"
+        if not isinstance(command, RobotCommand):
+            return f"command is no RobotCommand: {short_repr(command)}"
+        return None if command.finite() else f"command is not finite: {text_of(command)}"
     except (TypeError, ValueError, OverflowError):
-        return one_line(f"command is not made of numbers: {command}")
+        return one_line(f"command is not made of numbers: {text_of(command)}")
+    except LEAVING:
+        raise
+    except BaseException as error:
+        # A class of the skill's own.
+        return f"command cannot be read: {type(error).__name__}: {one_line(text_of(error))}"

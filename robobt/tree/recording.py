@@ -18,8 +18,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from robobt.config.errors import text_of
 from robobt.tree.engine import Marks, ticked_children
-from robobt.tree.runner import TreeRunner, status_letter, text_of
+from robobt.tree.runner import TreeRunner, status_letter
 
 _SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
 """Classes whose own nodes give no feedback."""

@@ -12,7 +12,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.visitors import VisitorBase
 
-from robobt.config.errors import RobobtError
+from robobt.config.errors import RobobtError, text_of
 from robobt.signals import Terminated
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
@@ -248,16 +248,6 @@ class TreeRunner:
 
 # Where every exception passes through; whoever has to mend it looks elsewhere.
 _ENGINES = ("robobt.tree.", "py_trees.")
-
-
-def text_of(said: object) -> str:
-    """Return ``str(said)``, or the error it raised."""
-    try:
-        return str(said)
-    except LEAVING:
-        raise
-    except BaseException as error:
-        return f"a {type(said).__name__} whose text is a {type(error).__name__}"
 
 
 def status_letter(status: object) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.decorators import Decorator
 
-from robobt.config.errors import short_repr
+from robobt.config.errors import short_repr, text_of
 
 MAX_DEPTH = 200
 """Nodes from the root of a tree down; Python itself takes some hundreds."""
@@ -20,9 +20,13 @@ def node_path(node: Behaviour) -> str:
     above: object = node
     while isinstance(above, Behaviour) and id(above) not in seen:
         seen.add(id(above))
-        names.append(str(getattr(above, "name", type(above).__name__)))
+        names.append(text_of(above, _name_of))
         above = getattr(above, "parent", None)
     return "/".join(reversed(names))
+
+
+def _name_of(node: Behaviour) -> str:
+    return str(getattr(node, "name", type(node).__name__))
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import nan
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from robobt.match.scenario.scenario import ScenarioError, scenario_from
 from robobt.plays import PLAYS
 from robobt.skills.base import Skill
 from robobt.tree import Behaviour, Inverter, Parallel, Selector, Sequence, Status, TreeError, TreeRunner
+from robobt.world.command import RobotCommand
 from tests.match.scripted import PlainWorld, data
 
 
@@ -144,6 +146,116 @@ def test_a_store_without_a_command_is_a_fault_of_its_tree() -> None:
     result = match.play()
     assert "command is no RobotCommand: None" in str(result.robots["blue 1"].first_error)
     assert result.ticks == 11
+
+
+class Raises:
+    """Raises whatever is done with it."""
+
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+    __repr__ = __str__
+
+
+class Ends(BaseException):
+    """An exception of a skill's own that is no Exception."""
+
+
+class LateCommand(RobotCommand):
+    """A command whose numbers cannot be read, nor itself be shown."""
+
+    def __getattribute__(self, name: str) -> object:
+        raise KeyError(name)
+
+
+class EndingCommand(RobotCommand):
+    def finite(self) -> bool:
+        raise Ends
+
+
+class Unclassed(Raises):
+    @property
+    def __class__(self) -> type:  # type: ignore[override]
+        raise RuntimeError("no class")
+
+
+COMMANDS: dict[str, tuple[Callable[[], object], str]] = {
+    "no command, without text": (Raises, "command is no RobotCommand: a Raises whose text is a RuntimeError"),
+    "no command, without class": (Unclassed, "command cannot be read: RuntimeError"),
+    "a number without text": (
+        lambda: 10**5000,
+        "RobotCommand: a int whose text is a ValueError",
+    ),
+    "not finite, without text": (
+        lambda: RobotCommand(nan, kick_trigger=Raises()),  # type: ignore[arg-type]
+        "command is not finite: a RobotCommand whose text is a RuntimeError",
+    ),
+    "without numbers": (LateCommand, "command cannot be read: KeyError"),
+    "one that ends": (EndingCommand, "command cannot be read: Ends"),
+}
+
+
+@pytest.mark.parametrize("what", COMMANDS)
+def test_a_command_that_raises_when_it_is_read_stops_its_robot_alone(what: str, tmp_path: Path) -> None:
+    command, said = COMMANDS[what]
+    path = tmp_path / "match.robobt.arrows"
+    match = match_with("all removed", path)
+    player = match.players[1]
+    tick = player.runner.tick
+
+    def commands() -> Status:
+        status = tick()
+        player.store.command = command()  # type: ignore[assignment]
+        return status
+
+    player.runner.tick = commands  # type: ignore[method-assign]
+    result = match.play()
+    assert said in str(result.robots["blue 1"].first_error)
+    assert result.ticks == len(load_recording(path)) == 11
+    assert result.robots["blue 0"].errors == 0
+
+
+def unnamed(me: Behaviour) -> None:
+    me.name = Raises()  # type: ignore[assignment]
+    raise ValueError("unnamed")
+
+
+def unnamed_above(me: Behaviour) -> None:
+    main(me).name = Raises()  # type: ignore[assignment]
+    raise ValueError("unnamed")
+
+
+def without_a_name(me: Behaviour) -> None:
+    def name(_: object) -> str:
+        raise Ends
+
+    me.__class__ = type("Nameless", (Damages,), {"name": property(name)})
+    raise ValueError("unnamed")
+
+
+def unnamed_and_unstoppable(me: Behaviour) -> None:
+    def stop(_: Status) -> None:
+        raise RuntimeError("goes on")
+
+    me.stop = stop  # type: ignore[assignment, method-assign]
+    unnamed(me)
+
+
+@pytest.mark.parametrize("damage", [unnamed, unnamed_above, without_a_name, unnamed_and_unstoppable])
+def test_a_node_whose_name_raises_stops_its_robot_alone(
+    damage: Callable[[Behaviour], None], tmp_path: Path
+) -> None:
+    path = tmp_path / "match.robobt.arrows"
+    match = match_with("all removed", path)
+    damages = match.players[1].runner.root.children[0].children[0]
+    assert isinstance(damages, Damages)
+    damages.damage = damage
+    result = match.play()
+    said = str(result.robots["blue 1"].first_error)
+    assert "whose text is a" in said
+    assert "ValueError: unnamed" in said
+    assert result.ticks == len(load_recording(path)) == 11
+    assert result.robots["blue 0"].errors == 0
 
 
 def looped() -> Behaviour:

@@ -12,11 +12,11 @@ from typing import TypeAlias, get_args, get_type_hints
 
 from pydantic import JsonValue
 
+from robobt.config.errors import text_of
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import TreeRunner
 from robobt.tree.engine import LEAVING
 from robobt.tree.recording import make_reader
-from robobt.tree.runner import text_of
 from robobt.world.state import Frame, RobotId
 
 _LONGEST_TEXT = 200

@@ -10,7 +10,7 @@ from py_trees.trees import BehaviourTree
 
 from robobt.tree.engine.closures import INVALID, RUNNING, Tick
 from robobt.tree.engine.dispatch import compile_tree
-from robobt.tree.walk import postorder
+from robobt.tree.walk import node_path, postorder
 
 _log = logging.getLogger(__name__)
 
@@ -97,7 +97,7 @@ def abandon(root: Behaviour) -> None:
             except BaseException:
                 _log.warning(
                     "%r raised again while its tree was being stopped",
-                    getattr(node, "name", None),
+                    node_path(node),
                     exc_info=True,
                 )
         node.status = INVALID
