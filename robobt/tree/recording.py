@@ -21,6 +21,7 @@ from py_trees.common import Status
 from robobt.config.errors import text_of
 from robobt.tree.engine import Marks, ticked_children
 from robobt.tree.runner import TreeRunner, status_letter
+from robobt.tree.walk import name_of
 
 _SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
 """Classes whose own nodes give no feedback."""
@@ -273,7 +274,7 @@ def node_ids(nodes: Sequence[Behaviour]) -> list[tuple[int, str]]:
     numbers: dict[str, int] = {}
     for node in nodes:
         depth, above = found[id(node.parent)] if found else (-1, "")
-        name = path = f"{above}/{node.name}" if found else str(node.name)
+        name = path = f"{above}/{name_of(node)}" if found else name_of(node)
         number = numbers.get(name, 1)
         while path in taken:
             number += 1

@@ -20,13 +20,14 @@ def node_path(node: Behaviour) -> str:
     above: object = node
     while isinstance(above, Behaviour) and id(above) not in seen:
         seen.add(id(above))
-        names.append(text_of(above, _name_of))
+        names.append(name_of(above))
         above = getattr(above, "parent", None)
     return "/".join(reversed(names))
 
 
-def _name_of(node: Behaviour) -> str:
-    return str(getattr(node, "name", type(node).__name__))
+def name_of(node: Behaviour) -> str:
+    """Return the node's name, or a description of the error that reading it raised."""
+    return text_of(node, lambda one: str(getattr(one, "name", type(one).__name__)))
 
 
 def preorder(root: Behaviour) -> list[Behaviour]:

@@ -10,7 +10,7 @@ from py_trees.trees import BehaviourTree
 
 from robobt.tree.engine.closures import INVALID, RUNNING, Tick
 from robobt.tree.engine.dispatch import compile_tree
-from robobt.tree.walk import node_path, postorder
+from robobt.tree.walk import name_of, postorder
 
 _log = logging.getLogger(__name__)
 
@@ -97,7 +97,7 @@ def abandon(root: Behaviour) -> None:
             except BaseException:
                 _log.warning(
                     "%r raised again while its tree was being stopped",
-                    node_path(node),
+                    name_of(node),
                     exc_info=True,
                 )
         node.status = INVALID
