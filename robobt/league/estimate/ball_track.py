@@ -166,9 +166,9 @@ class BallTrack:
         If a robot was close enough to kick the ball (``kickable``), a sudden departure is
         taken for a kick at the previous detection.
         """
-        m, p = self.motion, self._covariance
+        m, p, seen = self.motion, self._covariance, (x, y)
         known = p.knows(camera)
-        x, y = self.place(x, y, camera)
+        x, y = self.place(*seen, camera)
         dx, dy = x - m.x, y - m.y
         s = p.detection_variance(camera) + self._r
         surprises = (dx * dx + dy * dy) / s > _SURPRISE
@@ -177,8 +177,10 @@ class BallTrack:
         elif self._may_err(camera, known, kickable):
             if known and self._startled[camera] < _RELEARNT:
                 return
+            # The others have contradicted it: its offset has changed, or is not known yet.
             p.forget(camera)
-            x, y, surprises = m.x + dx, m.y + dy, False
+            x, y = self.place(*seen, camera)
+            dx, dy, surprises = x - m.x, y - m.y, False
             s = p.detection_variance(camera) + self._r
         self._last_camera = camera
         if surprises:
