@@ -5,9 +5,8 @@ No sockets and no clock: all times are arguments, on the field's clock.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import hypot, inf
 
 from robobt.league.wire.notices import Notices
@@ -22,8 +21,11 @@ _BLIND = 0.2
 _PATIENCE = 0.35
 """A robot that is commanded to move, with nothing seen to move, is told to stand after this time [s]."""
 
+_DUEL = 2.0
+"""The same where others move: then the picture is likely live, and the robot in a duel for the ball [s]."""
+
 _COMMANDED, _COMMANDED_TURN = 0.06, 0.3
-"""What its commands have to add up to in that time: a robot that dithers stays where it is [m, rad]."""
+"""What its commands have to add up to since then: a robot that dithers stays where it is [m, rad]."""
 
 _MOVED, _TURNED = 0.015, 0.1
 """What is seen to move by more than this moves; less may be noise [m, rad]."""
@@ -56,18 +58,45 @@ class _Stand:
 
 @dataclass(slots=True)
 class _Demand:
-    """What a robot was commanded of late, newest last, and since when without a pause [s]."""
+    """What a robot was commanded since it was last seen to move, or began to be commanded to."""
 
     since: float = inf
-    commands: deque[tuple[float, RobotCommand]] = field(default_factory=deque)
+    x: float = 0.0
+    y: float = 0.0
+    turn: float = 0.0
+    latest: float = -inf
+
+    def begin(self, time: float) -> None:
+        """Begin the sums anew."""
+        self.since, self.x, self.y, self.turn = time, 0.0, 0.0, 0.0
+
+    def add(self, command: RobotCommand, time: float) -> None:
+        """Add a command to the sums for the time since the one before it."""
+        if not _moves(command):
+            self.since = inf
+            return
+        if self.since == inf:
+            self.begin(time)
+        else:
+            step = time - self.latest
+            self.x += command.vx * step
+            self.y += command.vy * step
+            self.turn += command.omega * step
+        self.latest = time
+
+    def unanswered(self, time: float) -> bool:
+        """Return whether the robot should have been seen to move by now."""
+        enough = hypot(self.x, self.y) > _COMMANDED or abs(self.turn) > _COMMANDED_TURN
+        return enough and time - self.since >= _PATIENCE
 
 
 class PictureWatch:
     """Lets robots stand whose commands have no effect that a camera shows.
 
     A live camera's detections differ from frame to frame, if only by noise. A robot is told to stand when all
-    cameras that see it show exactly the same throughout, or when nothing on the field moves. One
-    that is blocked while others move drives on. It may move again when the picture does; every 5 s it tries.
+    cameras that see it show exactly the same throughout, or when none of the commanded robots moves: at once
+    if nothing else does either, later if the ball or others move. One that is blocked while a commanded
+    team-mate moves drives on. It may move again when they do; every 5 s it tries.
     """
 
     def __init__(self, notices: Notices) -> None:
@@ -81,7 +110,7 @@ class PictureWatch:
         self._anchors: dict[tuple[int, RobotId | None], _Pose] = {}
         self._demands: dict[RobotId, _Demand] = {}
         self._standing: dict[RobotId, _Stand] = {}
-        self._moved = self._heard = -inf
+        self._moved = self._followed = self._heard = -inf
 
     def see(self, frame: CameraFrame, time: float) -> None:
         """Take in a frame that was used at a time [s]."""
@@ -94,12 +123,14 @@ class PictureWatch:
             if content != camera.content:
                 camera.content, camera.changed = content, time
             camera.heard = time
-        if self._moved == -inf:
-            self._moved = time
         self._heard = time
         for it in frame.robots:
             self._seen.setdefault(it.robot, {})[frame.camera] = time
-            self._follow((frame.camera, it.robot), (it.x, it.y, it.heading or 0.0), time)
+            demand = self._demands.get(it.robot)
+            moved = self._follow((frame.camera, it.robot), (it.x, it.y, it.heading or 0.0), time)
+            if moved and demand is not None and demand.since < inf:
+                self._followed = time
+                demand.begin(time)
         for ball in frame.balls[:1]:
             self._follow((frame.camera, None), (ball.x, ball.y, 0.0), time)
 
@@ -108,18 +139,21 @@ class PictureWatch:
         seen = max((max(self._seen[it].values()) for it in commands if it in self._seen), default=-inf)
         if time - seen > _BLIND:
             commands = {robot: RobotCommand() for robot in commands}
+        self._demands = {robot: self._demands.get(robot) or _Demand() for robot in commands}
         return {robot: self._checked(robot, command, time) for robot, command in commands.items()}
 
     def _checked(self, robot: RobotId, command: RobotCommand, time: float) -> RobotCommand:
-        demand = self._demands.setdefault(robot, _Demand())
+        demand = self._demands[robot]
+        demand.add(command, time)
         moves = _moves(command)
         stand = self._standing.get(robot)
         if stand is not None and self._answered(robot, stand):
             del self._standing[robot]
-            demand.since, stand = inf, None
+            stand = None
+            if moves:
+                demand.begin(time)
         if stand is None:
-            self._note(demand, command, time)
-            if not (moves and self._unanswered(demand, time) and self._still(robot)):
+            if not (moves and demand.unanswered(time) and self._still(robot, demand)):
                 return command
             stand = self._standing[robot] = _Stand(time, self._frozen(robot))
             self._notices.tell(
@@ -136,54 +170,34 @@ class PictureWatch:
         turn = min(max(command.omega, -_TRIAL_TURN), _TRIAL_TURN)
         return RobotCommand(command.vx * share, command.vy * share, turn)
 
-    def _note(self, demand: _Demand, command: RobotCommand, time: float) -> None:
-        """Take note of what a robot is commanded."""
-        if not _moves(command):
-            demand.since = inf
-            demand.commands.clear()
-            return
-        demand.since = min(demand.since, time)
-        demand.commands.append((time, command))
-        while demand.commands[0][0] < time - _PATIENCE:
-            demand.commands.popleft()
-
-    def _unanswered(self, demand: _Demand, time: float) -> bool:
-        """Return whether a robot should have moved by now."""
-        if time - demand.since < _PATIENCE:
-            return False
-        x = y = turn = 0.0
-        times = [at for at, _ in demand.commands]
-        for (at, command), until in zip(demand.commands, [*times[1:], time], strict=True):
-            x += command.vx * (until - at)
-            y += command.vy * (until - at)
-            turn += command.omega * (until - at)
-        return hypot(x, y) > _COMMANDED or abs(turn) > _COMMANDED_TURN
-
-    def _still(self, robot: RobotId) -> bool:
-        """Return whether nothing on the field moves, or nothing at all changes where a robot is seen."""
-        return self._heard - self._moved >= _PATIENCE or self._frozen(robot)
+    def _still(self, robot: RobotId, demand: _Demand) -> bool:
+        """Return whether no commanded robot moves, or nothing at all changes where a robot is seen."""
+        patience = _DUEL if self._heard - self._moved < _PATIENCE else _PATIENCE
+        return self._heard - max(self._followed, demand.since) >= patience or self._frozen(robot)
 
     def _frozen(self, robot: RobotId) -> bool:
         cameras = self._cameras_of(robot)
         return bool(cameras) and all(it.heard - it.changed >= _PATIENCE for it in cameras)
 
     def _answered(self, robot: RobotId, stand: _Stand) -> bool:
-        """Return whether the picture has moved since a robot was told to stand."""
+        """Return whether the picture, or a commanded robot, has moved since a robot was told to stand."""
         if stand.frozen:
             return any(it.changed > stand.since for it in self._cameras_of(robot))
-        return self._moved > stand.since
+        return self._followed > stand.since
 
     def _cameras_of(self, robot: RobotId) -> list[_Camera]:
         """Return the cameras that see a robot."""
         seen = self._seen.get(robot, {})
         return [self._cameras[it] for it, time in seen.items() if self._heard - time < _PATIENCE]
 
-    def _follow(self, what: tuple[int, RobotId | None], pose: _Pose, time: float) -> None:
+    def _follow(self, what: tuple[int, RobotId | None], pose: _Pose, time: float) -> bool:
         """Find out whether something has moved."""
         x, y, heading = self._anchors.setdefault(what, pose)
         if hypot(pose[0] - x, pose[1] - y) > _MOVED or abs(wrap_angle(pose[2] - heading)) > _TURNED:
             self._anchors[what] = pose
             self._moved = time
+            return True
+        return False
 
 
 def _moves(command: RobotCommand) -> bool:

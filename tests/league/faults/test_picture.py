@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf
+from math import inf, sin
 
 import pytest
 
-from robobt.league.wire.vision import CameraFrame, RobotDetection
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import RobotId
 from tests.league.faults.faulty_field import FIRST, PERIOD, FaultyField, Sent
 
-ME, MATE, HER = RobotId(Team.BLUE, 0), RobotId(Team.BLUE, 1), RobotId(Team.YELLOW, 0)
+ME, MATE, IDLE = (RobotId(Team.BLUE, number) for number in range(3))
+HER = RobotId(Team.YELLOW, 0)
 STOPPED, BLIND = 0.5, 0.3
 """By when robots have to be stopped under a frozen picture, and where nothing is seen [s]."""
+
+OUTDONE = 2.2
+"""By when they have to be stopped where only others are seen to move [s]."""
 
 Fault = Callable[[float, list[CameraFrame]], Sent]
 
@@ -101,6 +105,84 @@ def test_robots_that_start_under_a_frozen_picture_are_stopped(caplog: pytest.Log
         world.play(2.0, {ME: RobotCommand(1.0), MATE: RobotCommand(0.0, -1.0)})
         assert 0.0 < max(world.moved.values()) - at < STOPPED
     assert len(caplog.messages) == 1
+
+
+@pytest.mark.parametrize(
+    ("command", "within"),
+    [
+        (RobotCommand(0.15), 0.55),
+        (RobotCommand(0.1), 0.75),
+        (RobotCommand(0.0, 0.05), 1.4),
+        (RobotCommand(0.0, 0.0, 0.2), 1.7),
+    ],
+    ids=["0.15 m/s", "0.1 m/s", "0.05 m/s aside", "turning at 0.2 rad/s"],
+)
+def test_slow_robots_under_a_frozen_picture_are_stopped(command: RobotCommand, within: float) -> None:
+    with FaultyField() as world:
+        world.play(0.5)
+        world.fault = frozen(world, noise=0.0013)
+        at = world.machine_time
+        world.play(2.0, {ME: command})
+        assert 0.0 < world.moved[ME] - at < within
+
+
+def ball_rolls(world: FaultyField) -> Fault:
+    """Robots that are shown where they were, beside a ball that rolls."""
+    still = frozen(world, noise=0.0013)
+
+    def fault(now: float, frames: list[CameraFrame]) -> Sent:
+        balls = [BallDetection(1.5 * sin(3.0 * now), 1.0)]
+        return [(replace(frame, balls=balls), sender) for frame, sender in still(now, frames)]
+
+    return fault
+
+
+def opponents_drive(world: FaultyField) -> Fault:
+    """Opponents that move while ours are stuck, as where the radio is dead."""
+    world.stuck = {ME, MATE}
+
+    def fault(now: float, frames: list[CameraFrame]) -> Sent:
+        for frame in frames:
+            for robot in frame.robots:
+                robot.y += 0.8 * sin(3.0 * now) if robot.robot.team is HER.team else 0.0
+        return live(now, frames)
+
+    return fault
+
+
+def an_idle_mate_is_pushed(world: FaultyField) -> Fault:
+    """A team-mate without a motion command that is seen to move while ours are stuck."""
+    world.stuck = {ME, MATE, IDLE}
+
+    def fault(now: float, frames: list[CameraFrame]) -> Sent:
+        for frame in frames:
+            for robot in frame.robots:
+                robot.y += 0.5 * sin(2.0 * now) if robot.robot == IDLE else 0.0
+        return live(now, frames)
+
+    return fault
+
+
+@pytest.mark.parametrize("others", [ball_rolls, opponents_drive, an_idle_mate_is_pushed])
+def test_robots_that_do_not_follow_are_stopped_though_others_move(
+    others: Callable[[FaultyField], Fault],
+) -> None:
+    drive = {ME: RobotCommand(0.5), MATE: RobotCommand(0.0, 0.5), IDLE: RobotCommand()}
+    with FaultyField(robots=3) as world:
+        world.play(0.5, drive)
+        world.fault = others(world)
+        at = world.machine_time
+        world.play(4.0, drive)
+        assert max(world.moved[ME], world.moved[MATE]) - at < OUTDONE
+
+
+def test_a_robot_in_a_duel_for_the_ball_drives_on() -> None:
+    drive = {ME: RobotCommand(1.0)}
+    with FaultyField() as world:
+        world.play(0.5, drive)
+        world.fault = opponents_drive(world)
+        world.play(1.5, drive)
+        assert world.machine_time - world.moved[ME] < 0.05
 
 
 def test_one_frozen_camera_of_two_stops_the_robots_that_it_shows() -> None:
