@@ -36,6 +36,9 @@ _RETRY, _TRIAL = 5.0, 0.3
 _TRIAL_SPEED, _TRIAL_TURN = 0.2, 1.0
 """... and no faster than this, as it may go where nobody sees it [m/s, rad/s]."""
 
+_LEVER = 0.2
+"""Speed that counts as much as a turning rate of 1 rad/s where commands are compared [m]."""
+
 _Pose = tuple[float, float, float]
 
 
@@ -48,12 +51,23 @@ class _Camera:
     heard: float
 
 
-@dataclass(slots=True, frozen=True)
+@dataclass(slots=True)
 class _Stand:
-    """Since when a robot stands [s], and whether because its cameras show no change at all."""
+    """Since when a robot stands [s], whether because its cameras show no change at all, and its trials."""
 
     since: float
     frozen: bool
+    tried: list[RobotCommand]
+    ended: float
+
+    def tries(self, trial: RobotCommand, time: float) -> bool:
+        """Return whether a trial may be sent now: every 5 s, and at once where it is unlike all others."""
+        new = all(_unlike(trial, it) for it in self.tried)
+        if new:
+            self.tried.append(trial)
+        if new or time - self.ended >= _RETRY:
+            self.ended = time + _TRIAL
+        return time < self.ended
 
 
 @dataclass(slots=True)
@@ -96,7 +110,8 @@ class PictureWatch:
     A live camera's detections differ from frame to frame, if only by noise. A robot is told to stand when all
     cameras that see it show exactly the same throughout, or when none of the commanded robots moves: at once
     if nothing else does either, later if the ball or others move. One that is blocked while a commanded
-    team-mate moves drives on. It may move again when they do; every 5 s it tries.
+    team-mate moves drives on. It may move again when they do; it tries every 5 s, and at once when it is
+    commanded another way.
     """
 
     def __init__(self, notices: Notices) -> None:
@@ -155,7 +170,7 @@ class PictureWatch:
         if stand is None:
             if not (moves and demand.unanswered(time) and self._still(robot, demand)):
                 return command
-            stand = self._standing[robot] = _Stand(time, self._frozen(robot))
+            stand = self._standing[robot] = _Stand(time, self._frozen(robot), [_trial(command)], time)
             self._notices.tell(
                 "picture",
                 f"{robot} is commanded to move, but vision shows no motion: either vision is frozen or the "
@@ -164,11 +179,8 @@ class PictureWatch:
             )
         if not moves:
             return command
-        if (time - stand.since) % (_RETRY + _TRIAL) < _RETRY:
-            return RobotCommand()
-        share = min(1.0, _TRIAL_SPEED / max(_TRIAL_SPEED, hypot(command.vx, command.vy)))
-        turn = min(max(command.omega, -_TRIAL_TURN), _TRIAL_TURN)
-        return RobotCommand(command.vx * share, command.vy * share, turn)
+        trial = _trial(command)
+        return trial if stand.tries(trial, time) else RobotCommand(dribbler=command.dribbler)
 
     def _still(self, robot: RobotId, demand: _Demand) -> bool:
         """Return whether no commanded robot moves, or nothing at all changes where a robot is seen."""
@@ -202,3 +214,16 @@ class PictureWatch:
 
 def _moves(command: RobotCommand) -> bool:
     return bool(command.vx or command.vy or command.omega)
+
+
+def _trial(command: RobotCommand) -> RobotCommand:
+    """Return a command made slow, and without a kick."""
+    share = min(1.0, _TRIAL_SPEED / max(_TRIAL_SPEED, hypot(command.vx, command.vy)))
+    turn = min(max(command.omega, -_TRIAL_TURN), _TRIAL_TURN)
+    return RobotCommand(command.vx * share, command.vy * share, turn, dribbler=command.dribbler)
+
+
+def _unlike(new: RobotCommand, old: RobotCommand) -> bool:
+    """Return whether a command differs from an old one by more than its size: by 60 degrees, if as fast."""
+    change = hypot(new.vx - old.vx, new.vy - old.vy, _LEVER * (new.omega - old.omega))
+    return change > hypot(old.vx, old.vy, _LEVER * old.omega)

@@ -39,6 +39,7 @@ class FaultyField(LeagueWorld):
         noise: standard deviation of the detected positions [m].
         fault: changes what the cameras send at a time.
         moved: when a command that moves a robot was sent last, by robot [s].
+        sent: the commands that were sent last.
     """
 
     def __init__(self, robots: int = 2, cameras: int = 1, noise: float = 0.0013, **options: Any) -> None:
@@ -54,6 +55,7 @@ class FaultyField(LeagueWorld):
             (it, FIRST) for it in frames
         ]
         self.moved = dict.fromkeys(self.poses, -inf)
+        self.sent: Mapping[RobotId, RobotCommand] = {}
         self._velocities = {robot: [0.0, 0.0] for robot in self.poses}
         self._orders: list[tuple[float, Mapping[RobotId, RobotCommand]]] = []
         self._number, self._next = 0, self.machine_time + PERIOD
@@ -97,6 +99,7 @@ class FaultyField(LeagueWorld):
                 feed.add(used, self.machine_time)
 
     def _obey(self, commands: Mapping[RobotId, RobotCommand], _: float) -> None:
+        self.sent = commands
         for robot, command in commands.items():
             if command.vx or command.vy or command.omega:
                 self.moved[robot] = self.machine_time

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, sin
+from math import cos, hypot, inf, sin
 
 import pytest
 
@@ -222,6 +222,62 @@ def test_a_robot_that_was_blocked_alone_tries_again_slowly_and_goes_on(noise: fl
         world.stuck = set()
         world.play(4.0, {ME: RobotCommand(1.0)})
         assert world.machine_time - world.moved[ME] < 0.05
+
+
+@pytest.mark.parametrize(
+    ("pushed", "then"),
+    [
+        (RobotCommand(1.0), RobotCommand(-1.0)),
+        (RobotCommand(1.0), RobotCommand(0.0, 1.0)),
+        (RobotCommand(1.0), RobotCommand(0.6, -1.6)),
+        (RobotCommand(1.0), RobotCommand(0.0, 0.0, 3.0)),
+        (RobotCommand(0.0, 0.0, 3.0), RobotCommand(0.5)),
+        (RobotCommand(0.0, 0.0, 2.0), RobotCommand(0.0, 0.0, -2.0)),
+        (RobotCommand(0.05), RobotCommand(1.0)),
+    ],
+    ids=["back", "aside", "obliquely", "turn", "drive after turning", "turn back", "far faster"],
+)
+@pytest.mark.parametrize("hold", [0.6, 2.0, 4.0])
+def test_a_robot_that_stands_may_try_another_way_at_once(
+    pushed: RobotCommand, then: RobotCommand, hold: float
+) -> None:
+    with FaultyField(robots=1) as world:
+        world.play(0.5)
+        world.stuck = {ME}
+        world.play(hold + 1.0, {ME: pushed})
+        world.stuck = set()
+        at = world.machine_time
+        world.play(0.1, {ME: then})
+        assert world.moved[ME] > at
+        world.play(0.5, {ME: then})
+        assert world.machine_time - world.moved[ME] < 0.05
+        assert world.sent[ME] == then
+
+
+def test_under_a_frozen_picture_no_change_of_commands_drives_a_robot_far() -> None:
+    with FaultyField(robots=1) as world:
+        world.play(0.5)
+        world.fault = frozen(world, noise=0.0013)
+        world.play(1.0, {ME: RobotCommand(1.0)})
+        x, y, _ = world.poses[ME]
+        trials = 0
+        for i in range(600):
+            way = 0.9 * i
+            world.play(PERIOD / 2, {ME: RobotCommand(cos(way), sin(way), 3.0 * sin(2.1 * i))})
+            trials += world.machine_time - world.moved[ME] < PERIOD
+        assert trials < 300
+        assert hypot(world.poses[ME][0] - x, world.poses[ME][1] - y) < 0.3
+
+
+def test_a_robot_that_stands_keeps_its_dribbler_and_does_not_kick() -> None:
+    command = RobotCommand(1.0, kick_speed=6.0, dribbler=True)
+    with FaultyField(robots=1) as world:
+        world.stuck = {ME}
+        world.play(1.0, {ME: command})
+        assert world.sent[ME] == RobotCommand(dribbler=True)
+        # The same while it tries another way.
+        world.play(0.1, {ME: replace(command, vx=-1.0)})
+        assert world.sent[ME] == RobotCommand(-0.2, dribbler=True)
 
 
 @pytest.mark.parametrize("noise", [0.0013, 0.0], ids=["noise", "no noise"])
