@@ -174,14 +174,16 @@ class BallTrack:
         surprises = (dx * dx + dy * dy) / s > _SURPRISE
         if not surprises:
             self._startled.pop(camera, None)
-        elif self._may_err(camera, known, kickable):
-            if known and self._startled[camera] < _RELEARNT:
+        elif known and p.several and self._contradicted(camera, kickable):
+            if self._startled[camera] < _RELEARNT:
                 return
-            # The others have contradicted it: its offset has changed, or is not known yet.
+            # The others go on seeing the ball where it was: the camera's offset has changed.
             p.forget(camera)
             x, y = self.place(*seen, camera)
-            dx, dy, surprises = x - m.x, y - m.y, False
+            dx, dy = x - m.x, y - m.y
             s = p.detection_variance(camera) + self._r
+            # What no offset explains has moved after all.
+            surprises = (dx * dx + dy * dy) / s > _SURPRISE
         self._last_camera = camera
         if surprises:
             self._startled.clear()
@@ -205,14 +207,9 @@ class BallTrack:
             lost = self.settings.slide_deceleration * (self.time - self._kicked)
             m.rolls_at = self.settings.switch_share * (hypot(m.vx, m.vy) + lost)
 
-    def _may_err(self, camera: int, known: bool, kickable: bool) -> bool:
-        """Return whether a camera that sees the ball suddenly elsewhere may be wrong about it."""
-        if not self._covariance.several:
-            return False
-        if not known:
-            return True
-        before = self._startled.get(camera, 0)
-        others = set(self._startled) - {camera}
+    def _contradicted(self, camera: int, kickable: bool) -> bool:
+        """Return whether others still see the ball where it was, of which a camera sees it depart."""
+        before, others = self._startled.get(camera, 0), set(self._startled) - {camera}
         self._startled[camera] = before + 1
         return not (kickable or others or (before and self._last_camera == camera))
 

@@ -217,3 +217,19 @@ def test_a_kick_is_known_although_one_camera_is_late(late: float) -> None:
         if arrived > kicked + 0.15:
             assert filter_.captured is not None
             assert filter_.frame_at(filter_.captured).ball.vx == pytest.approx(speed, abs=0.5)
+
+
+@pytest.mark.parametrize("moved", [0.03, 0.08, 0.11, 0.5])
+@pytest.mark.parametrize("cameras", [1, 2, 4])
+@pytest.mark.parametrize("hidden", [0.0, 0.1])
+def test_a_ball_that_is_put_elsewhere_is_found_there(cameras: int, moved: float, hidden: float) -> None:
+    overlap = Overlap(cameras, 0.02, 0.008 / cameras)
+    overlap.frames(0.3, lambda _: (0.0, 0.0), lambda _: (1.5, 0.0))
+    overlap.start = 0.3
+    if hidden:
+        overlap.frames(hidden, lambda _: (0.0, 0.0), lambda _: (1.5, 0.0), ball_too=lambda _: False)
+        overlap.start += hidden
+    found = overlap.frames(0.5, lambda _: (moved, 0.0), lambda _: (1.5, 0.0))
+    for time, frame in found:
+        if time > 0.3:
+            assert hypot(frame.ball.x - moved, frame.ball.y) < 0.03

@@ -158,7 +158,7 @@ def test_a_model_given_on_the_command_line_is_refused_too():
     settings = ["--set", "blue 0.play=attack_nn", "--set", "blue 0.model=/nowhere.pt"]
     result = CliRunner().invoke(app, ["match", "striker_vs_goalie", *settings])
     assert result.exit_code == 1
-    assert "model: blue 0: /nowhere.pt: there is no such file" in result.output
+    assert "blue 0: model: /nowhere.pt: there is no such file" in result.output
     assert result.output.count("\n") == 1
 
 
