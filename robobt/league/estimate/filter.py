@@ -13,7 +13,7 @@ from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_bal
 from robobt.league.estimate.flight import FlightWatch
 from robobt.league.estimate.kicks import Kick, KickWatch
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
-from robobt.league.estimate.rivals import Rivals, likeliest
+from robobt.league.estimate.rivals import Rivals
 from robobt.league.estimate.robot_track import (
     RobotMotion,
     RobotSensing,
@@ -268,14 +268,7 @@ class VisionFilter:
             (track.deviation(seen.x - m.vx * late, seen.y - m.vy * late, camera), seen) for seen in detections
         ]
         gate = _ROBOT_GATE + track.limits.max_speed * max(0.0, lag)
-        own = likeliest(
-            [
-                (gap, seen)
-                for gap, seen in deviations
-                if gap <= _ROBOT_GATE
-                or (gap <= gate and not rivals.doubts(seen.x, seen.y, seen.confidence, seen_before))
-            ]
-        )
+        own = rivals.own(deviations, gate, seen_before)
         if own is None:
             return detections
         track.correct(own.x - m.vx * late, own.y - m.vy * late, camera)
@@ -339,14 +332,7 @@ class VisionFilter:
         late = min(0.0, time - track.time)
         places = [(ball.x - m.vx * late, ball.y - m.vy * late, ball) for ball in balls]
         gaps = [(track.deviation(x, y, camera), ball) for x, y, ball in places]
-        own = likeliest(
-            [
-                (gap, ball)
-                for gap, ball in gaps
-                if gap <= _BALL_GATE
-                or (gap <= gate and not rivals.doubts(ball.x, ball.y, ball.confidence, seen_before))
-            ]
-        )
+        own = rivals.own(gaps, gate, seen_before)
         if own is None:
             return None
         # It may have been kicked since a late camera saw it.

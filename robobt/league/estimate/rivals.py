@@ -40,23 +40,12 @@ _MOST = 16
 class _Detection(Protocol):
     """What is needed of a detection."""
 
+    x: float
+    y: float
     confidence: float
 
 
 Seen = TypeVar("Seen", bound=_Detection)
-
-
-def likeliest(seen: Sequence[tuple[float, Seen]]) -> Seen | None:
-    """Return which of the detections that may be an object's is its own, None if there are none.
-
-    It is the nearest to the track of those that are not much less sure than another.
-
-    Args:
-        seen: distance from the track [m] and detection, of each.
-    """
-    surest = max((found.confidence for _, found in seen), default=0.0)
-    sure = [each for each in seen if each[1].confidence >= _SURE * surest]
-    return min(sure, key=lambda each: each[0])[1] if sure else None
 
 
 @dataclass(slots=True)
@@ -116,13 +105,32 @@ class Rivals:
         self._usual += _SMOOTHING * (confidence - self._usual)
         self._saw_track(time)
 
-    def doubts(self, x: float, y: float, confidence: float, track_seen: float) -> bool:
-        """Return whether a detection that the track may have reached since it was last seen [s] is another's.
+    def own(self, seen: Sequence[tuple[float, Seen]], gate: float, track_seen: float) -> Seen | None:
+        """Return the detection that is the track's own, None if there is none.
+
+        It is the nearest of those within reach of the track that are not much less sure than another.
+
+        Args:
+            seen: distance from the track and detection, of each.
+            gate: largest distance of the track's own detection [m].
+            track_seen: when the track was last seen [s].
+        """
+        own = [
+            (gap, found)
+            for gap, found in seen
+            if gap <= self._reach or (gap <= gate and not self._doubts(found, track_seen))
+        ]
+        surest = max((found.confidence for _, found in own), default=0.0)
+        sure = [each for each in own if each[1].confidence >= _SURE * surest]
+        return min(sure, key=lambda each: each[0])[1] if sure else None
+
+    def _doubts(self, found: _Detection, track_seen: float) -> bool:
+        """Return whether a detection that the track may have reached is another's.
 
         It is if it is weak, or if something was seen there while the track was still seen elsewhere.
         """
-        rival = self._at(x, y, track_seen)
-        return confidence < _WEAK * self._usual or (rival is not None and rival.since < track_seen)
+        rival = self._at(found.x, found.y, track_seen)
+        return found.confidence < _WEAK * self._usual or (rival is not None and rival.since < track_seen)
 
     def believes(
         self,
