@@ -16,6 +16,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import console, one_line_errors
+from robobt.cli.groups import spread
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
 
@@ -145,7 +146,7 @@ def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
     for name, place in commands.items():
         module, _, function = place.partition(":")
         command = getattr(import_module(f"robobt.cli.{module}"), function)
-        group.command(name)(one_line_errors(command))
+        group.command(name)(one_line_errors(spread(command)))
 
 
 def application(only: str | None = None) -> typer.Typer:

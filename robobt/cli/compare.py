@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,47 +19,50 @@ from robobt.cli.common import (
     Progress,
     Seed,
     Workers,
-    blaming,
     console,
     cores,
     import_files,
-    parse_assignments,
     print_json,
     table,
     warn,
     world_of,
 )
 from robobt.cli.outputs import make_folders
+from robobt.cli.scenario_options import PLAY, TEAM_HELP, Set, scenario_of, with_teams
 
 if TYPE_CHECKING:
     from robobt.experiments.compare import Compared, Difference
     from robobt.match import MatchResult, Scenario
 
-Set = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="Change the scenario: 'ends.time_limit=10', 'simulator.preset=grsim', "
-        "'blue 0.max_distance=2'; may be given often.",
-    ),
-]
 
-PLAY = "PLAY[:NAME=VALUE,...]"
-TEAM_HELP = "Play of this team's robots but its goalkeeper, with parameters; ':NAME=VALUE' keeps the play."
+@dataclass(frozen=True)
+class Variants:
+    """What is compared."""
 
-Blue = Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)]
-Yellow = Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)]
+    blue: Annotated[list[str] | None, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = None
+    yellow: Annotated[list[str] | None, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = None
+    world: Annotated[
+        list[str] | None,
+        typer.Option("--world", help="Where to play: sim, or a field of the league like league://grsim."),
+    ] = None
+
+    def of(self, base: Scenario) -> dict[str, tuple[Scenario, str]]:
+        """Return every combination by a label of what differs."""
+        blues, yellows, worlds = self.blue or [""], self.yellow or [""], self.world or ["sim"]
+        found = {}
+        for blue, yellow, world in product(blues, yellows, worlds):
+            varied = [(blue, len(blues)), (yellow, len(yellows)), (world, len(worlds))]
+            label = " | ".join([text or "as it is" for text, options in varied if options > 1])
+            if label in found:
+                raise typer.BadParameter(f"{label!r} is given twice")
+            found[label] = (with_teams(base, blue, yellow), world)
+        return found
 
 
 def compare(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a bundled one.")],
-    blue: Annotated[list[str] | None, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = None,
-    yellow: Annotated[list[str] | None, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = None,
-    world: Annotated[
-        list[str] | None,
-        typer.Option("--world", help="Where to play: sim, or a field of the league like league://grsim."),
-    ] = None,
+    *,
+    varied: Variants,
     settings: Set = None,
     trials: Annotated[
         int | None,
@@ -99,7 +102,7 @@ def compare(
 
     import_files(imports)
     base = scenario_of(scenario, settings)
-    variants = _variants(base, blue or [""], yellow or [""], world or ["sim"])
+    variants = varied.of(base)
     if len(variants) < 2:
         raise typer.BadParameter("needs two variants: give --blue, --yellow or --world more than once")
     count = base.trials if trials is None else trials
@@ -121,62 +124,6 @@ def compare(
         f"[bold]{escape(base.name)}[/bold]: {count} trial{'s' if count > 1 else ''} a variant, seed {used}"
     )
     _print(found)
-
-
-def scenario_of(scenario: str, settings: list[str] | None) -> Scenario:
-    """Load a scenario with the changes of ``--set``."""
-    from robobt.match import load_scenario
-    from robobt.match.scenario.changes import changed
-    from robobt.worlds import scenario_settings
-
-    loaded = load_scenario(scenario)
-    if settings:
-        with blaming("--set"):
-            loaded = changed(loaded, parse_assignments(settings, "--set"))
-            # Settings of the simulator are free until it is known which.
-            scenario_settings(loaded)
-    return loaded
-
-
-def with_teams(scenario: Scenario, blue: str, yellow: str) -> Scenario:
-    """Return the scenario with what --blue and --yellow say; empty texts change nothing."""
-    from robobt.match.scenario.changes import with_team
-    from robobt.world.game import Team
-
-    for team, text in ((Team.BLUE, blue), (Team.YELLOW, yellow)):
-        if text:
-            option = f"--{team.value}"
-            play, params = parse_play(text, option)
-            with blaming(option):
-                scenario = with_team(scenario, team, play or None, params)
-    return scenario
-
-
-def parse_play(text: str, option: str) -> tuple[str, dict[str, object]]:
-    """Return the play and its parameters in ``PLAY[:NAME=VALUE,...]``; the option is named in errors."""
-    # A play of a Python file has a colon of its own.
-    own = re.match(r"([^=]+?\.py:[^:=]+)(?::(.*))?$", text)
-    play, given = (own[1], own[2] or "") if own else text.partition(":")[::2]
-    # A comma inside a value is not followed by NAME=.
-    parts = re.split(r",(?=\s*\w+=)", given) if given else []
-    params = parse_assignments([part.strip() for part in parts], option)
-    if len(params) < len(parts):
-        raise typer.BadParameter(f"a parameter is given twice in {text!r}", param_hint=option)
-    return play, params
-
-
-def _variants(
-    base: Scenario, blues: list[str], yellows: list[str], worlds: list[str]
-) -> dict[str, tuple[Scenario, str]]:
-    """Return every combination by a label of what differs."""
-    found = {}
-    for blue, yellow, world in product(blues, yellows, worlds):
-        varied = [(blue, len(blues)), (yellow, len(yellows)), (world, len(worlds))]
-        label = " | ".join([text or "as it is" for text, options in varied if options > 1])
-        if label in found:
-            raise typer.BadParameter(f"{label!r} is given twice")
-        found[label] = (with_teams(base, blue, yellow), world)
-    return found
 
 
 def _file_name(label: str) -> str:

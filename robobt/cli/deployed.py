@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,7 +27,43 @@ from robobt.cli.outputs import make_folders
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robobt.experiments.deployed import Attacker
+    from robobt.experiments.deployed import Attacker, Situation
+
+
+@dataclass(frozen=True)
+class Faced:
+    """Whom the attackers face, and from where."""
+
+    goalkeeper: Annotated[
+        list[str] | None,
+        typer.Option("--goalkeeper", help="default, or robobulls: the paper's pilot. Both by default."),
+    ] = None
+    starts: Annotated[
+        list[str] | None,
+        typer.Option("--starts", help="'own half', or '2.5 to 4.5 m' from the goal. Both by default."),
+    ] = None
+    defenders: Annotated[
+        list[int] | None,
+        typer.Option("--defenders", min=0, max=2, help="Besides the goalkeeper. 0, 1 and 2 by default."),
+    ] = None
+
+    def situations(self) -> list[Situation]:
+        """Return the situations that these options leave."""
+        from robobt.experiments.deployed import GOALKEEPERS, SITUATIONS, STARTS
+
+        one_of(self.goalkeeper or [], GOALKEEPERS, "--goalkeeper")
+        one_of(self.starts or [], STARTS, "--starts")
+        left = [
+            one
+            for one in SITUATIONS
+            if one.goalkeeper in (self.goalkeeper or GOALKEEPERS)
+            and one.starts in (self.starts or STARTS)
+            and one.defenders in (self.defenders or (0, 1, 2))
+        ]
+        if not left:
+            options = "--goalkeeper, --starts, --defenders"
+            raise typer.BadParameter("leave nothing to play", param_hint=options)
+        return left
 
 
 def deployed(
@@ -41,18 +78,8 @@ def deployed(
         list[str] | None,
         typer.Option("--only", help="An attacker by its name; may be given often. All by default."),
     ] = None,
-    goalkeeper: Annotated[
-        list[str] | None,
-        typer.Option("--goalkeeper", help="default, or robobulls: the paper's pilot. Both by default."),
-    ] = None,
-    starts: Annotated[
-        list[str] | None,
-        typer.Option("--starts", help="'own half', or '2.5 to 4.5 m' from the goal. Both by default."),
-    ] = None,
-    defenders: Annotated[
-        list[int] | None,
-        typer.Option("--defenders", min=0, max=2, help="Besides the goalkeeper. 0, 1 and 2 by default."),
-    ] = None,
+    *,
+    faced: Faced,
     workers: Workers = None,
     out: Annotated[
         Path | None,
@@ -85,29 +112,13 @@ def deployed(
     same start), errors, against_first and against_half_speed (McNemar: only_this, only_other, p),
     paper (goals, shots).
     """
-    from robobt.experiments.deployed import (
-        ATTACKERS,
-        GOALKEEPERS,
-        SEED,
-        SITUATIONS,
-        STARTS,
-    )
+    from robobt.experiments.deployed import ATTACKERS, SEED
     from robobt.experiments.deployed import deployed as run
     from robobt.experiments.judged_goal_line import judged_goal_line
     from robobt.worlds import SIM
 
     one_of(only or [], ATTACKERS, "--only")
-    one_of(goalkeeper or [], GOALKEEPERS, "--goalkeeper")
-    one_of(starts or [], STARTS, "--starts")
-    situations = [
-        one
-        for one in SITUATIONS
-        if one.goalkeeper in (goalkeeper or GOALKEEPERS)
-        and one.starts in (starts or STARTS)
-        and one.defenders in (defenders or (0, 1, 2))
-    ]
-    if not situations:
-        raise typer.BadParameter("leave nothing to play", param_hint="--goalkeeper, --starts, --defenders")
+    situations = faced.situations()
     attackers = tuple(only or ATTACKERS)
     used = SEED if seed is None else seed
     if world != SIM and workers not in (None, 1):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack, suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
-from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.live import Page
 from robobt.cli.outputs import make_folders
 from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
+    from robobt.league.serve.served_field import ServedField
     from robobt.league.serve.server import SimServer
-    from robobt.league.wire.endpoints import Endpoint
+    from robobt.league.wire.endpoints import Endpoint, Endpoints
+    from robobt.match.referee.settings import RefereeSettings
 
 
 class Clock(StrEnum):
@@ -36,29 +38,57 @@ def _port(name: str, what: str) -> typer.models.OptionInfo:
     return option
 
 
-def serve(
-    scenario: Annotated[
-        str | None,
-        typer.Argument(help="A scenario file or the name of a bundled one; by default two teams line up."),
-    ] = None,
+@dataclass(frozen=True)
+class LineUp:
+    """What stands on the field that is served."""
+
     robots: Annotated[
         int, typer.Option("--robots", min=0, max=16, help="Robots on each team, without a scenario.")
-    ] = 6,
-    field: Annotated[
-        str, typer.Option("--field", help="division_a or division_b, without a scenario.")
-    ] = "division_b",
+    ] = 6
+    field: Annotated[str, typer.Option("--field", help="division_a or division_b, without a scenario.")] = (
+        "division_b"
+    )
     preset: Annotated[
         str | None,
         typer.Option("--preset", help="The simulator's preset; by default the scenario's, or grsim."),
-    ] = None,
+    ] = None
     realism: Annotated[
         str | None,
         typer.Option("--realism", help="none, friendly, rc2021 or realistic; by default the preset's."),
-    ] = None,
-    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1,
+    ] = None
+    referee: Annotated[
+        bool, typer.Option("--referee", help="Referee the match, and publish the referee's messages.")
+    ] = False
+
+    def served(self, scenario: str | None, seed: int) -> tuple[ServedField, RefereeSettings | None]:
+        """Return the field to serve, and a referee's settings where there is to be one."""
+        from robobt.league.serve.serving import served_line_up, served_scenario
+        from robobt.match import load_scenario
+        from robobt.match.referee.settings import RefereeSettings
+        from robobt.world import FIELDS
+
+        rules = RefereeSettings() if self.referee else None
+        if scenario is None:
+            if self.field not in FIELDS:
+                there = f"there is no field {self.field!r}; {unknown_name(self.field, FIELDS)}"
+                raise typer.BadParameter(there, param_hint="--field")
+            field, preset = FIELDS[self.field], self.preset or "grsim"
+            return served_line_up(field, self.robots, preset, self.realism, seed), rules
+        loaded = load_scenario(scenario)
+        if self.referee and loaded.referee is not None:
+            keepers = {f"{team.value}_keeper": number for team, number in loaded.goalkeepers().items()}
+            rules = loaded.referee.model_copy(update=keepers)
+        return served_scenario(loaded, self.preset, self.realism), rules
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What the cameras see, and when."""
+
+    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1
     speed: Annotated[
         float, typer.Option("--speed", min=0.05, max=20, help="Simulated time over real time.")
-    ] = 1.0,
+    ] = 1.0
     clock: Annotated[
         Clock,
         typer.Option(
@@ -66,33 +96,67 @@ def serve(
             help="Timestamps of the vision: sim counts from the start as grSim does, unix from 1970 "
             "as real cameras do.",
         ),
-    ] = Clock.SIM,
-    referee: Annotated[
-        bool, typer.Option("--referee", help="Referee the match, and publish the referee's messages.")
-    ] = False,
-    seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
-    ] = None,
+    ] = Clock.SIM
     seed: Annotated[
         int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Seed of the cameras' noise.")
-    ] = 0,
+    ] = 0
+
+
+@dataclass(frozen=True)
+class Addresses:
+    """Where packets go and come from."""
+
     interface: Annotated[
         str,
         typer.Option(
             "--interface", help="Own address of the interface to use; by default nothing leaves this machine."
         ),
-    ] = "127.0.0.1",
-    vision: Annotated[str, typer.Option("--vision", help="Where the vision goes.")] = "224.5.23.2:10020",
-    tracker: Annotated[str, typer.Option("--tracker", help="Where tracked frames go.")] = "224.5.23.2:10010",
-    publish: Annotated[
-        str, typer.Option("--publish", help="Where the referee's messages go.")
-    ] = "224.5.23.1:10003",
-    grsim_port: Annotated[int, _port("grsim", "grSim's commands and replacements.")] = 20011,
-    control_port: Annotated[int, _port("control", "Teleports and configuration.")] = 10300,
-    blue_port: Annotated[int, _port("blue", "Control of blue robots.")] = 10301,
-    yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302,
-    blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011,
-    yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012,
+    ] = "127.0.0.1"
+    vision: Annotated[str, typer.Option("--vision", help="Where the vision goes.")] = "224.5.23.2:10020"
+    tracker: Annotated[str, typer.Option("--tracker", help="Where tracked frames go.")] = "224.5.23.2:10010"
+    publish: Annotated[str, typer.Option("--publish", help="Where the referee's messages go.")] = (
+        "224.5.23.1:10003"
+    )
+    grsim_port: Annotated[int, _port("grsim", "grSim's commands and replacements.")] = 20011
+    control_port: Annotated[int, _port("control", "Teleports and configuration.")] = 10300
+    blue_port: Annotated[int, _port("blue", "Control of blue robots.")] = 10301
+    yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302
+    blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011
+    yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012
+
+    def endpoints(self) -> Endpoints:
+        """Return them all.
+
+        Raises:
+            typer.BadParameter: one is no address.
+        """
+        from robobt.league.wire.endpoints import Endpoints
+
+        return Endpoints(
+            vision=_address("--vision", self.vision),
+            tracker=_address("--tracker", self.tracker),
+            referee=_address("--publish", self.publish),
+            grsim=self.grsim_port,
+            control=self.control_port,
+            blue=self.blue_port,
+            yellow=self.yellow_port,
+            blue_status=self.blue_status_port,
+            yellow_status=self.yellow_status_port,
+        )
+
+
+def serve(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(help="A scenario file or the name of a bundled one; by default two teams line up."),
+    ] = None,
+    *,
+    line_up: LineUp,
+    pictures: Pictures,
+    seconds: Annotated[
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
+    ] = None,
+    addresses: Addresses,
     in_step: Annotated[
         bool,
         typer.Option(
@@ -109,9 +173,7 @@ def serve(
         bool,
         typer.Option("--live", help="Show the field in the browser, where robots and ball can be moved."),
     ] = False,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
+    page: Page,
     as_json: Json = False,
 ) -> None:
     """Serve a simulated field: other teams' software connects to it as it does to grSim.
@@ -124,59 +186,32 @@ def serve(
     """
     from robobt.league.log.files import LogWriter
     from robobt.league.serve.server import SimServer
-    from robobt.league.serve.serving import served_line_up, served_scenario
-    from robobt.league.wire.endpoints import Endpoints
-    from robobt.match import load_scenario
-    from robobt.match.referee.settings import RefereeSettings
-    from robobt.world import FIELDS
 
     if live and in_step:
         raise typer.BadParameter("cannot be shown live", param_hint="--in-step")
-    rules = RefereeSettings() if referee else None
-    if scenario is None:
-        if field not in FIELDS:
-            there = f"there is no field {field!r}; {unknown_name(field, FIELDS)}"
-            raise typer.BadParameter(there, param_hint="--field")
-        served = served_line_up(FIELDS[field], robots, preset or "grsim", realism, seed)
-    else:
-        loaded = load_scenario(scenario)
-        served = served_scenario(loaded, preset, realism)
-        if referee and loaded.referee is not None:
-            keepers = {f"{team.value}_keeper": number for team, number in loaded.goalkeepers().items()}
-            rules = loaded.referee.model_copy(update=keepers)
-    endpoints = Endpoints(
-        vision=_address("--vision", vision),
-        tracker=_address("--tracker", tracker),
-        referee=_address("--publish", publish),
-        grsim=grsim_port,
-        control=control_port,
-        blue=blue_port,
-        yellow=yellow_port,
-        blue_status=blue_status_port,
-        yellow_status=yellow_status_port,
-    )
+    served, rules = line_up.served(scenario, pictures.seed)
     with ExitStack() as stack:
         writer = None if log is None else stack.enter_context(LogWriter(log))
         server = stack.enter_context(
             SimServer(
                 served,
-                endpoints,
-                interface,
-                cameras,
-                speed,
-                seed,
+                addresses.endpoints(),
+                addresses.interface,
+                pictures.cameras,
+                pictures.speed,
+                pictures.seed,
                 epoch=time.time(),
                 log=writer,
                 referee=rules,
-                clock=clock.value,
+                clock=pictures.clock.value,
             )
         )
         watched = None
         if live:
             from robobt.league.serve.watched import WatchedField
 
-            page = stack.enter_context(page_server(host, port, open_page))
-            watched = WatchedField(page, scenario or "robobt serve", server.referee)
+            shown = stack.enter_context(page.server())
+            watched = WatchedField(shown, scenario or "robobt serve", server.referee)
         if not as_json:
             _announce(server)
         # A signal is how one stops serving.
@@ -184,7 +219,7 @@ def serve(
             if in_step:
                 from robobt.league.serve.synchronous import StepServer
 
-                stack.enter_context(StepServer(server, interface)).run(seconds)
+                stack.enter_context(StepServer(server, addresses.interface)).run(seconds)
             else:
                 server.run(seconds, watched, on_slow=_TellOnce())
     packets = {name: asdict(counts) for name, counts in server.counts.items()}

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,34 +14,62 @@ import typer
 
 from robobt.cli.common import (
     Bundled,
-    Imports,
     Seed,
     Where,
-    import_files,
     say,
     warn,
     world_of,
 )
-from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
-from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
+from robobt.cli.refereeing import Refereeing
+from robobt.cli.scenario_options import TeamChanges
 from robobt.config.extras import need
 
 if TYPE_CHECKING:
     from robobt.live.server import Server
 
-Host = Annotated[
-    str,
-    typer.Option(
-        help="Address to serve the page at. Any other than this machine's own lets whoever can reach it "
-        "and knows the page's address watch and steer, unencrypted."
-    ),
-]
-Port = Annotated[int, typer.Option(min=0, max=65535, help="Port to serve the page at; 0 takes a free one.")]
-Open = Annotated[
-    bool | None,
-    typer.Option("--open/--no-open", help="Whether to open the page; by default where there is a desktop."),
-]
+
+@dataclass(frozen=True)
+class Page:
+    """Where the live page is served."""
+
+    host: Annotated[
+        str,
+        typer.Option(
+            help="Address to serve the page at. Any other than this machine's own lets whoever can reach it "
+            "and knows the page's address watch and steer, unencrypted."
+        ),
+    ] = "127.0.0.1"
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port to serve the page at; 0 takes a free one.")
+    ] = 0
+    open_page: Annotated[
+        bool | None,
+        typer.Option(
+            "--open/--no-open", help="Whether to open the page; by default where there is a desktop."
+        ),
+    ] = None
+
+    @contextmanager
+    def server(self) -> Iterator[Server]:
+        """Serve the live page, say where, and open it where that is wanted."""
+        need("live", "pyarrow", "websockets")
+        from robobt.live.server import Server
+
+        own = self.host in ("127.0.0.1", "localhost", "::1")
+        names = () if own else tuple(_names_of(self.host))
+        with Server(self.host, self.port, names) as server:
+            say(f"Live: {server.url}")
+            if not own:
+                warn(
+                    f"the page is open to every machine that can reach {self.host}: whoever has its address "
+                    "watches and steers, and nothing is encrypted"
+                )
+            if _desktop() if self.open_page is None else self.open_page:
+                import webbrowser
+
+                webbrowser.open(server.url)
+            yield server
 
 
 def live(
@@ -54,17 +83,11 @@ def live(
         Path | None, typer.Option("--record", help="Record the first match to this file as well.")
     ] = None,
     record_layers: Layers = "",
-    blue: Blue = "",
-    yellow: Yellow = "",
-    settings: Set = None,
-    imports: Imports = None,
+    *,
+    changes: TeamChanges,
     world: Where = "sim",
-    referee: RefereeOption = None,
-    game_controller: ControllerOption = None,
-    stages: StagesOption = None,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
+    refereeing: Refereeing,
+    page: Page,
 ) -> None:
     """Play a scenario in real time and show it in the browser while it happens.
 
@@ -74,12 +97,10 @@ def live(
     from robobt.match import Match
     from robobt.match.runner import trial_seed
 
-    with page_server(host, port, open_page) as server:
+    with page.server() as server:
         from robobt.live.session import Live
 
-        import_files(imports)
-        loaded = scenario_of(scenario, settings)
-        loaded, referees = refereed(with_teams(loaded, blue, yellow), referee, game_controller, stages)
+        loaded, referees = refereeing.of(changes.scenario(scenario))
         start = loaded.seed if seed is None else seed
         records = [record]
 
@@ -90,28 +111,6 @@ def live(
 
         with world_of(world) as factory:
             Live(server, speed, paused).play_on(make)
-
-
-@contextmanager
-def page_server(host: str, port: int, open_page: bool | None) -> Iterator[Server]:
-    """Serve the live page, say where, and open it where that is wanted."""
-    need("live", "pyarrow", "websockets")
-    from robobt.live.server import Server
-
-    own = host in ("127.0.0.1", "localhost", "::1")
-    names = () if own else tuple(_names_of(host))
-    with Server(host, port, names) as server:
-        say(f"Live: {server.url}")
-        if not own:
-            warn(
-                f"the page is open to every machine that can reach {host}: whoever has its address watches "
-                "and steers, and nothing is encrypted"
-            )
-        if _desktop() if open_page is None else open_page:
-            import webbrowser
-
-            webbrowser.open(server.url)
-        yield server
 
 
 def _names_of(host: str) -> Iterator[str]:

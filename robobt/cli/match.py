@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tempfile
 from contextlib import ExitStack
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import (
-    Imports,
     Json,
     Progress,
     Seed,
@@ -21,18 +21,17 @@ from robobt.cli.common import (
     complete_scenario,
     cores,
     errors,
-    import_files,
     parse_assignments,
     print_json,
     say,
     world_of,
 )
-from robobt.cli.compare import Blue, Set, Yellow, scenario_of, with_teams
 from robobt.cli.layers import Layers, layer_names
-from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.live import Page
 from robobt.cli.match_summary import TREES_FAILED, print_summary, tell_failures
 from robobt.cli.outputs import PAGES, RECORDING, make_folders
-from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, refereed
+from robobt.cli.refereeing import Refereeing
+from robobt.cli.scenario_options import TeamChanges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,25 +47,44 @@ class OnError(StrEnum):
     RAISE = "raise"
 
 
-def match(
-    scenario: Annotated[
-        str,
-        typer.Argument(
-            help="A scenario file, or the name of a bundled one (see 'robobt scenarios').",
-            autocompletion=complete_scenario,
-        ),
-    ],
+@dataclass(frozen=True)
+class Trials:
+    """How often a scenario is played, and in how many processes."""
+
     trials: Annotated[
         int | None,
         typer.Option("--trials", "-n", min=1, max=100_000, help="Trials to play; by default the scenario's."),
-    ] = None,
+    ] = None
     workers: Annotated[
         int | None,
         typer.Option(
             "--workers", "-w", min=1, max=256, help="Processes; by default one a core, for 4 trials each."
         ),
-    ] = None,
-    seed: Seed = None,
+    ] = None
+    seed: Seed = None
+
+    def count(self, scenario: Scenario) -> int:
+        """Return how many trials are played."""
+        return scenario.trials if self.trials is None else self.trials
+
+    def processes(self, count: int, alone: bool) -> int:
+        """Return how many processes play so many trials; ``alone`` where one has to.
+
+        Raises:
+            typer.BadParameter: more are asked for than can play there.
+        """
+        if alone:
+            if self.workers not in (None, 1):
+                there = "must be 1 to play or publish over the network, or live"
+                raise typer.BadParameter(there, param_hint="--workers")
+            return 1
+        return min(cores(), -(-count // 4)) if self.workers is None else self.workers
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept of the trials: a recording of one, and all results."""
+
     replay: Annotated[
         Path | None,
         typer.Option(
@@ -74,7 +92,7 @@ def match(
             help="Record a trial to this file: a page for the browser (.html) or a recording for "
             f"'robobt replay' ({RECORDING}).",
         ),
-    ] = None,
+    ] = None
     record: Annotated[
         int | None,
         typer.Option(
@@ -82,8 +100,8 @@ def match(
             min=0,
             help=f"Which trial to record, from 0; without --replay to SCENARIO-N{RECORDING}.",
         ),
-    ] = None,
-    record_layers: Layers = "",
+    ] = None
+    record_layers: Layers = ""
     out: Annotated[
         Path | None,
         typer.Option(
@@ -91,7 +109,36 @@ def match(
             help="Append each trial's result to this file (JSON lines) as it finishes; "
             "a run that was stopped goes on from there.",
         ),
-    ] = None,
+    ] = None
+
+    @property
+    def trial(self) -> int:
+        """Which trial is recorded, if one is."""
+        return 0 if self.record is None else self.record
+
+    def recording(self, name: str, count: int) -> Path | None:
+        """Return the file to write, of a scenario of that name with so many trials; None to record nothing.
+
+        Raises:
+            typer.BadParameter: there is no such trial, or the file is more likely another's.
+        """
+        if self.trial >= count:
+            there = f"there is no trial {self.trial}; they are 0 to {count - 1}"
+            raise typer.BadParameter(there, param_hint="--record")
+        replay = self.replay
+        if replay is None and self.record is not None:
+            # A scenario's name is free text: it must not lead to another folder.
+            safe = re.sub(r"[^\w.-]+", "_", name)
+            replay = Path(f"{safe}-{self.record}{RECORDING}")
+        if replay is not None:
+            _check_replay(replay, self.out)
+        return replay
+
+
+@dataclass(frozen=True)
+class Trees:
+    """What happens in the robots' trees besides what the scenario says."""
+
     on_error: Annotated[
         OnError | None,
         typer.Option(
@@ -99,7 +146,7 @@ def match(
             help="On an exception in a tree: stop that robot for the tick, or raise and end the run "
             "with the node's path; by default as in the scenario.",
         ),
-    ] = None,
+    ] = None
     substitute: Annotated[
         list[str] | None,
         typer.Option(
@@ -108,12 +155,14 @@ def match(
             help="Let nodes follow a script, as in 'yellow 0:*/BlockShot=FAILURE' or "
             "'blue:*/KickToTarget=[RUNNING, SUCCESS]'; may be given often.",
         ),
-    ] = None,
-    blue: Blue = "",
-    yellow: Yellow = "",
-    settings: Set = None,
-    imports: Imports = None,
-    world: Where = "sim",
+    ] = None
+
+
+@dataclass(frozen=True)
+class Played:
+    """Where a match is played, and who else is told of it."""
+
+    world: Where = "sim"
     publish: Annotated[
         bool,
         typer.Option(
@@ -121,17 +170,29 @@ def match(
             help="Play in real time and send vision, tracked frames and the referee's messages to the "
             "league's programs on this machine (one worker).",
         ),
-    ] = False,
-    referee: RefereeOption = None,
-    game_controller: ControllerOption = None,
-    stages: StagesOption = None,
+    ] = False
+
+
+def match(
+    scenario: Annotated[
+        str,
+        typer.Argument(
+            help="A scenario file, or the name of a bundled one (see 'robobt scenarios').",
+            autocompletion=complete_scenario,
+        ),
+    ],
+    *,
+    run: Trials,
+    kept: Kept,
+    trees: Trees,
+    changes: TeamChanges,
+    where: Played,
+    refereeing: Refereeing,
     live: Annotated[
         bool,
         typer.Option("--live", help="Play in real time and show it in the browser (one worker)."),
     ] = False,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
+    page: Page,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print the results.
@@ -154,86 +215,69 @@ def match(
     from robobt.match import Match, run_trials
     from robobt.worlds import SIM, scenario_settings
 
-    import_files(imports)
-    loaded = scenario_of(scenario, settings)
-    loaded = _changed(with_teams(loaded, blue, yellow), on_error, substitute or [])
-    loaded, referees = refereed(loaded, referee, game_controller, stages)
+    loaded, referees = refereeing.of(_changed(changes.scenario(scenario), trees))
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
-    if world != SIM or publish or live:
-        if workers not in (None, 1):
-            there = "must be 1 to play or publish over the network, or live"
-            raise typer.BadParameter(there, param_hint="--workers")
-        workers = 1
-    count = loaded.trials if trials is None else trials
-    recorded = 0 if record is None else record
-    if recorded >= count:
-        there = f"there is no trial {recorded}; they are 0 to {count - 1}"
-        raise typer.BadParameter(there, param_hint="--record")
-    if replay is None and record is not None:
-        # A scenario's name is free text: it must not lead to another folder.
-        name = re.sub(r"[^\w.-]+", "_", loaded.name)
-        replay = Path(f"{name}-{record}{RECORDING}")
-    if replay is not None:
-        _check_replay(replay, out)
-    make_folders({"--replay": replay, "--out": out})
+    count = run.count(loaded)
+    processes = run.processes(count, where.world != SIM or where.publish or live)
+    replay = kept.recording(loaded.name, count)
+    make_folders({"--replay": replay, "--out": kept.out})
     with tempfile.TemporaryDirectory() as folder:
-        page = replay is not None and replay.name.lower().endswith(PAGES)
-        recording = Path(folder) / f"trial{RECORDING}" if page else replay
+        as_page = replay is not None and replay.name.lower().endswith(PAGES)
+        recording = Path(folder) / f"trial{RECORDING}" if as_page else replay
         with ExitStack() as stack:
             play: Callable[[Match], MatchResult] = Match.play
             if live:
                 from robobt.live.session import Live
 
-                play = Live(stack.enter_context(page_server(host, port, open_page))).conduct
+                play = Live(stack.enter_context(page.server())).conduct
             progress = stack.enter_context(Progress(loaded.name, count))
-            factory = stack.enter_context(world_of(world, publish))
-            run = run_trials(
+            played = run_trials(
                 loaded,
-                factory,
+                stack.enter_context(world_of(where.world, where.publish)),
                 count,
-                min(cores(), -(-count // 4)) if workers is None else workers,
-                seed,
-                out,
-                {} if recording is None else {recorded: recording},
+                processes,
+                run.seed,
+                kept.out,
+                {} if recording is None else {kept.trial: recording},
                 lambda _: progress.advance(),
                 referees,
                 play,
-                layer_names(record_layers),
+                layer_names(kept.record_layers),
             )
-        if not run.results:
+        if not played.results:
             errors.print("robobt: stopped before the first trial was finished")
             raise typer.Exit(130)
-        written = replay if any(result.trial == recorded for result in run.results) else None
-        if page and written is not None:
+        written = replay if any(result.trial == kept.trial for result in played.results) else None
+        if as_page and written is not None:
             from robobt.live.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
-    summary = run.summary()
+    summary = played.summary()
     if as_json:
         extra = {
             "requested": count,
-            "interrupted": run.interrupted,
+            "interrupted": played.interrupted,
             "replay": None if written is None else str(written),
         }
         print_json({**summary.to_json(), **extra})
     else:
-        print_summary(summary, run, count)
+        print_summary(summary, played, count)
         if written is not None:
-            say(f"Replay of trial {recorded}: {written}")
+            say(f"Replay of trial {kept.trial}: {written}")
     failed = tell_failures(summary, loaded.on_error)
-    if run.interrupted:
+    if played.interrupted:
         raise typer.Exit(130)
     if failed:
         raise typer.Exit(TREES_FAILED)
 
 
-def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]) -> Scenario:
-    """Return the scenario with the changes of the command line."""
+def _changed(scenario: Scenario, trees: Trees) -> Scenario:
+    """Return the scenario with what the command line says of trees."""
     from robobt.match.scenario.substitution import substituted
 
     rules = []
-    for text in substitute:
+    for text in trees.substitute or []:
         robot, colon, rule = text.partition(":")
         path, equals, status = rule.rpartition("=")
         if not colon or not equals or not path:
@@ -243,8 +287,8 @@ def _changed(scenario: Scenario, on_error: OnError | None, substitute: list[str]
     if rules:
         with blaming("--substitute"):
             scenario = substituted(scenario, rules)
-    if on_error is not None:
-        scenario = scenario.model_copy(update={"on_error": on_error.value})
+    if trees.on_error is not None:
+        scenario = scenario.model_copy(update={"on_error": trees.on_error.value})
     return scenario
 
 

@@ -10,7 +10,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import MAX_SEED, Json, console, print_json, table
-from robobt.cli.compare import PLAY, parse_play
+from robobt.cli.scenario_options import PLAY, parse_play
 
 
 def rate(

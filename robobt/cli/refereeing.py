@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -33,34 +34,46 @@ class Stages(StrEnum):
     FULL = "full"
 
 
-RefereeOption = Annotated[
-    Who | None,
-    typer.Option(
-        "--referee",
-        help="Who decides: robobt's own referee, the league's official game controller, which "
-        "is stepped with the match, or none; by default as in the scenario. With a game controller in the "
-        "world (follow_referee=true) it has to be none.",
-    ),
-]
+@dataclass(frozen=True)
+class Refereeing:
+    """Who referees a match, and how much of it is played."""
 
-ControllerOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--game-controller",
-        metavar="PATH",
-        help="The official game controller's program; by default what ROBOBT_GAME_CONTROLLER names, "
-        "or ssl-game-controller on the PATH.",
-    ),
-]
+    referee: Annotated[
+        Who | None,
+        typer.Option(
+            "--referee",
+            help="Who decides: robobt's own referee, the league's official game controller, which "
+            "is stepped with the match, or none; by default as in the scenario. With a game controller in "
+            "the world (follow_referee=true) it has to be none.",
+        ),
+    ] = None
+    game_controller: Annotated[
+        Path | None,
+        typer.Option(
+            "--game-controller",
+            metavar="PATH",
+            help="The official game controller's program; by default what ROBOBT_GAME_CONTROLLER names, "
+            "or ssl-game-controller on the PATH.",
+        ),
+    ] = None
+    stages: Annotated[
+        Stages | None,
+        typer.Option(
+            "--stages",
+            help="full: two halves of five minutes of playing time, whatever ends.time_limit, "
+            "ends.score_limit and referee.half_length are.",
+        ),
+    ] = None
 
-StagesOption = Annotated[
-    Stages | None,
-    typer.Option(
-        "--stages",
-        help="full: two halves of five minutes of playing time, whatever ends.time_limit, ends.score_limit "
-        "and referee.half_length are.",
-    ),
-]
+    def of(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
+        """Return the scenario as these options change it, and who makes its referee; see :func:`refereed`."""
+        return refereed(scenario, self.referee, self.game_controller, self.stages)
+
+    def of_tournament(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
+        """Return the same for matches that count, which have a referee."""
+        if self.referee is Who.NONE:
+            raise typer.BadParameter("must be own or official", param_hint="--referee")
+        return self.of(scenario)
 
 
 def refereed(

@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import say
-from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.live import Page
 from robobt.cli.outputs import PAGE, RECORDING, make_folders
 
 _LOGS = (".log", ".log.gz")
@@ -49,9 +49,8 @@ def replay(
         str | None,
         typer.Option("--robot", help="With --gif or --png: also show this robot's tree, as 'blue 0'."),
     ] = None,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
+    *,
+    page: Page,
 ) -> None:
     """Make a recorded match a page that opens in any browser and needs no network, or a picture of it."""
     for given, needs, option in (
@@ -63,7 +62,7 @@ def replay(
         if given and not needs:
             raise typer.BadParameter("does nothing here; see --help", param_hint=option)
     if live:
-        _show(recording, start or 0.0, host, port, open_page)
+        _show(recording, start or 0.0, page)
         return
     from robobt.match.recording import load_recording
 
@@ -103,9 +102,9 @@ def _recording(file: Path) -> Iterator[Path]:
         yield record_log(file, Path(folder) / f"{file.name}{RECORDING}")
 
 
-def _show(recording: Path, start: float, host: str, port: int, open_page: bool | None) -> None:
+def _show(recording: Path, start: float, page: Page) -> None:
     """Show a recording or a league log in the live page, until Ctrl-C."""
-    with _recording(recording) as file, page_server(host, port, open_page) as server:
+    with _recording(recording) as file, page.server() as server:
         from robobt.live.replayed import Replay
 
         Replay(server, file, start).show()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,7 +23,7 @@ from robobt.cli.common import (
     table,
     world_of,
 )
-from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.live import Page
 from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
@@ -35,18 +36,39 @@ _FEW = 100
 """So many runs take less time than processes of this machine take to start."""
 
 
-def table4(
-    runs: Annotated[
-        int, typer.Option("--runs", "-n", min=1, max=100_000, help="Runs of each trial and combination.")
-    ] = 25,
-    seed: Seed = None,
+@dataclass(frozen=True)
+class Processes:
+    """Where the runs are played, and by how many processes."""
+
+    workers: Workers = None
+    world: Where = "sim"
+
+    def count(self, human: bool, few: bool) -> int:
+        """Return how many processes play.
+
+        Raises:
+            typer.BadParameter: more are asked for than can play there.
+        """
+        from robobt.worlds import SIM
+
+        alone = human or self.world != SIM
+        if alone and self.workers not in (None, 1):
+            here = "with a person at the robot" if human else "to play over the network"
+            raise typer.BadParameter(f"must be 1 {here}", param_hint="--workers")
+        return self.workers or (1 if alone or few else cores())
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where and from where the runs are played."""
+
     preset: Annotated[
         str, typer.Option("--preset", "-p", help="The simulator's preset: also grsim, erforce, default, ...")
-    ] = "robobulls",
+    ] = "robobulls"
     realism: Annotated[
         str | None,
         typer.Option("--realism", "-r", help="Noise and delays: none, friendly, rc2021 or realistic."),
-    ] = None,
+    ] = None
     limits: Annotated[
         list[str] | None,
         typer.Option(
@@ -54,7 +76,7 @@ def table4(
             help="What every robot may do: paper (1.5 m/s, grSim's acceleration), pilot (1.5 m/s, "
             "2.5 m/s^2) or own (the preset's robots). May be given often; all by default.",
         ),
-    ] = None,
+    ] = None
     starts: Annotated[
         str,
         typer.Option(
@@ -62,7 +84,16 @@ def table4(
             help="drawn: around the paper's, 0.1 m and 10 degrees for the robot, 0.05 m for the ball; "
             "paper: the paper's own in every run.",
         ),
-    ] = "drawn",
+    ] = "drawn"
+
+
+def table4(
+    runs: Annotated[
+        int, typer.Option("--runs", "-n", min=1, max=100_000, help="Runs of each trial and combination.")
+    ] = 25,
+    seed: Seed = None,
+    *,
+    setting: Setting,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", help="A combination by its name; may be given often. All by default."),
@@ -87,11 +118,8 @@ def table4(
             "row; without --only no other, without --limits those of the paper.",
         ),
     ] = False,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
-    workers: Workers = None,
-    world: Where = "sim",
+    page: Page,
+    processes: Processes,
     as_json: Json = False,
 ) -> None:
     """Table 4: get the ball and shoot, with hand-written and learned skills in every combination.
@@ -116,49 +144,44 @@ def table4(
     (n, mean, low, high, effect), negative where the learned one is faster.
     """
     from robobt.engines.run import engine
-    from robobt.experiments.table4 import COMBINATIONS, TRIALS
+    from robobt.experiments.table4 import COMBINATIONS, TRIALS, Conditions
     from robobt.experiments.table4 import table4 as run
     from robobt.experiments.table4_picture import draw_table4
     from robobt.experiments.table4_starts import LIMITS
     from robobt.sim.settings import PRESETS, REALISM
-    from robobt.worlds import SIM
 
-    one_of([preset], PRESETS, "--preset")
-    one_of([] if realism is None else [realism], REALISM, "--realism")
+    one_of([setting.preset], PRESETS, "--preset")
+    one_of([] if setting.realism is None else [setting.realism], REALISM, "--realism")
     one_of(only or [], COMBINATIONS, "--only")
-    one_of(limits or [], LIMITS, "--limits")
-    one_of([starts], ("drawn", "paper"), "--starts")
-    if (human or world != SIM) and workers not in (None, 1):
-        here = "with a person at the robot" if human else "to play over the network"
-        raise typer.BadParameter(f"must be 1 {here}", param_hint="--workers")
-    make_folders({"--out": out, "--picture": picture})
-    combinations, chosen = tuple(only or COMBINATIONS), tuple(limits or LIMITS)
+    one_of(setting.limits or [], LIMITS, "--limits")
+    one_of([setting.starts], ("drawn", "paper"), "--starts")
+    combinations, chosen = tuple(only or COMBINATIONS), tuple(setting.limits or LIMITS)
     if human:
-        combinations, chosen = tuple(only or ()), tuple(limits or ("paper",))
+        combinations, chosen = tuple(only or ()), tuple(setting.limits or ("paper",))
     total = (runs + 1) * (len(combinations) + human) * len(chosen) * len(TRIALS)
-    few = total < _FEW and engine() is None
+    workers = processes.count(human, total < _FEW and engine() is None)
+    make_folders({"--out": out, "--picture": picture})
     with ExitStack() as stack:
         show = None
         if human:
             from robobt.experiments.table4_human import HumanRuns
             from robobt.live.session import Live
 
-            show = HumanRuns(Live(stack.enter_context(page_server(host, port, open_page))))
-        factory = stack.enter_context(world_of(world))
+            show = HumanRuns(Live(stack.enter_context(page.server())))
+        factory = stack.enter_context(world_of(processes.world))
         progress = stack.enter_context(Progress("table 4", total))
         result = run(
             runs,
             seed,
-            preset=preset,
-            realism=realism,
+            conditions=Conditions(
+                setting.preset, setting.realism, chosen, "drawn" if setting.starts == "drawn" else "paper"
+            ),
             combinations=combinations,
-            limits=chosen,
-            starts="drawn" if starts == "drawn" else "paper",
             progress=progress.advance,
             world=factory,
             out=out,
             human=show,
-            workers=workers or (1 if human or world != SIM or few else cores()),
+            workers=workers,
         )
     if picture is not None:
         draw_table4(result, picture)

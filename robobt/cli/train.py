@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,7 +24,7 @@ from robobt.cli.common import (
     say,
     table,
 )
-from robobt.cli.live import Host, Open, Port, page_server
+from robobt.cli.live import Page
 from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
@@ -43,18 +44,31 @@ Changes = Annotated[
 ]
 
 
+@dataclass(frozen=True)
+class Seeds:
+    """Which seeds are trained."""
+
+    seeds: Annotated[
+        int, typer.Option("--seeds", "-n", min=1, max=1000, help="How many seeds, side by side.")
+    ] = 1
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed; by default the settings'."),
+    ] = None
+
+    def of(self, settings: TrainSettings) -> range:
+        """Return them; the settings' own is the first unless another one is given."""
+        first = settings.seed if self.seed is None else self.seed
+        return range(first, first + self.seeds)
+
+
 def train(
     task: Task,
     preset: Annotated[
         str, typer.Option("--preset", "-p", help="Settings to start from: a preset's name or a YAML file.")
     ] = "fast",
-    seeds: Annotated[
-        int, typer.Option("--seeds", "-n", min=1, max=1000, help="How many seeds, side by side.")
-    ] = 1,
-    seed: Annotated[
-        int | None,
-        typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed; by default the settings'."),
-    ] = None,
+    *,
+    seeds: Seeds,
     changes: Changes = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="The run's folder; by default runs/TASK-PRESET.")
@@ -67,9 +81,7 @@ def train(
             "--live", help="Show each evaluation's policy in the browser; training waits meanwhile."
         ),
     ] = False,
-    host: Host = "127.0.0.1",
-    port: Port = 0,
-    open_page: Open = None,
+    page: Page,
     as_json: Json = False,
 ) -> None:
     """Train a skill, and judge it on starts that training and choosing never saw.
@@ -89,22 +101,22 @@ def train(
     settings = _settings(task, preset, changes or [])
     folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
     make_folders({"--out": folder}, folders=True)
-    first = settings.seed if seed is None else seed
-    if live and (seeds > 1 or workers not in (None, 1)):
+    chosen = seeds.of(settings)
+    if live and (len(chosen) > 1 or workers not in (None, 1)):
         raise typer.BadParameter("takes one seed and one worker", param_hint="--live")
     with ExitStack() as stack:
         problem = None
         if live:
             from robobt.learning.training.watched import watched_problem
 
-            problem = partial(watched_problem, stack.enter_context(page_server(host, port, open_page)))
+            problem = partial(watched_problem, stack.enter_context(page.server()))
         standings = stack.enter_context(_LiveTable(settings.task))
         try:
             results = train_seeds(
                 settings,
-                range(first, first + seeds),
+                chosen,
                 folder,
-                workers or min(cores(), seeds),
+                workers or min(cores(), len(chosen)),
                 resume,
                 standings.show,
                 problem,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -28,6 +28,39 @@ if TYPE_CHECKING:
     from robobt.tree import Behaviour
 
 
+@dataclass(frozen=True)
+class Files:
+    """Files that the tree is written to."""
+
+    svg: Annotated[Path | None, typer.Option("--svg", help="Write the tree as a picture.")] = None
+    dot: Annotated[Path | None, typer.Option("--dot", help="Write the tree for Graphviz.")] = None
+    yaml: Annotated[Path | None, typer.Option("--yaml", help="Write the tree as a play in YAML.")] = None
+    xml: Annotated[
+        Path | None,
+        typer.Option("--xml", help="Write the tree as XML that Groot2 opens (BehaviorTree.CPP 4)."),
+    ] = None
+
+    def write(self, root: Behaviour, name: str, *, quiet: bool) -> bool:
+        """Write the tree to those that are named; whether there was one."""
+        from robobt.config.atomic import write_atomically
+        from robobt.plays.files import tree_xml, tree_yaml
+        from robobt.tree.drawing import tree_dot
+        from robobt.tree.svg import tree_svg
+
+        writers: list[tuple[Path | None, Callable[[], str]]] = [
+            (self.svg, partial(tree_svg, root)),
+            (self.dot, partial(tree_dot, root)),
+            (self.yaml, partial(tree_yaml, root, name)),
+            (self.xml, partial(tree_xml, root, name)),
+        ]
+        named = [(path, text) for path, text in writers if path is not None]
+        for path, text in named:
+            write_atomically(path, text())
+            if not quiet:
+                say(f"Tree: {path}")
+        return bool(named)
+
+
 def tree(
     play: Annotated[
         str,
@@ -40,13 +73,8 @@ def tree(
         list[str] | None,
         typer.Option("--param", "-p", help="A parameter of the play as name=value; may be given often."),
     ] = None,
-    svg: Annotated[Path | None, typer.Option("--svg", help="Write the tree as a picture.")] = None,
-    dot: Annotated[Path | None, typer.Option("--dot", help="Write the tree for Graphviz.")] = None,
-    yaml: Annotated[Path | None, typer.Option("--yaml", help="Write the tree as a play in YAML.")] = None,
-    xml: Annotated[
-        Path | None,
-        typer.Option("--xml", help="Write the tree as XML that Groot2 opens (BehaviorTree.CPP 4)."),
-    ] = None,
+    *,
+    files: Files,
     lint: Annotated[
         bool, typer.Option("--lint", help="Look for what is seldom meant, and for entries nobody writes.")
     ] = False,
@@ -77,8 +105,8 @@ def tree(
         raise typer.BadParameter("is for --statistics", param_hint="--seed")
     import_files(imports)
     root = _build(play, param or [])
-    make_folders({"--svg": svg, "--dot": dot, "--yaml": yaml, "--xml": xml})
-    written = _write(root, Path(play).stem, [svg, dot, yaml, xml], quiet=as_json)
+    make_folders({f"--{name}": path for name, path in vars(files).items()})
+    written = files.write(root, Path(play).stem, quiet=as_json)
     data: dict[str, object] = {"play": play}
     wiring = _wiring(root)
     findings = _findings(root) if lint else []
@@ -118,27 +146,6 @@ def _build(play: str, params: list[str]) -> Behaviour:
         raise
     except Exception as error:
         raise PlayError(mistake_in_play(error)) from error
-
-
-def _write(root: Behaviour, name: str, paths: list[Path | None], *, quiet: bool) -> bool:
-    """Write the tree to those of the four files that are named; whether there was one."""
-    from robobt.config.atomic import write_atomically
-    from robobt.plays.files import tree_xml, tree_yaml
-    from robobt.tree.drawing import tree_dot
-    from robobt.tree.svg import tree_svg
-
-    writers: list[Callable[[], str]] = [
-        partial(tree_svg, root),
-        partial(tree_dot, root),
-        partial(tree_yaml, root, name),
-        partial(tree_xml, root, name),
-    ]
-    for path, write in zip(paths, writers, strict=True):
-        if path is not None:
-            write_atomically(path, write())
-            if not quiet:
-                say(f"Tree: {path}")
-    return any(path is not None for path in paths)
 
 
 def _nodes(root: Behaviour) -> list[dict[str, object]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean, stdev
 from typing import NamedTuple
@@ -53,15 +54,29 @@ HUMAN = "human, game controller"
 """The row of a person who drives the robot in the live page."""
 
 
+@dataclass(frozen=True)
+class Conditions:
+    """Under which conditions the runs are played.
+
+    Attributes:
+        preset: preset of the simulator.
+        realism: level of noise, losses and delays; by default the scenarios' own little noise.
+        limits: some of :data:`LIMITS`.
+        starts: where runs start.
+    """
+
+    preset: str = "robobulls"
+    realism: str | None = None
+    limits: Sequence[str] = tuple(LIMITS)
+    starts: Starts = "drawn"
+
+
 def table4(
     runs: int = 25,
     seed: int | None = None,
     *,
-    preset: str = "robobulls",
-    realism: str | None = None,
+    conditions: Conditions | None = None,
     combinations: Sequence[str] = tuple(COMBINATIONS),
-    limits: Sequence[str] = tuple(LIMITS),
-    starts: Starts = "drawn",
     trials: Sequence[str] = TRIALS,
     progress: Callable[[], object] = lambda: None,
     world: WorldFactory = sim_world,
@@ -77,11 +92,8 @@ def table4(
     Args:
         runs: number of runs of each.
         seed: seed of all runs; the scenarios' own by default.
-        preset: preset of the simulator.
-        realism: level of noise, losses and delays; by default the scenarios' own little noise.
+        conditions: of all runs.
         combinations: some of :data:`COMBINATIONS`.
-        limits: some of :data:`LIMITS`.
-        starts: where runs start.
         trials: some of :data:`TRIALS`.
         progress: called after every run.
         world: where it is played.
@@ -95,6 +107,8 @@ def table4(
         ScenarioError: a play cannot be made, as where a model is missing.
         RunError: a run raised or its worker died.
     """
+    conditions = conditions or Conditions()
+    preset, realism, limits = conditions.preset, conditions.realism, conditions.limits
     given = (*combinations, *([] if human is None else [HUMAN]))
     rows = dict.fromkeys([_Place(name, trial, one) for name in limits for trial in trials for one in given])
     series = []
@@ -103,7 +117,7 @@ def table4(
         params = COMBINATIONS.get(row.combination, COMBINATIONS["robobulls"])
         scenario = table4_scenario(row.trial, params, preset, realism, LIMITS[row.limits])
         first = scenario.seed if seed is None else seed
-        drawn = drawn_starts(scenario) if starts == "drawn" else scenario
+        drawn = drawn_starts(scenario) if conditions.starts == "drawn" else scenario
         kept = None if out is None else out / row.file_name
         show = human if row.combination == HUMAN else None
         series.append(Series(str(row), drawn, first, None if show else scenario, kept, show))
@@ -115,7 +129,9 @@ def table4(
         }
         for name in limits
     }
-    return Table4(runs=runs, preset=preset, realism=realism, starts=starts, paper=PAPER, limits=found)
+    return Table4(
+        runs=runs, preset=preset, realism=realism, starts=conditions.starts, paper=PAPER, limits=found
+    )
 
 
 class _Place(NamedTuple):

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.experiments.deployed import SITUATIONS, deployed, deployed_scenario
-from robobt.experiments.table4 import COMBINATIONS, table4, table4_scenario
+from robobt.experiments.table4 import COMBINATIONS, Conditions, table4, table4_scenario
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match.scenario.scenario import Scenario
@@ -32,8 +32,7 @@ def test_table_4_is_played_on_a_served_field() -> None:
         result = table4(
             1,
             combinations=("geometric, kick",),
-            limits=("own",),
-            starts="paper",
+            conditions=Conditions(limits=("own",), starts="paper"),
             trials=("1",),
             world=world_from(address(endpoints, 2.0)),
         )

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.engines.run import running_on
 from robobt.engines.work import Work
-from robobt.experiments.table4 import COMBINATIONS, table4
+from robobt.experiments.table4 import COMBINATIONS, Conditions, table4
 from robobt.experiments.table4 import LEARNED as LEARNED_ROW
 from robobt.experiments.table4_picture import draw_table4
 from robobt.experiments.table4_rows import PAPER
@@ -45,7 +45,9 @@ def test_the_papers_totals_are_the_sums_of_its_parts(trial: str, row: str) -> No
 
 
 def test_the_table_holds_every_figure() -> None:
-    found = table4(3, combinations=QUICK, limits=["own"], trials=["1"])["limits"]["own"]["1"]
+    found = table4(3, combinations=QUICK, conditions=Conditions(limits=["own"]), trials=["1"])["limits"][
+        "own"
+    ]["1"]
     row = found["rows"]["geometric, kick"]
     goals = row["goals"]
     assert (goals.count, goals.rate, goals.high) == (3, 1.0, 1.0)
@@ -62,7 +64,7 @@ def test_the_table_holds_every_figure() -> None:
 
 
 def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    kinds = {"combinations": QUICK[1:], "limits": ["own"], "trials": ["1"]}
+    kinds = {"combinations": QUICK[1:], "conditions": Conditions(limits=["own"]), "trials": ["1"]}
     whole = table4(3, **kinds)
     played: list[int] = []
 
@@ -89,7 +91,7 @@ def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: p
 
 
 def test_runs_are_the_same_wherever_they_are_played(tmp_path: Path) -> None:
-    kinds = {"combinations": QUICK, "limits": ["own"], "trials": ["1"]}
+    kinds = {"combinations": QUICK, "conditions": Conditions(limits=["own"]), "trials": ["1"]}
     here = table4(2, **kinds)
     played: list[object] = []
 
@@ -117,12 +119,16 @@ def test_what_goes_wrong_in_a_run_is_named_with_its_row(monkeypatch: pytest.Monk
 
     monkeypatch.setattr("robobt.experiments.table4_runs.play_attempt", broken)
     with pytest.raises(RunError, match=r"run 0 of 'robobulls' \(trial 1, limits own\): ZeroDivisionError"):
-        table4(1, combinations=QUICK[:1], limits=["own"])
+        table4(1, combinations=QUICK[:1], conditions=Conditions(limits=["own"]))
 
 
 def test_runs_that_are_all_the_same_have_no_interval() -> None:
     """From the paper's start without noise every run is the same one."""
-    found = table4(3, realism="none", combinations=["geometric, kick"], limits=["own"], starts="paper")
+    found = table4(
+        3,
+        conditions=Conditions(realism="none", limits=["own"], starts="paper"),
+        combinations=["geometric, kick"],
+    )
     for trial in found["limits"]["own"].values():
         total = trial["rows"]["geometric, kick"]["total"]
         assert (total["variance"], total["low"], total["high"]) == (0.0, None, None)
@@ -188,7 +194,7 @@ def test_a_run_is_the_bundled_scenario_played_with_the_same_seed() -> None:
 @pytest.mark.parametrize("trial", ["1", "2"])
 def test_the_learned_skills_score_and_are_sooner_at_the_ball_than_the_papers(trial: str) -> None:
     """At the paper's limits; six of the hundred runs of ``robobt paper table4 --runs 100``."""
-    found = table4(6, combinations=[LEARNED_ROW], limits=["paper"], trials=[trial])
+    found = table4(6, combinations=[LEARNED_ROW], conditions=Conditions(limits=["paper"]), trials=[trial])
     row = found["limits"]["paper"][trial]["rows"][LEARNED_ROW]
     assert row["goals"].count == 6
     assert row["to_ball"]["mean"] <= PAPER[trial]["ddpg"]["to_ball"]
@@ -214,7 +220,7 @@ def test_the_shipped_models_score_in_simulators_they_were_not_trained_in(
 
 
 def test_the_picture_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
-    result = table4(2, combinations=QUICK, limits=["own", "paper"])
+    result = table4(2, combinations=QUICK, conditions=Conditions(limits=["own", "paper"]))
     draw_table4(result, tmp_path / "sub" / "table4.png")
     assert (tmp_path / "sub" / "table4.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(ValueError, match="not supported"):

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from robobt.experiments.table4 import HUMAN, table4
+from robobt.experiments.table4 import HUMAN, Conditions, table4
 from robobt.experiments.table4_human import HumanRuns
 from robobt.experiments.table4_rows import PAPER
 from robobt.experiments.table4_runs import play_attempt
@@ -34,7 +34,15 @@ def played(page: Page, runs: int, trials: tuple[str, ...]) -> Any:
 
         def run() -> None:
             human = HumanRuns(live, countdown=0.3, look=0.1)
-            results.append(table4(runs, combinations=(), limits=("paper",), trials=trials, human=human))
+            results.append(
+                table4(
+                    runs,
+                    combinations=(),
+                    conditions=Conditions(limits=("paper",)),
+                    trials=trials,
+                    human=human,
+                )
+            )
 
         thread = threading.Thread(target=run)
         thread.start()

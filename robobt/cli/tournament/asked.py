@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import warn
-from robobt.cli.compare import parse_play
+from robobt.cli.scenario_options import parse_play
 
 if TYPE_CHECKING:
     from robobt.tournament.entrants import Entrant

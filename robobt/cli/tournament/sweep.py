@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,22 +12,20 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import (
-    Imports,
     Json,
     Progress,
     Seed,
     as_far_as_read,
     console,
     cores,
-    import_files,
     print_json,
     say,
     table,
     warn,
 )
-from robobt.cli.compare import Set, parse_play, scenario_of
 from robobt.cli.outputs import make_folders
-from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
+from robobt.cli.refereeing import Refereeing
+from robobt.cli.scenario_options import Changes, parse_play
 from robobt.cli.tournament.asked import (
     ALPHA,
     BETA,
@@ -45,10 +43,66 @@ from robobt.cli.tournament.asked import (
 )
 
 if TYPE_CHECKING:
+    from robobt.tournament.fixtures import Fixture
+    from robobt.tournament.played import PlayedMatch
     from robobt.tournament.sequential import RunningTest
     from robobt.tournament.sweeps.search import Candidate, Swept
+    from robobt.tournament.sweeps.sweep import Sweep
 
 _VARY = "NAME=VALUES"
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What is tried."""
+
+    candidates: Annotated[
+        int, typer.Option(min=1, max=10_000, help="How many sets of parameters are tried.")
+    ] = 24
+    at_once: Annotated[
+        int,
+        typer.Option(
+            "--at-once",
+            min=1,
+            max=256,
+            help="How many of them play at a time; the next ones are proposed by what these have done.",
+        ),
+    ] = 4
+    rounds: Annotated[
+        int,
+        typer.Option(
+            "--rounds", "-n", min=1, max=10_000, help="Rounds of two matches that a candidate plays at most."
+        ),
+    ] = 20
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """The test of the best candidate, on other seeds."""
+
+    sprt: Annotated[
+        tuple[float, float],
+        typer.Option(
+            metavar="ELO0 ELO1", help="What the best is tested for, on other seeds; as of robobt tournament."
+        ),
+    ] = (0.0, 30.0)
+    alpha: Alpha = ALPHA
+    beta: Beta = BETA
+    confirm_rounds: Annotated[
+        int,
+        typer.Option(
+            "--confirm-rounds", min=0, max=100_000, help="Rounds of that test at most; 0 leaves it out."
+        ),
+    ] = 5000
+
+
+@dataclass(frozen=True)
+class Running:
+    """How the matches are played, and where they are kept."""
+
+    out: OutOption = None
+    seed: Seed = None
+    workers: WorkersOption = None
 
 
 def sweep(
@@ -73,46 +127,12 @@ def sweep(
         typer.Option(metavar=ENTRANT, help="Whom all play; by default the play as it is without --vary."),
     ] = None,
     scenario: ScenarioOption = "six_v_six",
-    candidates: Annotated[
-        int, typer.Option(min=1, max=10_000, help="How many sets of parameters are tried.")
-    ] = 24,
-    at_once: Annotated[
-        int,
-        typer.Option(
-            "--at-once",
-            min=1,
-            max=256,
-            help="How many of them play at a time; the next ones are proposed by what these have done.",
-        ),
-    ] = 4,
-    rounds: Annotated[
-        int,
-        typer.Option(
-            "--rounds", "-n", min=1, max=10_000, help="Rounds of two matches that a candidate plays at most."
-        ),
-    ] = 20,
-    sprt: Annotated[
-        tuple[float, float],
-        typer.Option(
-            metavar="ELO0 ELO1", help="What the best is tested for, on other seeds; as of robobt tournament."
-        ),
-    ] = (0.0, 30.0),
-    alpha: Alpha = ALPHA,
-    beta: Beta = BETA,
-    confirm_rounds: Annotated[
-        int,
-        typer.Option(
-            "--confirm-rounds", min=0, max=100_000, help="Rounds of that test at most; 0 leaves it out."
-        ),
-    ] = 5000,
-    out: OutOption = None,
-    seed: Seed = None,
-    workers: WorkersOption = None,
-    settings: Set = None,
-    imports: Imports = None,
-    referee: RefereeOption = None,
-    game_controller: ControllerOption = None,
-    stages: StagesOption = None,
+    *,
+    tried: Tried,
+    confirmation: Confirmation,
+    running: Running,
+    changes: Changes,
+    refereeing: Refereeing,
     as_json: Json = False,
 ) -> None:
     """Tune parameters of a play: try sets of them against one team, and test the best on fresh seeds.
@@ -130,74 +150,31 @@ def sweep(
     'robobt tournament'.
     """
     from robobt.plays.files import is_play_file, problem_with_play
-    from robobt.tournament.sweeps.search import search
-    from robobt.tournament.sweeps.sweep import Sweep, confirm
+    from robobt.tournament.sweeps.sweep import Sweep
     from robobt.tournament.sweeps.vary import read_varied
 
-    import_files(imports)
     name, fixed = parse_play(play, "PLAY")
+    base, referees = refereeing.of_tournament(changes.scenario(scenario))
     if is_play_file(name):
         raise typer.BadParameter(f"{name} is a file; a sweep tunes a play by its name", param_hint="PLAY")
     if problem := problem_with_play(name):
         raise typer.BadParameter(problem, param_hint="PLAY")
-    test = asked_test(sprt, alpha, beta)
-    if referee is Who.NONE:
-        raise typer.BadParameter("must be own or official", param_hint="--referee")
-    base = scenario_of(scenario, settings)
-    base, referees = refereed(base, referee, game_controller, stages)
     asked = Sweep(
         base,
         name,
         fixed,
         tuple([read_varied(name, text) for text in vary]),
         parse_entrant(against or play),
-        candidates,
-        at_once,
-        rounds,
-        base.seed if seed is None else seed,
+        tried.candidates,
+        tried.at_once,
+        tried.rounds,
+        base.seed if running.seed is None else running.seed,
         referee=referees,
     )
-    make_folders({"--out": out})
-    crew = cores() if workers is None else workers
-    running = None
-    with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
-        store = Path(folder) / "sweep.sqlite" if out is None else out
-        with Progress("sweep", 2 * rounds * asked.tries) as progress:
-
-            def on_progress(steps: int, found: Swept) -> None:
-                progress.advance(steps)
-                if found.best is not None:
-                    progress.name(f"sweep, best {found.best.score:.3f}")
-
-            swept = search(asked, store, crew, on_progress, tell_waiting, out is not None)
-        best, matches, failed = swept.best, swept.matches, swept.failed
-        interrupted = swept.interrupted
-        if best is not None and (best.score or 0.0) > 0.5 and confirm_rounds and not interrupted:
-            with Progress("confirm", 2 * confirm_rounds) as progress:
-
-                def on_match(test: RunningTest) -> None:
-                    progress.advance(1)
-                    progress.name(test.brief())
-
-                try:
-                    running, played = confirm(
-                        asked, best.params, test, confirm_rounds, store, crew, on_match, out is not None
-                    )
-                    matches, failed = [*matches, *played.matches], {**failed, **played.failed}
-                    interrupted = played.interrupted
-                except KeyboardInterrupt:
-                    # Before its first match.
-                    interrupted = True
-    for fixture, problem in failed.items():
-        warn(f"{fixture} could not be played: {problem}")
-    for one in swept.candidates:
-        if one.first_error is not None:
-            failed_in = f"trees failed in {one.errors} ticks; the first" if one.errors else "lost by rule"
-            warn(f"{one.name}: {failed_in}: {one.first_error}")
-    tell_code(matches)
-    if interrupted:
-        kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
-        warn(f"stopped after {len(matches)} matches; {kept}")
+    make_folders({"--out": running.out})
+    found = _searched(asked, confirmation, running)
+    best, test = found.swept.best, found.test
+    _warn_of(found, running.out)
     said = {
         "scenario": base.name,
         "seed": asked.seed,
@@ -206,27 +183,104 @@ def sweep(
     }
     with as_far_as_read():
         if as_json:
-            found = {"candidates": [asdict(one) for one in swept.candidates], "best": best and asdict(best)}
+            candidates = [asdict(one) for one in found.swept.candidates]
             ended = {
-                "failed": {str(one): why for one, why in failed.items()},
-                "interrupted": interrupted,
-                "sprt": None if running is None else running.to_json(),
+                "failed": {str(one): why for one, why in found.failed.items()},
+                "interrupted": found.interrupted,
+                "sprt": None if test is None else test.to_json(),
             }
-            print_json({**said, **found, **ended})
+            print_json({**said, "candidates": candidates, "best": best and asdict(best), **ended})
         else:
             console.print(
                 f"[bold]{escape(name)}[/bold] in {escape(base.name)} against {escape(asked.against.name)}: "
-                f"{len(matches)} matches, seed {asked.seed}, {said['referee']} referee"
+                f"{len(found.matches)} matches, seed {asked.seed}, {said['referee']} referee"
             )
-            _print(swept, best)
-            if running is not None:
-                say(f"\n{running.line()}")
-    if interrupted:
+            _print(found.swept, best)
+            if test is not None:
+                say(f"\n{test.line()}")
+    if found.interrupted:
         raise typer.Exit(130)
-    if running is not None:
-        raise typer.Exit(EXITS.index(running.verdict.value))
-    if best is None or (best.score or 0.0) <= 0.5:
+    if test is not None:
+        raise typer.Exit(EXITS.index(test.verdict.value))
+    if not _is_better(best):
         raise typer.Exit(EXITS.index("not better"))
+
+
+@dataclass
+class _Found:
+    """What a search and the test of its best candidate found.
+
+    Attributes:
+        swept: the search.
+        matches: those of both.
+        failed: what kept matches from being played.
+        interrupted: whether one of both was.
+        test: of the best candidate; None where there was none.
+    """
+
+    swept: Swept
+    matches: list[PlayedMatch]
+    failed: dict[Fixture, str]
+    interrupted: bool
+    test: RunningTest | None = None
+
+
+def _searched(asked: Sweep, confirmation: Confirmation, running: Running) -> _Found:
+    """Search, and test the best candidate unless that is left out."""
+    from robobt.tournament.sweeps.search import search
+    from robobt.tournament.sweeps.sweep import confirm
+
+    test = asked_test(confirmation.sprt, confirmation.alpha, confirmation.beta)
+    workers = cores() if running.workers is None else running.workers
+    kept, rounds = running.out is not None, confirmation.confirm_rounds
+    with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
+        store = Path(folder) / "sweep.sqlite" if running.out is None else running.out
+        with Progress("sweep", 2 * asked.rounds * asked.tries) as progress:
+
+            def on_progress(steps: int, found: Swept) -> None:
+                progress.advance(steps)
+                if found.best is not None:
+                    progress.name(f"sweep, best {found.best.score:.3f}")
+
+            swept = search(asked, store, workers, on_progress, tell_waiting, kept)
+        found = _Found(swept, list(swept.matches), dict(swept.failed), swept.interrupted)
+        if swept.best is None or not _is_better(swept.best) or not rounds or found.interrupted:
+            return found
+        with Progress("confirm", 2 * rounds) as progress:
+
+            def on_match(test: RunningTest) -> None:
+                progress.advance(1)
+                progress.name(test.brief())
+
+            try:
+                found.test, played = confirm(
+                    asked, swept.best.params, test, rounds, store, workers, on_match, kept
+                )
+                found.matches += played.matches
+                found.failed |= played.failed
+                found.interrupted = played.interrupted
+            except KeyboardInterrupt:
+                # Before its first match.
+                found.interrupted = True
+    return found
+
+
+def _is_better(best: Candidate | None) -> bool:
+    return best is not None and (best.score or 0.0) > 0.5
+
+
+def _warn_of(found: _Found, out: Path | None) -> None:
+    """Warn of what went wrong: matches, trees, an early end."""
+    for fixture, problem in found.failed.items():
+        warn(f"{fixture} could not be played: {problem}")
+    for one in found.swept.candidates:
+        if one.first_error is not None:
+            failed_in = f"trees failed in {one.errors} ticks; the first" if one.errors else "lost by rule"
+            warn(f"{one.name}: {failed_in}: {one.first_error}")
+    tell_code(found.matches)
+    if found.interrupted:
+        kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
+        warn(f"stopped after {len(found.matches)} matches; {kept}")
 
 
 def _print(swept: Swept, best: Candidate | None) -> None:
@@ -242,7 +296,7 @@ def _print(swept: Swept, best: Candidate | None) -> None:
     console.print(tried)
     if best is None:
         say("\nNo candidate was played to the end.")
-    elif (best.score or 0.0) <= 0.5:
+    elif not _is_better(best):
         say("\nNo candidate did better.")
     else:
         say(f"\nBest: {best.name}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Collection
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,21 +13,19 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import (
-    Imports,
     Json,
     Progress,
     Seed,
     as_far_as_read,
     console,
     cores,
-    import_files,
     print_json,
     say,
     warn,
 )
-from robobt.cli.compare import Set, scenario_of
 from robobt.cli.outputs import make_folders
-from robobt.cli.refereeing import ControllerOption, RefereeOption, StagesOption, Who, refereed
+from robobt.cli.refereeing import Refereeing
+from robobt.cli.scenario_options import Changes
 from robobt.cli.tournament.asked import (
     ALPHA,
     BETA,
@@ -50,9 +48,11 @@ from robobt.config.extras import need
 if TYPE_CHECKING:
     from robobt.tournament.fixtures import Fixture
     from robobt.tournament.plan import Plan
+    from robobt.tournament.play import Played
     from robobt.tournament.played import PlayedMatch
     from robobt.tournament.recordings import Recordings
-    from robobt.tournament.sequential import SequentialTest
+    from robobt.tournament.sequential import RunningTest, SequentialTest
+    from robobt.tournament.standings import Standings
 
 _ROUNDS, _MOST_ROUNDS = 10, 5000
 """Rounds by default: of a tournament, and of a sequential test."""
@@ -64,6 +64,83 @@ class KeepOption(StrEnum):
     WORST = "worst"
     LOST = "lost"
     ALL = "all"
+
+
+@dataclass(frozen=True)
+class Test:
+    """The sequential test that ends the tournament."""
+
+    sprt: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="ELO0 ELO1",
+            help="Play until it is clear whether the entrant is stronger than --against: not better is by "
+            "ELO0 points or less, better by ELO1 or more.",
+        ),
+    ] = None
+    alpha: Alpha = ALPHA
+    beta: Beta = BETA
+
+    def asked(self, entrants: list[str], against: str | None) -> SequentialTest | None:
+        """Return the test that is asked for, if one is.
+
+        Raises:
+            typer.BadParameter: the options do not go together.
+        """
+        if self.sprt is None:
+            if (self.alpha, self.beta) != (ALPHA, BETA):
+                raise typer.BadParameter("are for --sprt", param_hint="--alpha, --beta")
+            return None
+        if against is None or len([text for text in entrants if text != against]) != 1:
+            raise typer.BadParameter("needs one entrant, and --against for the other", param_hint="--sprt")
+        return asked_test(self.sprt, self.alpha, self.beta)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept of the matches."""
+
+    out: OutOption = None
+    html: Annotated[Path | None, typer.Option("--html", help="Write the report, one page, to this file.")] = (
+        None
+    )
+    record: Annotated[
+        KeepOption | None,
+        typer.Option(
+            "--record",
+            help="Keep recordings beside --out: the match in which the first entrant does worst against each "
+            "other, those it loses, or all.",
+        ),
+    ] = None
+
+    def recordings(self, first: str) -> Recordings | None:
+        """Return what keeps recordings, in which ``first`` is the first entrant's name.
+
+        Raises:
+            typer.BadParameter: the outputs do not go together.
+        """
+        from robobt.tournament.recordings import Keep, Recordings
+
+        if self.html is not None and self.out is not None and self.html.resolve() == self.out.resolve():
+            there = f"would take the place of the store {self.out}"
+            raise typer.BadParameter(there, param_hint="--html")
+        if self.record is None:
+            return None
+        if self.out is None:
+            raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
+        return Recordings(self.out.with_suffix(".recordings"), Keep(self.record.value), first)
+
+
+@dataclass(frozen=True)
+class Running:
+    """How the matches are played."""
+
+    seed: Seed = None
+    workers: WorkersOption = None
+    speed: Annotated[
+        float,
+        typer.Option(min=0.05, max=20.0, help="Simulated time over real time in matches with programs."),
+    ] = 1.0
 
 
 def tournament(
@@ -93,39 +170,12 @@ def tournament(
             f"By default {_ROUNDS}; with --sprt {_MOST_ROUNDS} at most.",
         ),
     ] = None,
-    sprt: Annotated[
-        tuple[float, float] | None,
-        typer.Option(
-            metavar="ELO0 ELO1",
-            help="Play until it is clear whether the entrant is stronger than --against: not better is by "
-            "ELO0 points or less, better by ELO1 or more.",
-        ),
-    ] = None,
-    alpha: Alpha = ALPHA,
-    beta: Beta = BETA,
-    out: OutOption = None,
-    html: Annotated[
-        Path | None, typer.Option("--html", help="Write the report, one page, to this file.")
-    ] = None,
-    record: Annotated[
-        KeepOption | None,
-        typer.Option(
-            "--record",
-            help="Keep recordings beside --out: the match in which the first entrant does worst against each "
-            "other, those it loses, or all.",
-        ),
-    ] = None,
-    seed: Seed = None,
-    workers: WorkersOption = None,
-    speed: Annotated[
-        float,
-        typer.Option(min=0.05, max=20.0, help="Simulated time over real time in matches with programs."),
-    ] = 1.0,
-    settings: Set = None,
-    imports: Imports = None,
-    referee: RefereeOption = None,
-    game_controller: ControllerOption = None,
-    stages: StagesOption = None,
+    *,
+    test: Test,
+    kept: Kept,
+    running: Running,
+    changes: Changes,
+    refereeing: Refereeing,
     as_json: Json = False,
 ) -> None:
     """Let teams play each other, each pairing from either side with the same seeds, and rate them.
@@ -146,66 +196,30 @@ def tournament(
     """
     need("tournament", "google.protobuf", "pyarrow", "scipy")
     from robobt.tournament.plan import Plan
-    from robobt.tournament.play import play
     from robobt.tournament.sequential import RunningTest
     from robobt.tournament.standings import standings
 
-    import_files(imports)
-    asked = None if sprt is None else _asked(entrants, against, sprt, alpha, beta)
-    if asked is None and (alpha, beta) != (ALPHA, BETA):
-        raise typer.BadParameter("are for --sprt", param_hint="--alpha, --beta")
-    if record is not None and out is None:
-        raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
-    if html is not None and out is not None and html.resolve() == out.resolve():
-        raise typer.BadParameter(f"would take the place of the store {out}", param_hint="--html")
-    base = scenario_of(scenario, settings)
-    if referee is Who.NONE:
-        raise typer.BadParameter("must be own or official", param_hint="--referee")
-    base, referees = refereed(base, referee, game_controller, stages)
+    asked = test.asked(entrants, against)
+    base, referees = refereeing.of_tournament(changes.scenario(scenario))
     texts = [*entrants, *([against] if against is not None and against not in entrants else [])]
     teams = tuple([parse_entrant(text) for text in texts])
     require_programs(teams)
+    recordings = kept.recordings(teams[0].name)
     plan = Plan(
         base,
         teams,
-        rounds or (_ROUNDS if sprt is None else _MOST_ROUNDS),
-        base.seed if seed is None else seed,
+        rounds or (_ROUNDS if asked is None else _MOST_ROUNDS),
+        base.seed if running.seed is None else running.seed,
         None if against is None else teams[texts.index(against)].name,
         referees,
-        speed=speed,
+        speed=running.speed,
     )
-    if speed != 1.0 and not any(team.program for team in teams):
+    if running.speed != 1.0 and not any(team.program for team in teams):
         raise typer.BadParameter("is for matches with programs, and none takes part", param_hint="--speed")
-    test = None if asked is None else RunningTest(asked, *plan.pairings[0])
-    recordings = None if record is None or out is None else _recordings(out, record, teams[0].name)
-    count = len(plan.fixtures())
-    make_folders({"--out": out, "--html": html})
-    with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
-        path = Path(folder) / "tournament.sqlite" if out is None else out
-        with plan.open_store(path) as store, Progress("tournament", count) as progress:
-
-            def enough(matches: Collection[PlayedMatch], failed: Collection[Fixture]) -> bool:
-                if test is None:
-                    return False
-                decided = test.enough(matches, failed)
-                progress.name(test.brief())
-                return decided
-
-            played = play(
-                plan,
-                store,
-                _workers(plan) if workers is None else workers,
-                recordings=recordings,
-                on_match=lambda _: progress.advance(),
-                enough=enough,
-                on_wait=tell_waiting,
-                tell_outputs=out is not None,
-            )
-    for fixture, problem in played.failed.items():
-        warn(f"{fixture} could not be played: {problem}")
-    if played.interrupted:
-        kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
-        warn(f"stopped after {len(played.matches)} of {count} matches; {kept}")
+    make_folders({"--out": kept.out, "--html": kept.html})
+    result = None if asked is None else RunningTest(asked, *plan.pairings[0])
+    played = _played(plan, running.workers, kept.out, recordings, result)
+    _warn_of(played, len(plan.fixtures()), kept.out)
     if not played.matches:
         raise typer.Exit(130 if played.interrupted else 1)
     found = standings(played.matches, plan.names, plan.against)
@@ -218,31 +232,76 @@ def tournament(
     tell_code(played.matches)
     # The exit code says who is better also where nobody reads on.
     with as_far_as_read():
-        if as_json:
-            failed = {str(fixture): problem for fixture, problem in played.failed.items()}
-            ended = {"failed": failed, "interrupted": played.interrupted}
-            print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
-        else:
-            console.print(
-                f"[bold]{escape(base.name)}[/bold]: {found.matches} matches, seed {plan.seed}, "
-                f"{said['referee']} referee"
-            )
-            print_standings(found)
-            if test is not None:
-                say(f"\n{test.line()}")
-    if html is not None:
+        _print(said, found, played, result, as_json=as_json)
+    if kept.html is not None:
         from robobt.tournament.report import write_report
 
-        write_report(html, said, found, played.matches, recordings, None if test is None else test.line())
+        line = None if result is None else result.line()
+        write_report(kept.html, said, found, played.matches, recordings, line)
         if not as_json:
             with as_far_as_read():
-                say(f"Report: {html}")
+                say(f"Report: {kept.html}")
     if played.interrupted:
         raise typer.Exit(130)
-    if test is not None:
-        raise typer.Exit(EXITS.index(test.verdict.value))
+    if result is not None:
+        raise typer.Exit(EXITS.index(result.verdict.value))
     if played.failed:
         raise typer.Exit(1)
+
+
+def _print(
+    said: dict[str, object], found: Standings, played: Played, test: RunningTest | None, *, as_json: bool
+) -> None:
+    if as_json:
+        failed = {str(fixture): problem for fixture, problem in played.failed.items()}
+        ended = {"failed": failed, "interrupted": played.interrupted}
+        print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
+        return
+    console.print(
+        f"[bold]{escape(str(said['scenario']))}[/bold]: {found.matches} matches, seed {said['seed']}, "
+        f"{said['referee']} referee"
+    )
+    print_standings(found)
+    if test is not None:
+        say(f"\n{test.line()}")
+
+
+def _played(
+    plan: Plan, workers: int | None, out: Path | None, recordings: Recordings | None, test: RunningTest | None
+) -> Played:
+    """Play what is not in the store yet, until the test is decided if there is one."""
+    from robobt.tournament.play import play
+
+    with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
+        path = Path(folder) / "tournament.sqlite" if out is None else out
+        with plan.open_store(path) as store, Progress("tournament", len(plan.fixtures())) as progress:
+
+            def enough(matches: Collection[PlayedMatch], failed: Collection[Fixture]) -> bool:
+                if test is None:
+                    return False
+                decided = test.enough(matches, failed)
+                progress.name(test.brief())
+                return decided
+
+            return play(
+                plan,
+                store,
+                _workers(plan) if workers is None else workers,
+                recordings=recordings,
+                on_match=lambda _: progress.advance(),
+                enough=enough,
+                on_wait=tell_waiting,
+                tell_outputs=out is not None,
+            )
+
+
+def _warn_of(played: Played, count: int, out: Path | None) -> None:
+    """Warn of matches that could not be played, and of an early end."""
+    for fixture, problem in played.failed.items():
+        warn(f"{fixture} could not be played: {problem}")
+    if played.interrupted:
+        kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
+        warn(f"stopped after {len(played.matches)} of {count} matches; {kept}")
 
 
 def _workers(plan: Plan) -> int:
@@ -252,17 +311,3 @@ def _workers(plan: Plan) -> int:
         for pair in plan.pairings
     )
     return min(max(1, cores() // most), len(plan.fixtures()))
-
-
-def _asked(
-    entrants: list[str], against: str | None, sprt: tuple[float, float], alpha: float, beta: float
-) -> SequentialTest:
-    if against is None or len([text for text in entrants if text != against]) != 1:
-        raise typer.BadParameter("needs one entrant, and --against for the other", param_hint="--sprt")
-    return asked_test(sprt, alpha, beta)
-
-
-def _recordings(out: Path, keep: KeepOption, first: str) -> Recordings:
-    from robobt.tournament.recordings import Keep, Recordings
-
-    return Recordings(out.with_suffix(".recordings"), Keep(keep.value), first)
