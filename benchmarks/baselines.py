@@ -237,7 +237,7 @@ def train_ours(task: str, algorithm: str, seed: int, problem: Problem, curve: Cu
     """Train robobt's learner; return its settings."""
     data, _ = read_preset(*PRESETS[algorithm])
     own = {"task": TASKS[task], "seed": seed, "tensorboard": False}
-    data = merged(data, {**own, "collection": {"environments": ROWS[algorithm]}})
+    data = merged(data, {**own, "collection": {"num_envs": ROWS[algorithm]}})
     settings = settings_of(data, "benchmarks/baselines.py")
     kind = {"ppo": _PPO, "td3": _TD3}[algorithm]
     with TemporaryDirectory() as folder:

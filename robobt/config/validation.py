@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import get_args
+from typing import ClassVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
@@ -21,9 +21,14 @@ _WORDS = {
 
 
 class Settings(BaseModel):
-    """A group of settings or other data from outside: read-only, no unknown fields, finite numbers."""
+    """A group of settings or other data from outside: read-only, no unknown fields, finite numbers.
+
+    ``renamed`` maps names that fields had in earlier versions to their new ones, for the error that an old
+    name in a file gets.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    renamed: ClassVar[Mapping[str, str]] = {}
 
 
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
@@ -46,8 +51,7 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     elif problem["type"] == "missing":
         message = "is missing"
     elif problem["type"] == "extra_forbidden":
-        known = _fields_at(model, problem["loc"][:-1])
-        message = f"there is no such field; {unknown_name(problem['loc'][-1], known)}"
+        message = _unknown_field(problem["loc"][-1], _models_at(model, problem["loc"][:-1]))
     elif not isinstance(problem["input"], Mapping | list):
         message = f"{message}, not {short_repr(problem['input'])}"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
@@ -77,8 +81,17 @@ def _path_in(loc: tuple[int | str, ...], data: object) -> list[str]:
     return place
 
 
-def _fields_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """Return the fields that the part of a model at ``loc`` may have."""
+def _unknown_field(name: int | str, models: list[type[BaseModel]]) -> str:
+    """Say what is wrong with a field that none of the models has."""
+    for model in models:
+        if issubclass(model, Settings) and name in model.renamed:
+            return f"has been renamed: use {model.renamed[str(name)]}"
+    known = [key for model in models for key in model.model_fields]
+    return f"there is no such field; {unknown_name(name, known)}"
+
+
+def _models_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[type[BaseModel]]:
+    """Return the models that the part of a model at ``loc`` may be of."""
     models = [model]
     for part in loc:
         below = [hint.annotation for model in models if (hint := model.model_fields.get(str(part)))]
@@ -87,7 +100,7 @@ def _fields_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
         else:
             # A position in a list, or the name of a union's member.
             models = [model for model in models if model.__name__ == part] or models
-    return [name for model in models for name in model.model_fields]
+    return models
 
 
 def _models_in(hint: object) -> list[type[BaseModel]]:

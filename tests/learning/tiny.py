@@ -82,20 +82,20 @@ def slide_settings(**changes) -> TrainSettings:
         "task": "slide",
         "steps": 1920,
         "agent": {
-            "hidden": (32,),
+            "hidden_sizes": (32,),
             "gamma": 0.9,
             "tau": 0.1,
             "n_step": 3,
-            "critic_rate": 5e-3,
-            "actor_rate": 1e-3,
+            "critic_learning_rate": 5e-3,
+            "actor_learning_rate": 1e-3,
         },
-        "replay": {"batch": 32, "capacity": 1000},
+        "replay": {"batch_size": 32, "buffer_size": 1000},
         "collection": {
-            "environments": 8,
+            "num_envs": 8,
             "random_steps": 320,
-            "update_after": 160,
-            "update_every": 16,
-            "updates": 1,
+            "learning_starts": 160,
+            "train_freq": 16,
+            "gradient_steps": 1,
         },
         "evaluation": {"every": 480, "starts": 20, "held_out": 30},
         "rebuild_every": 320,
@@ -116,7 +116,13 @@ def draw_no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def small_agent(observation: int, actions: int, seed: int = 0, **settings) -> DDPG:
     """An agent with small hidden layers that learns quickly."""
-    fast = {"hidden": (32, 32), "actor_rate": 2e-3, "critic_rate": 5e-3, "tau": 0.1, "gamma": 0.9}
+    fast = {
+        "hidden_sizes": (32, 32),
+        "actor_learning_rate": 2e-3,
+        "critic_learning_rate": 5e-3,
+        "tau": 0.1,
+        "gamma": 0.9,
+    }
     return DDPG(AgentSettings(**(fast | settings)), (1.0,) * observation, (True,) * actions, seed)
 
 
@@ -130,5 +136,5 @@ def learn(
     rng = np.random.default_rng(seed)
     for done in range(updates):
         if decay:
-            agent.set_rates(1.0 - done / updates)
+            agent.set_learning_rates(1.0 - done / updates)
         agent.update(replay.sample(batch, rng), rng)

@@ -49,19 +49,26 @@ class DDPG(Learner):
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
         actions, norm = len(smoothed), settings.layer_norm
-        self.actor = Actor(scale, actions, settings.hidden, norm, generator)
+        self.actor = Actor(scale, actions, settings.hidden_sizes, norm, generator)
         self.critic = Critic(
-            scale, actions, settings.hidden, settings.atoms or 1, 2 if settings.twin else 1, norm, generator
+            scale,
+            actions,
+            settings.hidden_sizes,
+            settings.num_atoms or 1,
+            2 if settings.twin_critics else 1,
+            norm,
+            generator,
         )
         self.target_actor, self.target_critic = deepcopy(self.actor), deepcopy(self.critic)
         for frozen in (self.target_actor, self.target_critic):
             frozen.requires_grad_(False)
         decay = settings.weight_decay
-        self._actor_adam = Adam(list(self.actor.parameters()), settings.actor_rate, decay)
-        self._critic_adam = Adam(list(self.critic.parameters()), settings.critic_rate, decay)
+        self._actor_adam = Adam(list(self.actor.parameters()), settings.actor_learning_rate, decay)
+        self._critic_adam = Adam(list(self.critic.parameters()), settings.critic_learning_rate, decay)
         self._online: list[Tensor] = [*self.actor.parameters(), *self.critic.parameters()]
         self._targets: list[Tensor] = [*self.target_actor.parameters(), *self.target_critic.parameters()]
-        self._atoms = Atoms(*settings.returns, settings.atoms) if settings.atoms else None
+        atoms = settings.num_atoms
+        self._atoms = Atoms(settings.v_min, settings.v_max, atoms) if atoms else None
         self._smoothed = torch.tensor(list(smoothed), dtype=torch.float32)
         self._loss_weights = (1.0, settings.one_step_weight)
 
@@ -75,9 +82,9 @@ class DDPG(Learner):
         self.updates += 1
         errors = self._update_critic(batch, rng)
         gradients = torch.zeros_like(errors)
-        if self.updates % self.settings.actor_every == 0:
+        if self.updates % self.settings.policy_delay == 0:
             gradients = self._update_actor(batch.observation)
-        if self.updates % self.settings.target_every == 0:
+        if self.updates % self.settings.target_update_interval == 0:
             self._move_targets()
         return errors, gradients
 
@@ -132,11 +139,11 @@ class DDPG(Learner):
 
     def _smooth(self, action: Tensor, rng: np.random.Generator) -> Tensor:
         """Add clipped noise to the target actor's action, as TD3 does."""
-        spread, limit = self.settings.smoothing, self.settings.smoothing_limit
-        if spread == 0.0:
+        std, clip = self.settings.target_policy_noise, self.settings.target_noise_clip
+        if std == 0.0:
             return action
         noise = torch.from_numpy(rng.standard_normal(tuple(action.shape), dtype=np.float32))
-        return (action + (spread * noise).clamp(-limit, limit) * self._smoothed).clamp(-1.0, 1.0)
+        return (action + (std * noise).clamp(-clip, clip) * self._smoothed).clamp(-1.0, 1.0)
 
     def _update_actor(self, observation: Tensor) -> Tensor:
         """Take a step of (3), by dQ/dtheta = dQ/da dmu/dtheta; return the squared norms of dQ/da."""
@@ -147,12 +154,12 @@ class DDPG(Learner):
         # For dQ/da alone, so that the critic gets no gradient from the actor's step.
         (gradient,) = torch.autograd.grad(value.sum(), taken)
         squared: Tensor = gradient.square().sum(-1)
-        if self.settings.dqda_limit is not None:
-            gradient = gradient * (self.settings.dqda_limit / squared.sqrt()).clamp(max=1.0)[:, None]
+        if self.settings.dqda_clipping is not None:
+            gradient = gradient * (self.settings.dqda_clipping / squared.sqrt()).clamp(max=1.0)[:, None]
         # Adam minimises; the value is to be maximised.
         weights = self._actor_adam.weights
         self._actor_adam.step(torch.autograd.grad(action, weights, -gradient / len(gradient)))
-        self.value += value.detach().mean() * self.settings.actor_every
+        self.value += value.detach().mean() * self.settings.policy_delay
         return squared
 
     def _modules(self) -> tuple[tuple[str, torch.nn.Module], ...]:

@@ -30,10 +30,10 @@ class Learner(ABC):
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
         """Return all networks, by the names under which they are saved."""
 
-    def set_rates(self, share: float) -> None:
-        """Scale both learning rates to ``share`` of those in the settings."""
+    def set_learning_rates(self, fraction: float) -> None:
+        """Set both learning rates to ``fraction`` of those in the settings."""
         for optimiser in (self._actor_adam, self._critic_adam):
-            optimiser.set_rate(share)
+            optimiser.set_learning_rate(fraction)
 
     def reset_sums(self) -> None:
         """Set :attr:`critic_loss` and :attr:`value` to zero."""

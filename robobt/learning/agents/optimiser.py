@@ -14,26 +14,26 @@ class Adam:
     """Adam over all weights of a network, in single calls whatever their number."""
 
     def __init__(
-        self, weights: list[torch.nn.Parameter], rate: float, decay: float = 0.0, eps: float = 1e-8
+        self, weights: list[torch.nn.Parameter], learning_rate: float, decay: float = 0.0, eps: float = 1e-8
     ) -> None:
         self.weights = weights
-        self.rate = rate
-        self.adam = torch.optim.Adam(weights, lr=rate, weight_decay=decay, eps=eps, fused=True)
+        self.learning_rate = learning_rate
+        self.adam = torch.optim.Adam(weights, lr=learning_rate, weight_decay=decay, eps=eps, fused=True)
         for weight in weights:
             weight.grad = torch.zeros_like(weight)
         self._gradients = [weight.grad for weight in weights if weight.grad is not None]
 
-    def step(self, gradients: Sequence[Tensor], longest: float | None = None) -> None:
-        """Take a step along gradients, all of them together shortened to the norm ``longest``."""
+    def step(self, gradients: Sequence[Tensor], max_grad_norm: float | None = None) -> None:
+        """Take a step along gradients, clipped together to ``max_grad_norm``."""
         torch._foreach_copy_(self._gradients, list(gradients))
-        if longest is not None:
-            torch.nn.utils.clip_grad_norm_(self.weights, longest)
+        if max_grad_norm is not None:
+            torch.nn.utils.clip_grad_norm_(self.weights, max_grad_norm)
         self.adam.step()
 
-    def set_rate(self, share: float) -> None:
-        """Scale the learning rate to ``share`` of what it was made with."""
+    def set_learning_rate(self, fraction: float) -> None:
+        """Set the learning rate to ``fraction`` of the initial one."""
         for group in self.adam.param_groups:
-            group["lr"] = self.rate * share
+            group["lr"] = self.learning_rate * fraction
 
 
 def state_of(

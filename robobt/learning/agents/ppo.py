@@ -10,10 +10,10 @@ an update makes, over a few epochs of minibatches,
     (3)  the mean of min(rho A, clip(rho, 1 - eps, 1 + eps) A) large, rho = pi(a | s) / pi_old(a | s)
     (4)  the mean of (V(s) - (A + V_old(s)))^2 small
 
-The policy's entries are independent: each is normal about tanh of the network's output, with a spread that
-is learned, except thresholds such as that of a kick: these are coins, tossed with the output as log-odds.
-Without noise a policy takes the middle of the normal ones, and kicks where that is likelier than not; so
-the actor alone is the network that is evaluated and exported, like DDPG's.
+The policy's entries are independent: each is normal about tanh of the network's output, with a learned
+standard deviation, except thresholds such as that of a kick: these are Bernoulli, with the output as
+log-odds. Without noise the policy takes the mean of the normal entries, and kicks where the probability is
+over one half; so the actor alone is the network that is evaluated and exported, like DDPG's.
 
 V may be told more than the policy is, for it is needed in training alone. Of several robots that learn one
 policy a *central* V sees all of them (Yu et al., "The surprising effectiveness of PPO in cooperative
@@ -121,21 +121,21 @@ class PPO(Learner):
         super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
-        self.actor = Actor(scale, len(smooth), settings.hidden, False, generator, "tanh", vectors)
-        self.critic = Value([*scale, *state_scale], settings.hidden, generator)
+        self.actor = Actor(scale, len(smooth), settings.hidden_sizes, False, generator, "tanh", vectors)
+        self.critic = Value([*scale, *state_scale], settings.hidden_sizes, generator)
         self._own, self._turns = len(scale), bool(vectors)
         self._smooth = torch.tensor(list(smooth))
         self._gamma = settings.gamma
         self._spread = nn.ParameterDict(
-            {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.spread))))}
+            {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.init_std))))}
         )
         # So that all directions are alike at first, and kicks rare.
         last = orthogonal(self.actor.body, 0.01, generator)
         with torch.no_grad():
             last.bias.copy_(torch.where(self._smooth, 0.0, settings.threshold_bias))
         weights = [*self.actor.parameters(), *self._spread.parameters()]
-        self._actor_adam = Adam(weights, settings.rate, eps=1e-5)
-        self._critic_adam = Adam(list(self.critic.parameters()), settings.rate, eps=1e-5)
+        self._actor_adam = Adam(weights, settings.learning_rate, eps=1e-5)
+        self._critic_adam = Adam(list(self.critic.parameters()), settings.learning_rate, eps=1e-5)
 
     @torch.no_grad()
     def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
@@ -165,15 +165,15 @@ class PPO(Learner):
     def update(self, rollout: Rollout, rng: np.random.Generator, value_alone: bool = False) -> None:
         """Learn from a rollout by (3) and (4), or by (4) alone while a policy that was given is valued."""
         settings = self.settings
-        advantage = advantages(rollout, self._gamma, settings.trace)
+        advantage = advantages(rollout, self._gamma, settings.gae_lambda)
         target = advantage + rollout.value
         observation, action, log_probability, advantage_, target_ = (
             torch.from_numpy(array.reshape(-1, *array.shape[2:]).astype(np.float32))
             for array in (rollout.observation, rollout.action, rollout.log_probability, advantage, target)
         )
-        for _ in range(settings.epochs):
+        for _ in range(settings.num_epochs):
             order = torch.from_numpy(rng.permutation(len(action)))
-            for rows in torch.split(order, settings.batch):
+            for rows in torch.split(order, settings.minibatch_size):
                 if not value_alone:
                     self._improve(observation[rows], action[rows], log_probability[rows], advantage_[rows])
                 self._fit(observation[rows], target_[rows])
@@ -186,18 +186,18 @@ class PPO(Learner):
         log_probability, entropy = self._weigh(output, action)
         advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
         ratio = (log_probability - old).exp()
-        clipped = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip)
+        clipped = ratio.clamp(1.0 - settings.clip_coef, 1.0 + settings.clip_coef)
         gain = torch.minimum(ratio * advantage, clipped * advantage).mean()
-        loss = -gain - settings.entropy * entropy.mean()
+        loss = -gain - settings.ent_coef * entropy.mean()
         weights = self._actor_adam.weights
-        self._actor_adam.step(torch.autograd.grad(loss, weights), settings.longest_step)
+        self._actor_adam.step(torch.autograd.grad(loss, weights), settings.max_grad_norm)
 
     def _fit(self, seen: Tensor, target: Tensor) -> None:
         """Take a step of (4)."""
         value = self._valued(seen)
         loss = (value - target).square().mean()
         weights = self._critic_adam.weights
-        self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.longest_step)
+        self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.max_grad_norm)
         self.critic_loss += loss.detach()
         self.value += value.detach().mean()
 
@@ -244,13 +244,13 @@ def orthogonal(body: nn.Sequential, last_gain: float, generator: torch.Generator
     return layers[-1]
 
 
-def advantages(rollout: Rollout, gamma: float, trace: float) -> Floats:
-    """Compute (1) and (2), (T, n); ``trace`` is lambda."""
+def advantages(rollout: Rollout, gamma: float, gae_lambda: float) -> Floats:
+    """Compute (1) and (2), (T, n)."""
     delta = rollout.reward + gamma * rollout.next_value * ~rollout.terminated - rollout.value
     result = np.zeros_like(delta)
     later = np.zeros(delta.shape[1])
     for t in reversed(range(len(delta))):
-        later = delta[t] + gamma * trace * later * ~rollout.ended[t]
+        later = delta[t] + gamma * gae_lambda * later * ~rollout.ended[t]
         result[t] = later
     return result
 

@@ -129,7 +129,7 @@ class PrioritisedReplay(Replay):
     batch scaled to 1, correct for it. New rows get the largest priority yet.
 
     An ``alpha`` of 0 samples uniformly, 1 in proportion to the priorities; ``beta`` is how far the weights
-    correct for it, 1 in full; ``floor`` is added to every priority, ``bonus`` to those of kept rows
+    correct for it, 1 in full; ``epsilon`` is added to every priority, ``bonus`` to those of kept rows
     (demonstrations).
 
     Source: Schaul et al., "Prioritized experience replay", 2015; the bonus from
@@ -145,11 +145,11 @@ class PrioritisedReplay(Replay):
         *,
         alpha: float,
         beta: float,
-        floor: float,
+        epsilon: float,
         bonus: float,
     ) -> None:
         super().__init__(capacity, observation_size, action_size, horizons)
-        self._alpha, self._beta, self._floor, self._bonus = alpha, beta, floor, bonus
+        self._alpha, self._beta, self._epsilon, self._bonus = alpha, beta, epsilon, bonus
         self._tree = SumTree(capacity)
         self._largest = 1.0
 
@@ -172,7 +172,7 @@ class PrioritisedReplay(Replay):
         ``rows`` (batch,) are indices in the replay; ``errors`` (batch,) squared TD errors, with whatever else
         raises a priority.
         """
-        priority = errors + self._floor + self._bonus * (rows < self.kept)
+        priority = errors + self._epsilon + self._bonus * (rows < self.kept)
         self._largest = max(self._largest, float(priority.max()))
         self._tree.set(rows, priority**self._alpha)
 

@@ -41,8 +41,8 @@ class OffPolicyRun(Run):
         if settings.agent.one_step_weight > 0.0 and settings.agent.n_step > 1:
             self._horizons += (1,)
         self._replay = self._make_replay()
-        last = collection.noise if collection.last_noise is None else collection.last_noise
-        self._noise = np.linspace(collection.noise, last, collection.environments)[:, None]
+        first, last = collection.exploration_noise, collection.exploration_noise_last_env
+        self._noise = np.linspace(first, first if last is None else last, collection.num_envs)[:, None]
 
     @property
     def _evaluated(self) -> Actor:
@@ -70,15 +70,16 @@ class OffPolicyRun(Run):
         self._observation = step.observation
         before = self._steps
         self._steps += n
-        rounds = self._steps // collection.update_every - before // collection.update_every
-        if self._steps > collection.update_after and rounds and len(self._replay):
-            if self._settings.agent.final_rate < 1.0:
-                self._agent.set_rates(1.0 - share * (1.0 - self._settings.agent.final_rate))
-            for _ in range(rounds * collection.updates):
+        rounds = self._steps // collection.train_freq - before // collection.train_freq
+        if self._steps > collection.learning_starts and rounds and len(self._replay):
+            final = self._settings.agent.final_learning_rate_fraction
+            if final < 1.0:
+                self._agent.set_learning_rates(1.0 - share * (1.0 - final))
+            for _ in range(rounds * collection.gradient_steps):
                 self._learn()
 
     def _learn(self) -> None:
-        batch = self._replay.sample(self._settings.replay.batch, self._rng)
+        batch = self._replay.sample(self._settings.replay.batch_size, self._rng)
         errors, gradients = self._agent.update(batch, self._rng)
         if isinstance(self._replay, PrioritisedReplay):
             weight = self._settings.replay.priority.dqda_weight
@@ -95,7 +96,7 @@ class OffPolicyRun(Run):
             self._replay.add(*transitions)
         if settings.keep:
             self._replay.keep()
-        for _ in range(settings.updates):
+        for _ in range(settings.pretrain_gradient_steps):
             self._learn()
 
     def _rebuild(self) -> None:
@@ -118,12 +119,12 @@ class OffPolicyRun(Run):
         settings = self._settings.replay
         sizes = len(self._problem.scale), len(self._problem.smoothed), len(self._horizons)
         if not settings.priority.enabled:
-            return Replay(settings.capacity, *sizes)
+            return Replay(settings.buffer_size, *sizes)
         return PrioritisedReplay(
-            settings.capacity,
+            settings.buffer_size,
             *sizes,
             alpha=settings.priority.alpha,
             beta=settings.priority.beta,
-            floor=settings.priority.floor,
+            epsilon=settings.priority.epsilon,
             bonus=settings.demonstrations.bonus,
         )

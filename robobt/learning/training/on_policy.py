@@ -99,15 +99,15 @@ class OnPolicyRun(Run):
     def _advance(self) -> None:
         rollout = self._roll_out()
         share = self._share
-        self._agent.set_rates(1.0 - share)
+        self._agent.set_learning_rates(1.0 - share)
         self._agent.look_ahead(share)
-        value_alone = self._steps < self._settings.ppo.critic_first
+        value_alone = self._steps < self._settings.ppo.critic_warmup_steps
         self._agent.update(rollout, self._rng, value_alone)
         self._steps += rollout.reward.size
 
     def _roll_out(self) -> Rollout:
         """Let the policy play for a while."""
-        ticks, n, agent = self._settings.ppo.rollout, self._task.n, self._agent
+        ticks, n, agent = self._settings.ppo.num_steps, self._task.n, self._agent
         sizes = self._task.observation_size, self._task.action_size
         rollout = Rollout.empty(ticks, n, *sizes)
         for t in range(ticks):

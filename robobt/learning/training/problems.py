@@ -83,7 +83,7 @@ def problem_for(settings: TrainSettings) -> Problem:
     )
     if not settings.changes_on_the_way:
         return problem
-    stages, n = stages_of(settings), settings.collection.environments
+    stages, n = stages_of(settings), settings.collection.num_envs
 
     def later(steps: int, others: Others) -> VectorTask:
         stage = stages[stage_after(settings, steps)]

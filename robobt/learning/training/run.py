@@ -62,7 +62,7 @@ class Run(ABC):
         self._problem = problem
         self._folder = folder
         self._clock = clock
-        self._task = problem.make(settings.collection.environments)
+        self._task = problem.make(settings.collection.num_envs)
         seeds = np.random.SeedSequence(settings.seed).spawn(2)
         self._rng = np.random.default_rng(seeds[0])
         self._agent_seed = int(seeds[1].generate_state(1)[0])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, Self
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -13,10 +14,12 @@ from robobt.learning.opponents.play_settings import GivenPlay, PlaySettings
 class PrioritySettings(Settings):
     """Prioritised replay; off unless ``enabled``."""
 
+    renamed: ClassVar[Mapping[str, str]] = {"floor": "epsilon"}
+
     enabled: bool = False
-    alpha: float = Field(0.3, ge=0, le=1, description="0 samples uniformly, 1 in proportion")
-    beta: float = Field(1.0, ge=0, le=1, description="how far importance weights correct for it")
-    floor: float = Field(1e-3, gt=0, le=10, description="added to every priority")
+    alpha: float = Field(0.3, ge=0, le=1, description="0 samples uniformly, 1 in proportion to priorities")
+    beta: float = Field(1.0, ge=0, le=1, description="exponent of the importance weights")
+    epsilon: float = Field(1e-3, gt=0, le=10, description="added to every priority")
     dqda_weight: float = Field(1.0, ge=0, le=100, description="weight of the squared norm of dQ/da")
 
 
@@ -27,18 +30,24 @@ class DemonstrationSettings(Settings):
     steps, it is the burn-in of Schwab, Zhu & Veloso (CMU).
     """
 
-    episodes: int = Field(0, ge=0, le=100_000, description="how many to record or to take from the file")
+    renamed: ClassVar[Mapping[str, str]] = {"updates": "pretrain_gradient_steps"}
+
+    episodes: int = Field(0, ge=0, le=100_000, description="number to record or to take from the file")
     file: str | None = Field(None, description="Parquet file; None records them with the scripted skill")
     keep: bool = Field(False, description="never overwrite them")
     bonus: float = Field(0.0, ge=0, le=100, description="added to their priorities")
-    updates: int = Field(0, ge=0, le=1_000_000, description="updates on them alone, before the first step")
+    pretrain_gradient_steps: int = Field(
+        0, ge=0, le=1_000_000, description="updates on them alone, before the first environment step"
+    )
 
 
 class ReplaySettings(Settings):
     """The replay buffer and how it is sampled."""
 
-    capacity: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
-    batch: int = Field(100, ge=1, le=100_000, description="transitions of an update")
+    renamed: ClassVar[Mapping[str, str]] = {"capacity": "buffer_size", "batch": "batch_size"}
+
+    buffer_size: int = Field(1_000_000, ge=100, le=20_000_000, description="transitions")
+    batch_size: int = Field(100, ge=1, le=100_000, description="transitions per update")
     priority: PrioritySettings = PrioritySettings()
     demonstrations: DemonstrationSettings = DemonstrationSettings()
 
@@ -50,19 +59,39 @@ class ReplaySettings(Settings):
 
 
 class CollectionSettings(Settings):
-    """How the agent gathers experience. Steps are environment steps, whatever ``environments`` is."""
+    """How the agent gathers experience.
 
-    environments: int = Field(1, ge=1, le=4096, description="that run side by side, each learner counted")
-    random_steps: int = Field(10_000, ge=0, description="of uniformly random actions, to begin with")
-    update_after: int = Field(1_000, ge=0, description="steps before the first update")
-    update_every: int = Field(50, ge=1, description="steps between rounds of updates")
-    updates: int = Field(50, ge=1, description="updates a round")
-    noise: float = Field(0.1, ge=0, le=2, description="standard deviation of the noise on actions")
-    last_noise: float | None = Field(
+    Steps are environment steps, summed over the ``num_envs`` environments.
+    """
+
+    renamed: ClassVar[Mapping[str, str]] = {
+        "environments": "num_envs",
+        "update_after": "learning_starts",
+        "update_every": "train_freq",
+        "updates": "gradient_steps",
+        "noise": "exploration_noise",
+        "last_noise": "exploration_noise_last_env",
+    }
+
+    num_envs: int = Field(
+        1,
+        ge=1,
+        le=4096,
+        description="environments side by side; where several robots of one learn, each counts",
+    )
+    random_steps: int = Field(10_000, ge=0, description="steps of uniformly random actions at the beginning")
+    learning_starts: int = Field(1_000, ge=0, description="steps before the first update")
+    train_freq: int = Field(50, ge=1, description="steps between rounds of updates")
+    gradient_steps: int = Field(50, ge=1, description="updates per round")
+    exploration_noise: float = Field(
+        0.1, ge=0, le=2, description="standard deviation of the noise on actions"
+    )
+    exploration_noise_last_env: float | None = Field(
         None,
         ge=0,
         le=2,
-        description="that of the last environment; those between are evenly spaced; None for the same",
+        description="exploration noise of the last environment; of those between it is evenly spaced; None "
+        "for the same in all",
     )
 
 
@@ -95,14 +124,14 @@ class EvaluationSettings(Settings):
         False, description="evaluate and ship the slow actor instead of the online one"
     )
     stop_success: float | None = Field(
-        None, ge=0, le=1, description="stop once this share of the starts succeeds and ..."
+        None, ge=0, le=1, description="stop early once this share of the starts succeeds and ..."
     )
     stop_time: float | None = Field(
         None,
         gt=0,
         description="... the mean time, over the optimum where there is one, else in s, is no more",
     )
-    stop_after: int = Field(1, ge=1, le=100, description="so often running")
+    stop_after: int = Field(1, ge=1, le=100, description="... in this many evaluations in a row")
 
 
 Script = Literal["challenge", "still", "press", "mark", "wall", "attack", "pass", "redirect"]

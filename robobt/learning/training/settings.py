@@ -91,13 +91,13 @@ class TrainSettings(Settings):
         if self.learner == "ppo":
             return "mappo" if self.central else "ppo"
         agent, named = self.agent, []
-        if agent.atoms:
+        if agent.num_atoms:
             named.append("d4pg")
-        if agent.twin or agent.actor_every > 1 or agent.smoothing:
+        if agent.twin_critics or agent.policy_delay > 1 or agent.target_policy_noise:
             named.append("td3")
         if self.replay.demonstrations.keep:
             named.append("ddpgfd")
-        steps = f"{agent.n_step}-step " if agent.n_step > 1 and not agent.atoms else ""
+        steps = f"{agent.n_step}-step " if agent.n_step > 1 and not agent.num_atoms else ""
         return steps + ("+".join(named) or "ddpg")
 
     @model_validator(mode="after")
@@ -106,11 +106,11 @@ class TrainSettings(Settings):
             ("evaluation.every", self.evaluation.every),
             ("rebuild_every", self.rebuild_every),
         ):
-            if every % self.collection.environments:
+            if every % self.collection.num_envs:
                 raise ValueError(
-                    f"{name} must be a multiple of collection.environments ({self.collection.environments})"
+                    f"{name} must be a multiple of collection.num_envs ({self.collection.num_envs})"
                 )
-        if len(self.worlds) > min(self.collection.environments, self.evaluation.starts):
+        if len(self.worlds) > min(self.collection.num_envs, self.evaluation.starts):
             raise ValueError("worlds: more than there are arenas or validation starts to share")
         if self.learner != "ppo" and (self.stages or self.init is not None or self.pool != PoolSettings()):
             raise ValueError("stages, init and pool are for learner ppo")
@@ -150,7 +150,7 @@ def load_settings(
     for index, stage in enumerate(stages_of(settings, source)):
         place = f"environment with stages[{index}]" if settings.stages else "environment"
         worlds = worlds_of(stage, source)
-        if len(worlds) * learners_of(worlds[0]) > settings.collection.environments:
+        if len(worlds) * learners_of(worlds[0]) > settings.collection.num_envs:
             raise SettingsError(source, "more than there are arenas to share", "worlds")
         for world in worlds:
             _check_rows(settings, environment, world, source, place)
@@ -225,10 +225,10 @@ def _check_rows(
     settings: TrainSettings, environment: TaskSettings, other: TaskSettings, source: str, place: str
 ) -> None:
     """Raise unless a policy of the environment can learn and play in the other one."""
-    count = settings.collection.environments
+    count = settings.collection.num_envs
     if count % learners_of(other):
         problem = f"must be a multiple of the {learners_of(other)} robots that learn in an arena"
-        raise SettingsError(source, problem, "collection.environments")
+        raise SettingsError(source, problem, "collection.num_envs")
     sizes = [
         make_rows(each, learners_of(each), settings.central).observation_size for each in (environment, other)
     ]
@@ -251,7 +251,7 @@ def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) ->
     if stage.pool.every % stage.rebuild_every:
         problem = f"must be a multiple of rebuild_every ({stage.rebuild_every})"
         raise SettingsError(source, problem, "pool.every")
-    own, n = environment_of(stage, source), stage.collection.environments
+    own, n = environment_of(stage, source), stage.collection.num_envs
     if isinstance(own, SoccerSettings) and own.two_alike:
         counts = opposed(own, stage.pool, n)
         if any(share and not count for share, count in zip(stage.pool.shares, counts, strict=True)):

@@ -13,9 +13,9 @@ from tests.learning.tiny import small_agent
 
 SWITCHES = [
     {},
-    {"twin": True, "actor_every": 2, "target_every": 2, "smoothing": 0.2},
-    {"atoms": 21, "returns": (-5.0, 5.0)},
-    {"atoms": 21, "returns": (-5.0, 5.0), "twin": True, "dqda_limit": 1.0},
+    {"twin_critics": True, "policy_delay": 2, "target_update_interval": 2, "target_policy_noise": 0.2},
+    {"num_atoms": 21, "v_min": -5.0, "v_max": 5.0},
+    {"num_atoms": 21, "v_min": -5.0, "v_max": 5.0, "twin_critics": True, "dqda_clipping": 1.0},
     {"layer_norm": True, "weight_decay": 1e-4},
 ]
 
@@ -48,7 +48,7 @@ def same(one, other):
 def test_targets_follow_in_closed_form(switches):
     agent = small_agent(3, 2, **switches)
     before = weights(agent.target_critic)
-    every = agent.settings.target_every
+    every = agent.settings.target_update_interval
     for i in range(every):
         assert i == 0 or same(before, weights(agent.target_critic))
         agent.update(batch(i), np.random.default_rng(i))
@@ -58,7 +58,7 @@ def test_targets_follow_in_closed_form(switches):
 
 
 def test_the_target_forgets_a_fixed_network_at_the_rate_of_tau():
-    agent = small_agent(3, 2, tau=0.05, actor_rate=1e-12, critic_rate=1e-12)
+    agent = small_agent(3, 2, tau=0.05, actor_learning_rate=1e-12, critic_learning_rate=1e-12)
     with torch.no_grad():
         for weight in agent.target_critic.parameters():
             weight.add_(1.0)
@@ -105,8 +105,8 @@ def test_targets_never_get_a_gradient(switches):
 
 def test_the_update_is_that_of_spinning_up_written_out():
     """The plain agent against the equations in the form anybody would write, with torch's own Adam."""
-    agent = DDPG(AgentSettings(hidden=(16,)), (1.0,) * 3, (True, True), 5)
-    plain = DDPG(AgentSettings(hidden=(16,)), (1.0,) * 3, (True, True), 5)
+    agent = DDPG(AgentSettings(hidden_sizes=(16,)), (1.0,) * 3, (True, True), 5)
+    plain = DDPG(AgentSettings(hidden_sizes=(16,)), (1.0,) * 3, (True, True), 5)
     actor_adam = torch.optim.Adam(plain.actor.parameters(), lr=1e-3)
     critic_adam = torch.optim.Adam(plain.critic.parameters(), lr=1e-3)
     for i in range(5):
@@ -140,7 +140,8 @@ def test_the_update_is_that_of_spinning_up_written_out():
 
 
 def test_smoothing_never_touches_a_masked_action():
-    agent = DDPG(AgentSettings(hidden=(8,), smoothing=1.0, smoothing_limit=2.0), (1.0,) * 3, (True, False), 0)
+    settings = AgentSettings(hidden_sizes=(8,), target_policy_noise=1.0, target_noise_clip=2.0)
+    agent = DDPG(settings, (1.0,) * 3, (True, False), 0)
     action = torch.zeros(1000, 2)
     smoothed = agent._smooth(action, np.random.default_rng(0))
     assert float(smoothed[:, 0].std()) > 0.4
@@ -149,7 +150,7 @@ def test_smoothing_never_touches_a_masked_action():
 
 
 def test_twin_critics_make_the_target_from_the_smaller_value():
-    agent = small_agent(3, 2, twin=True)
+    agent = small_agent(3, 2, twin_critics=True)
     with torch.no_grad():
         for head, bias in zip(agent.target_critic.heads, (5.0, -5.0), strict=True):
             head[-1].weight.zero_()
@@ -161,7 +162,7 @@ def test_twin_critics_make_the_target_from_the_smaller_value():
 
 
 def test_twin_distributions_make_the_target_from_the_one_with_the_smaller_mean():
-    agent = small_agent(3, 2, twin=True, atoms=3, returns=(-1.0, 1.0))
+    agent = small_agent(3, 2, twin_critics=True, num_atoms=3, v_min=-1.0, v_max=1.0)
     with torch.no_grad():
         for head, logits in zip(agent.target_critic.heads, ([0.0, 0.0, 50.0], [0.0, 50.0, 0.0]), strict=True):
             head[-1].weight.zero_()
@@ -174,7 +175,7 @@ def test_twin_distributions_make_the_target_from_the_one_with_the_smaller_mean()
 
 
 def test_the_slope_that_the_actor_follows_is_limited():
-    free, held = small_agent(3, 2), small_agent(3, 2, dqda_limit=1e-3)
+    free, held = small_agent(3, 2), small_agent(3, 2, dqda_clipping=1e-3)
     given = batch()
     for agent in (free, held):
         agent._update_actor(given.observation)
@@ -183,7 +184,7 @@ def test_the_slope_that_the_actor_follows_is_limited():
 
 
 def test_errors_and_gradients_are_returned_for_prioritised_replay():
-    replay = PrioritisedReplay(64, 3, 2, alpha=0.3, beta=1.0, floor=1e-3, bonus=0.0)
+    replay = PrioritisedReplay(64, 3, 2, alpha=0.3, beta=1.0, epsilon=1e-3, bonus=0.0)
     agent = small_agent(3, 2)
     given = batch(replay=replay)
     with torch.no_grad():
@@ -225,6 +226,6 @@ def test_the_actor_scales_raw_observations_itself():
 
 def test_learning_rates_can_fall():
     agent = small_agent(3, 2)
-    agent.set_rates(0.5)
+    agent.set_learning_rates(0.5)
     rates = [group["lr"] for _, each in agent._optimisers() for group in each.adam.param_groups]
     assert rates == [1e-3, 2.5e-3]

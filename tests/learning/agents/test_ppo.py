@@ -11,11 +11,11 @@ from robobt.learning.agents.networks import policy_of
 from robobt.learning.agents.ppo import PPO, Rollout, advantages
 from robobt.learning.agents.settings import PPOSettings
 
-GAMMA, TRACE = 0.9, 0.8
+GAMMA, LAMBDA = 0.9, 0.8
 
 
 def agent(seed: int = 0, **settings) -> PPO:
-    return PPO(PPOSettings(hidden=(16,), **settings), (1.0, 2.0), (True, False), seed)
+    return PPO(PPOSettings(hidden_sizes=(16,), **settings), (1.0, 2.0), (True, False), seed)
 
 
 def random_rollout(ticks: int, n: int, seed: int = 0) -> Rollout:
@@ -30,20 +30,20 @@ def random_rollout(ticks: int, n: int, seed: int = 0) -> Rollout:
 
 def test_advantages_are_the_sum_of_discounted_errors_to_the_episodes_end():
     rollout = random_rollout(12, 5)
-    found = advantages(rollout, GAMMA, TRACE)
+    found = advantages(rollout, GAMMA, LAMBDA)
     for arena in range(5):
         for first in range(12):
             total, weight = 0.0, 1.0
             for t in range(first, 12):
                 bootstrap = 0.0 if rollout.terminated[t, arena] else GAMMA * rollout.next_value[t, arena]
                 total += weight * (rollout.reward[t, arena] + bootstrap - rollout.value[t, arena])
-                weight *= GAMMA * TRACE
+                weight *= GAMMA * LAMBDA
                 if rollout.ended[t, arena]:
                     break
             assert found[first, arena] == pytest.approx(total)
 
 
-def test_with_a_trace_of_one_they_are_the_return_less_the_value():
+def test_with_a_lambda_of_one_they_are_the_return_less_the_value():
     rollout = random_rollout(8, 3)
     rollout.ended[:] = rollout.terminated[:] = False
     rollout.next_value[:-1] = rollout.value[1:]
@@ -53,7 +53,7 @@ def test_with_a_trace_of_one_they_are_the_return_less_the_value():
 
 
 def test_actions_are_weighed_as_a_normal_and_a_coin_are():
-    it = agent(spread=0.7)
+    it = agent(init_std=0.7)
     with torch.no_grad():
         it.actor.body[-1].weight.mul_(100.0)
     seen = np.random.default_rng(1).normal(size=(50, 2))
@@ -70,7 +70,7 @@ def test_actions_are_weighed_as_a_normal_and_a_coin_are():
 
 
 def test_the_drawn_actions_have_the_spread_and_the_odds_that_were_asked_for():
-    it = agent(spread=0.5, threshold_bias=-1.5)
+    it = agent(init_std=0.5, threshold_bias=-1.5)
     action, _, _ = it.act(np.zeros((4000, 2)), np.random.default_rng(3))
     assert action[:, 0].std() == pytest.approx(0.5, rel=0.05)
     assert (action[:, 1] > 0).mean() == pytest.approx(1 / (1 + np.exp(1.5)), abs=0.02)
@@ -78,7 +78,7 @@ def test_the_drawn_actions_have_the_spread_and_the_odds_that_were_asked_for():
 
 def test_a_first_step_follows_the_policy_gradient():
     # Before the first update rho is 1, so that the gradient of (3) is the mean of A grad log pi.
-    it, same = agent(longest_step=100.0, entropy=0.0), agent(longest_step=100.0, entropy=0.0)
+    it, same = agent(max_grad_norm=100.0, ent_coef=0.0), agent(max_grad_norm=100.0, ent_coef=0.0)
     rng = np.random.default_rng(4)
     seen = rng.normal(size=(64, 2))
     action, log_probability, _ = it.act(seen, rng)
@@ -94,7 +94,7 @@ def test_a_first_step_follows_the_policy_gradient():
 
 
 def test_what_has_moved_far_enough_is_not_moved_on():
-    it = agent(entropy=0.0)
+    it = agent(ent_coef=0.0)
     seen, action = torch.zeros(4, 2), torch.tensor([[0.3, -1.0], [-0.3, -1.0]] * 2)
     now, _ = it._weigh(it._decided(seen), action)
     # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
@@ -106,7 +106,7 @@ def test_what_has_moved_far_enough_is_not_moved_on():
 
 def test_it_learns_what_pays_from_rollouts():
     # One decision: drive where the first entry points, kick where the second is above 0.
-    it, rng = agent(rate=5e-3, batch=128, epochs=4), np.random.default_rng(5)
+    it, rng = agent(learning_rate=5e-3, minibatch_size=128, num_epochs=4), np.random.default_rng(5)
     for _ in range(60):
         rollout = Rollout.empty(1, 256, 2, 2)
         rollout.observation[0] = rng.uniform(-1.0, 1.0, (256, 2))
@@ -124,7 +124,9 @@ def test_it_learns_what_pays_from_rollouts():
 def test_a_central_value_knows_what_the_policy_does_not():
     # What pays is told to the value alone.
     it, rng = (
-        PPO(PPOSettings(hidden=(16,), rate=1e-2, batch=64), (1.0,), (True,), 0, (1.0,)),
+        PPO(
+            PPOSettings(hidden_sizes=(16,), learning_rate=1e-2, minibatch_size=64), (1.0,), (True,), 0, (1.0,)
+        ),
         np.random.default_rng(8),
     )
     for _ in range(40):
@@ -153,7 +155,7 @@ def turned(seen: np.ndarray, angle: float, first: tuple[int, ...]) -> np.ndarray
 
 
 def test_in_the_balls_frame_it_does_in_every_heading_what_it_does_in_one():
-    it = PPO(PPOSettings(hidden=(16,)), (1.0, 1.0, 3.0, 2.0, 2.0), (True,) * 3, 0, vectors=(0, 3))
+    it = PPO(PPOSettings(hidden_sizes=(16,)), (1.0, 1.0, 3.0, 2.0, 2.0), (True,) * 3, 0, vectors=(0, 3))
     with torch.no_grad():
         it.actor.body[-1].weight.mul_(300.0)
     seen = np.random.default_rng(1).normal(size=(200, 5))
@@ -167,7 +169,7 @@ def test_in_the_balls_frame_it_does_in_every_heading_what_it_does_in_one():
 
 
 def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
-    it = PPO(PPOSettings(hidden=(16,), spread=0.5), (1.0,) * 4, (True,) * 3, 0, vectors=(0, 2))
+    it = PPO(PPOSettings(hidden_sizes=(16,), init_std=0.5), (1.0,) * 4, (True,) * 3, 0, vectors=(0, 2))
     with torch.no_grad():
         it.actor.body[-1].weight.mul_(300.0)
     seen = np.tile(np.random.default_rng(1).normal(size=(1, 4)), (8000, 1))
@@ -180,7 +182,7 @@ def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
 
 @pytest.mark.parametrize(("share", "horizon"), [(0.0, 10.0), (0.5, 30.0), (1.0, 50.0)])
 def test_it_looks_farther_ahead_the_longer_it_has_learned(monkeypatch, share, horizon):
-    rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, trace=1.0), []
+    rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, gae_lambda=1.0), []
     monkeypatch.setattr(patient, "_fit", lambda _, target: valued.extend(target.tolist()))
     patient.look_ahead(share)
     patient.update(rollout, np.random.default_rng(0), value_alone=True)

@@ -12,7 +12,7 @@ from tests.learning.tiny import learn, small_agent
 pytestmark = pytest.mark.integration
 
 ROWS = 512
-ATOMS = {"atoms": 41, "returns": (-12.0, 12.0)}
+ATOMS = {"num_atoms": 41, "v_min": -12.0, "v_max": 12.0}
 
 
 def value(agent, observation, action):
@@ -47,7 +47,9 @@ def test_the_value_depends_on_the_observation():
 
 
 @pytest.mark.parametrize(
-    "switches", [{}, {"twin": True}, ATOMS, {"layer_norm": True}, {"target_every": 20, "tau": 1.0}], ids=str
+    "switches",
+    [{}, {"twin_critics": True}, ATOMS, {"layer_norm": True}, {"target_update_interval": 20, "tau": 1.0}],
+    ids=str,
 )
 def test_a_reward_that_ends_the_episode_is_worth_itself_and_a_step_before_it_is_discounted_once(switches):
     rng = np.random.default_rng(3)
@@ -65,8 +67,10 @@ def test_a_reward_that_ends_the_episode_is_worth_itself_and_a_step_before_it_is_
     "switches",
     [
         {},
-        pytest.param({"twin": True, "actor_every": 2, "smoothing": 0.1}, marks=pytest.mark.slow),
-        pytest.param({"atoms": 101, "returns": (-3.0, 1.0)}, marks=pytest.mark.slow),
+        pytest.param(
+            {"twin_critics": True, "policy_delay": 2, "target_policy_noise": 0.1}, marks=pytest.mark.slow
+        ),
+        pytest.param({"num_atoms": 101, "v_min": -3.0, "v_max": 1.0}, marks=pytest.mark.slow),
     ],
     ids=str,
 )
@@ -120,7 +124,7 @@ def test_the_actor_of_a_linear_quadratic_problem_costs_what_riccati_says():
     state, action = rng.uniform(-0.5, 0.5, (rows, 2)), rng.uniform(-1, 1, (rows, 1))
     next_observation = state @ a.T + action @ b.T
     reward = -np.square(state).sum(1) - 0.1 * np.square(action)[:, 0]
-    agent = small_agent(2, 1, actor_rate=3e-3, critic_rate=3e-3)
+    agent = small_agent(2, 1, actor_learning_rate=3e-3, critic_learning_rate=3e-3)
     learn(
         agent,
         made(state, action, reward, np.full(rows, gamma), next_observation),

@@ -26,7 +26,7 @@ def held(replay):
 
 def prioritised(capacity=100, **changes):
     return PrioritisedReplay(
-        capacity, 2, 1, **({"alpha": 1.0, "beta": 1.0, "floor": 1e-6, "bonus": 0.0} | changes)
+        capacity, 2, 1, **({"alpha": 1.0, "beta": 1.0, "epsilon": 1e-6, "bonus": 0.0} | changes)
     )
 
 

@@ -182,11 +182,11 @@ def test_an_action_is_turned_into_the_command_it_stands_for_and_back():
 def test_training_begins_with_demonstrations(tmp_path, preset):
     changes = {
         "steps": 128,
-        "agent.hidden": [16],
-        "replay.batch": 16,
+        "agent.hidden_sizes": [16],
+        "replay.batch_size": 16,
         "replay.demonstrations.episodes": 5,
-        "replay.demonstrations.updates": 20,
-        "collection.update_after": 64,
+        "replay.demonstrations.pretrain_gradient_steps": 20,
+        "collection.learning_starts": 64,
         "evaluation.every": 128,
         "evaluation.starts": 4,
         "evaluation.held_out": 4,

@@ -26,7 +26,7 @@ TINY = {
     "seed": 3,
     "tensorboard": False,
     "collection.random_steps": 128,
-    "agent.hidden": [8],
+    "agent.hidden_sizes": [8],
     "evaluation.every": 256,
     "evaluation.starts": 4,
     "evaluation.held_out": 20,
@@ -61,7 +61,7 @@ def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     assert card.code_version == __version__
     assert card.code_commit == source_commit()
     assert card.created_by.startswith(f"robobt export {__version__}")
-    assert card.training["settings"]["agent"]["hidden"] == [8]
+    assert card.training["settings"]["agent"]["hidden_sizes"] == [8]
     assert card.training["figures"]["steps"] == result.figures["steps"]
     success, figures = card.held_out["success"], result.figures["held_out"]
     assert (success.value, success.low, success.high, success.n) == (

@@ -15,10 +15,10 @@ from robobt.learning.training.settings import SettingsError, load_settings
 
 SHORT = {
     "steps": 256,
-    "agent.hidden": [8],
-    "replay.batch": 16,
+    "agent.hidden_sizes": [8],
+    "replay.batch_size": 16,
     "collection.random_steps": 64,
-    "collection.update_after": 64,
+    "collection.learning_starts": 64,
     "evaluation.every": 128,
     "evaluation.starts": 4,
     "evaluation.held_out": 4,

@@ -28,7 +28,7 @@ from tests.learning.training.test_several_robots import TINY
 SELF_PLAY = {
     **TINY,
     "ppo.critic": "central",
-    "ppo.hidden": [8],
+    "ppo.hidden_sizes": [8],
     "pool.every": 240,
     "pool.size": 2,
     "evaluation.held_out": 1,
@@ -139,14 +139,14 @@ def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_
         first, second = load_actor(path).state_dict(), load_actor(same).state_dict()
         assert all(torch.equal(first[name], second[name]) for name in first)
     # A run that begins with its policy has that, as long as the value alone is learned.
-    few = {**SELF_PLAY, "steps": 120, "init": str(tmp_path / "whole"), "ppo.critic_first": 10_000}
+    few = {**SELF_PLAY, "steps": 120, "init": str(tmp_path / "whole"), "ppo.critic_warmup_steps": 10_000}
     begun = train(load_settings("duel", "self_play", few), tmp_path / "begun").actor.state_dict()
     assert all(torch.equal(begun[name], weight) for name, weight in whole.actor.state_dict().items())
     nowhere = load_settings("duel", "self_play", {**few, "init": str(tmp_path)})
     with pytest.raises(TrainError, match=r"init: .* is not the folder of a run that has ended"):
         train(nowhere, tmp_path / "nowhere")
     with pytest.raises(TrainError, match=r"init: the policy of .* sees 23 entries"):
-        train(load_settings("duel", "self_play", {**few, "ppo.hidden": [7]}), tmp_path / "other")
+        train(load_settings("duel", "self_play", {**few, "ppo.hidden_sizes": [7]}), tmp_path / "other")
     # One who sees more robots does at first as if it saw but those.
     changes = {**few, "ppo.critic": "own", "environment.opponents": 3}
     more = train(load_settings("duel", "self_play", changes), tmp_path / "more").actor

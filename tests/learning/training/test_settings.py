@@ -3,9 +3,16 @@ from __future__ import annotations
 import pytest
 
 from robobt.config.yaml import parse_marked, write_yaml
-from robobt.learning.agents.settings import AgentSettings
+from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.training.compare import variants
-from robobt.learning.training.preset_files import presets
+from robobt.learning.training.preset_files import assign, presets
+from robobt.learning.training.run_folder import SETTINGS, RunFolderError, read_settings
+from robobt.learning.training.setting_groups import (
+    CollectionSettings,
+    DemonstrationSettings,
+    PrioritySettings,
+    ReplaySettings,
+)
 from robobt.learning.training.settings import (
     ENVIRONMENTS,
     SettingsError,
@@ -43,23 +50,23 @@ def test_the_presets_of_the_papers_tasks():
 def test_the_papers_preset_is_spinning_up_to_the_letter(task):
     settings = load_settings(task, "paper")
     agent, collection = settings.agent, settings.collection
-    assert agent.hidden == (256, 256)
+    assert agent.hidden_sizes == (256, 256)
     assert (agent.gamma, agent.tau) == (0.99, pytest.approx(1 - 0.995))
-    assert (agent.actor_rate, agent.critic_rate, settings.replay.batch) == (1e-3, 1e-3, 100)
-    assert settings.replay.capacity == 1_000_000
-    assert (collection.environments, collection.random_steps, collection.update_after) == (1, 10_000, 1_000)
-    assert (collection.update_every, collection.updates, collection.noise) == (50, 50, 0.1)
+    assert (agent.actor_learning_rate, agent.critic_learning_rate) == (1e-3, 1e-3)
+    assert (settings.replay.batch_size, settings.replay.buffer_size) == (100, 1_000_000)
+    assert (collection.num_envs, collection.random_steps, collection.learning_starts) == (1, 10_000, 1_000)
+    assert (collection.train_freq, collection.gradient_steps, collection.exploration_noise) == (50, 50, 0.1)
     switched_off = AgentSettings().model_dump() | {"scale_observations": False}
     assert agent.model_dump() == switched_off
 
 
 def test_later_papers_switch_on_what_they_are_known_for():
     td3 = load_settings("go_to_ball", "td3").agent
-    assert td3.twin
-    assert td3.actor_every == 2
-    assert td3.smoothing > 0
+    assert td3.twin_critics
+    assert td3.policy_delay == 2
+    assert td3.target_policy_noise > 0
     d4pg = load_settings("go_to_ball", "d4pg")
-    assert d4pg.agent.atoms > 0
+    assert d4pg.agent.num_atoms > 0
     assert d4pg.agent.n_step == 5
     assert d4pg.replay.priority.enabled
     fd = load_settings("shoot", "ddpgfd")
@@ -89,7 +96,7 @@ def test_a_preset_may_be_a_file_that_extends_another(tmp_path):
     file.write_text("extends: fast\nagent: {n_step: 7}\n")
     settings = load_settings("go_to_ball", str(file), {"agent.tau": 0.5, "seed": 3})
     assert (settings.agent.n_step, settings.agent.tau, settings.seed) == (7, 0.5, 3)
-    assert settings.agent.hidden == load_settings("go_to_ball", "fast").agent.hidden
+    assert settings.agent.hidden_sizes == load_settings("go_to_ball", "fast").agent.hidden_sizes
 
 
 def test_settings_survive_being_written_and_read():
@@ -104,10 +111,10 @@ def test_settings_survive_being_written_and_read():
     [
         ({"agent.gamma": 1.0}, r"fast\.yaml, with agent\.gamma changed: agent\.gamma: .*less than 1"),
         ({"agent.tauu": 1.0}, r"agent\.tauu: there is no such field; did you mean tau\?"),
-        ({"agent.atoms": 1}, r"agent: .*atoms must be 0 or at least 2"),
+        ({"agent.num_atoms": 1}, r"agent: .*num_atoms must be 0 or at least 2"),
         (
             {"evaluation.every": 100},
-            r"evaluation\.every must be a multiple of collection\.environments \(64\)",
+            r"evaluation\.every must be a multiple of collection\.num_envs \(64\)",
         ),
         (
             {"environment.simulator": "gazebo"},
@@ -141,6 +148,49 @@ def test_a_wrong_file_is_one_line_too(tmp_path, content, said):
     (tmp_path / "mine.yaml").write_text(content)
     with pytest.raises(SettingsError, match=said):
         load_settings("go_to_ball", str(tmp_path / "mine.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"ppo.trace": 0.9}, r"ppo\.trace: has been renamed: use gae_lambda$"),
+        ({"agent.returns": [-1.0, 1.0]}, r"agent\.returns: has been renamed: use v_min and v_max$"),
+        ({"replay.priority.floor": 0.1}, r"replay\.priority\.floor: has been renamed: use epsilon$"),
+        ({"collection.environments": 8}, r"collection\.environments: has been renamed: use num_envs$"),
+    ],
+)
+def test_an_old_name_of_a_setting_is_an_error_that_says_the_new_one(tmp_path, changes, said):
+    with pytest.raises(SettingsError, match=said):
+        load_settings("go_to_ball", changes=changes)
+    data = {"extends": "fast"}
+    for name, value in changes.items():
+        assign(data, name.split("."), value, name)
+    (tmp_path / "mine.yaml").write_text(write_yaml(data))
+    with pytest.raises(SettingsError, match=rf"mine\.yaml: {said}"):
+        load_settings("go_to_ball", str(tmp_path / "mine.yaml"))
+    data = load_settings("go_to_ball").model_dump(mode="json")
+    for name, value in changes.items():
+        assign(data, name.split("."), value, name)
+    (tmp_path / SETTINGS).write_text(write_yaml(data))
+    with pytest.raises(RunFolderError, match=rf"{SETTINGS}: {said}"):
+        read_settings(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        AgentSettings,
+        PPOSettings,
+        ReplaySettings,
+        PrioritySettings,
+        DemonstrationSettings,
+        CollectionSettings,
+    ],
+)
+def test_a_renamed_setting_is_there_under_its_new_name_only(group):
+    for old, new in group.renamed.items():
+        assert old not in group.model_fields
+        assert set(new.split(" and ")) <= set(group.model_fields)
 
 
 def test_what_does_not_exist_is_told_with_what_does():

@@ -24,10 +24,10 @@ from tests.skills.fixed_world import Alone, frame, robot
 
 TINY = {
     "steps": 480,
-    "collection.environments": 12,
-    "ppo.rollout": 10,
-    "ppo.hidden": [8],
-    "ppo.batch": 60,
+    "collection.num_envs": 12,
+    "ppo.num_steps": 10,
+    "ppo.hidden_sizes": [8],
+    "ppo.minibatch_size": 60,
     "evaluation.every": 240,
     "evaluation.starts": 4,
     "evaluation.held_out": 4,
@@ -97,8 +97,8 @@ def test_a_problem_has_a_row_for_each_learner() -> None:
     made = problem.make(6)
     assert isinstance(made, PerRobot)
     assert (made.n, made.task.n, len(problem.scale)) == (6, 2, made.observation_size)
-    with pytest.raises(SettingsError, match=r"collection\.environments: must be a multiple of the 3 robots"):
-        load_settings("attack3v2", "fast", {"collection.environments": 128})
+    with pytest.raises(SettingsError, match=r"collection\.num_envs: must be a multiple of the 3 robots"):
+        load_settings("attack3v2", "fast", {"collection.num_envs": 128})
 
 
 def test_every_world_has_an_arena() -> None:

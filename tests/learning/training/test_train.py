@@ -20,23 +20,30 @@ from tests.learning.tiny import SLIDE, Slide, slide_settings
 pytestmark = pytest.mark.integration
 
 EVERYTHING = {
-    "agent__twin": True,
-    "agent__atoms": 21,
-    "agent__returns": (-3.0, 1.5),
+    "agent__twin_critics": True,
+    "agent__num_atoms": 21,
+    "agent__v_min": -3.0,
+    "agent__v_max": 1.5,
     "agent__one_step_weight": 0.5,
-    "agent__smoothing": 0.1,
-    "agent__actor_every": 2,
+    "agent__target_policy_noise": 0.1,
+    "agent__policy_delay": 2,
     "agent__layer_norm": True,
-    "agent__final_rate": 0.1,
-    "agent__dqda_limit": 1.0,
-    "collection__last_noise": 0.5,
+    "agent__final_learning_rate_fraction": 0.1,
+    "agent__dqda_clipping": 1.0,
+    "collection__exploration_noise_last_env": 0.5,
     "evaluation__target_actor": True,
     "replay__priority": {"enabled": True},
 }
 
 PPO = {
     "learner": "ppo",
-    "ppo": {"hidden": (16,), "rollout": 10, "batch": 40, "rate": 5e-3, "gamma": 0.9},
+    "ppo": {
+        "hidden_sizes": (16,),
+        "num_steps": 10,
+        "minibatch_size": 40,
+        "learning_rate": 5e-3,
+        "gamma": 0.9,
+    },
     "rebuild_every": 320,
 }
 
@@ -71,7 +78,7 @@ def without_clocks(validation):
 
 
 def test_the_task_is_learned(tmp_path):
-    result = train(slide_settings(collection__updates=4), tmp_path / "run", problem=SLIDE)
+    result = train(slide_settings(collection__gradient_steps=4), tmp_path / "run", problem=SLIDE)
     held = result.figures["held_out"]
     assert held["success"] >= 0.9
     assert held["low"] < held["success"] <= held["high"]
@@ -264,7 +271,7 @@ def test_the_best_actor_is_chosen_by_success_and_time_and_never_by_the_return(tm
 
 
 def test_training_stops_once_the_bar_is_met(tmp_path):
-    early = slide_settings(collection__updates=4, evaluation__stop_success=0.9, evaluation__stop_time=9.0)
+    early = slide_settings(collection__gradient_steps=4, evaluation__stop_success=0.9, evaluation__stop_time=9.0)
     result = train(early, tmp_path, problem=SLIDE)
     assert result.figures["stopped_early"]
     assert result.figures["steps"] < 1920
@@ -301,12 +308,12 @@ def test_what_the_folder_of_no_run_says(tmp_path):
 def test_a_short_run_of_a_real_task(tmp_path, task):
     changes = {
         "steps": 1280,
-        "agent.hidden": [16],
+        "agent.hidden_sizes": [16],
         # The first steps are in the replay at once, so that updates begin when they may.
         "agent.n_step": 1,
-        "replay.batch": 32,
+        "replay.batch_size": 32,
         "collection.random_steps": 640,
-        "collection.update_after": 128,
+        "collection.learning_starts": 128,
         "evaluation.every": 640,
         "evaluation.starts": 10,
         "evaluation.held_out": 10,
@@ -325,10 +332,10 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
 def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):
     changes = {
         "steps": 512,
-        "ppo.hidden": [8],
-        "ppo.rollout": 8,
-        "ppo.batch": 32,
-        "collection.environments": 8,
+        "ppo.hidden_sizes": [8],
+        "ppo.num_steps": 8,
+        "ppo.minibatch_size": 32,
+        "collection.num_envs": 8,
         "evaluation.every": 256,
         "evaluation.starts": 8,
         "evaluation.held_out": 8,
