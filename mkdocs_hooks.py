@@ -96,6 +96,7 @@ def file_formats() -> str:
     from robobt.match.scenario.scenario import Scenario
     from robobt.models.card import ModelCard
     from robobt.sim import SimSettings
+    from robobt.skills.tactics.settings import TacticsSettings
     from robobt.tournament.entrants import EntrantFile
 
     roots = {
@@ -114,6 +115,7 @@ def file_formats() -> str:
         "Tasks of several robots": SoccerSettings,
         "Reward terms of several robots": SoccerReward,
         "Model cards": ModelCard,
+        "Tactics of a team": TacticsSettings,
     }
     told: set[str] = set()
     parts = ["# Files\n\nThe fields of the files that one writes, with their units, as they are checked.\n"]

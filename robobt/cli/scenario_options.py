@@ -93,7 +93,7 @@ def parse_play(text: str, option: str) -> tuple[str, dict[str, object]]:
     own = re.match(r"([^=]+?\.py:[^:=]+)(?::(.*))?$", text)
     play, given = (own[1], own[2] or "") if own else text.partition(":")[::2]
     # A comma inside a value is not followed by NAME=.
-    parts = re.split(r",(?=\s*\w+=)", given) if given else []
+    parts = re.split(r",(?=\s*[\w.]+=)", given) if given else []
     params = parse_assignments([part.strip() for part in parts], option)
     if len(params) < len(parts):
         raise typer.BadParameter(f"a parameter is given twice in {text!r}", param_hint=option)

@@ -31,6 +31,17 @@ class Settings(BaseModel):
     renamed: ClassVar[Mapping[str, str]] = {}
 
 
+def nested(current: object, path: str, value: object) -> dict[str, object]:
+    """Return plain data of ``current`` with the value at the path inside it, whose names dots separate."""
+    data: dict[str, object] = {}
+    if isinstance(current, BaseModel):
+        data = current.model_dump(exclude_unset=True)
+    elif isinstance(current, Mapping):
+        data = dict(current)
+    key, _, inner = path.partition(".")
+    return {**data, key: nested(data.get(key), inner, value) if inner else value}
+
+
 def first_problem(error: ValidationError, model: type[BaseModel], data: object = None) -> tuple[str, str]:
     """Return the field and the message of the first problem in ``error``, with the number of further ones.
 

@@ -34,6 +34,7 @@ from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
 from robobt.skills.tactics.choose_kick import ChooseKick
 from robobt.skills.tactics.receive_pass import ReceivePass
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.skills.tactics.take_place import TakePlace
 from robobt.skills.tactics.task_switch import TaskSwitch
 from robobt.skills.team.best_field_position import BestFieldPosition
@@ -57,6 +58,7 @@ def team_player(
     go: str = "",
     open_play: str = "",
     without: Omitted = "nothing",
+    tactics: TacticsSettings = DEFAULT_TACTICS,
 ) -> Behaviour:
     """Do what the referee wants, else the task that the team agreed on.
 
@@ -77,6 +79,7 @@ def team_player(
             whatever the robot's task, and without ``score`` and ``go``; empty for the written tasks.
         without: a part of the game to do without, the same for every robot of the team, so that a tournament
             shows what it is worth.
+        tactics: what the team weighs, such as ``{switch_gain: 0.5}``; what one robot is given holds for all.
     """
 
     def choose() -> ChooseKick:
@@ -105,6 +108,7 @@ def team_player(
         },
         otherwise=play_on(open_play) if open_play else TakePlace(policy=go),
         without=without,
+        tactics=tactics,
     )
     return StayOut("team player", player if without == "avoid_crash" else AvoidCrash("no crash", player))
 

@@ -10,6 +10,9 @@ import numpy as np
 
 from robobt.motion.ball_watch import BallWatch
 from robobt.skills.aims import Pass
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings, applied
+from robobt.world.ball_model import BallModel
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.state import Frame
 
@@ -47,6 +50,8 @@ class Plan:
         frame: the frame it was made for.
         players: numbers of the field players that take part.
         without: what the team does without.
+        tactics: what it weighs, and how.
+        numbers: of :func:`~robobt.skills.tactics.settings.applied`, for the present field and ball.
         tasks: of every player.
         places: where each of them is to stand that has no other aim [m].
         marks: which opponent each marker marks.
@@ -72,6 +77,9 @@ class Plan:
     frame: Frame | None = None
     players: set[int] = field(default_factory=set)
     without: Omitted = "nothing"
+    tactics: TacticsSettings = DEFAULT_TACTICS
+    numbers: FloatArray = field(default_factory=lambda: np.empty(0))
+    _applied: tuple[object, ...] = (None, None, None)
     tasks: dict[int, Task] = field(default_factory=dict)
     places: dict[int, Point] = field(default_factory=dict)
     marks: dict[int, int] = field(default_factory=dict)
@@ -93,3 +101,16 @@ class Plan:
     short: Point | None = None
     watch: BallWatch = field(default_factory=BallWatch)
     rolling: float = 0.0
+
+    def change_tactics(self, given: TacticsSettings) -> None:
+        """Weigh by the settings ``given`` from now on; those that are not set stay as they are."""
+        if given.model_fields_set:
+            changed = {name: getattr(given, name) for name in given.model_fields_set}
+            self.tactics = self.tactics.model_copy(update=changed)
+
+    def apply_tactics(self, geometry: FieldGeometry, model: BallModel) -> None:
+        """Bring ``numbers`` up to the settings, on this field and with this ball."""
+        to = (self.tactics, geometry, model)
+        # By identity: to compare all settings in every frame takes longer than what follows from them.
+        if any(a is not b for a, b in zip(to, self._applied, strict=True)):
+            self.numbers, self._applied = applied(*to), to

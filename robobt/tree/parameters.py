@@ -9,13 +9,14 @@ import typing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
 from robobt.config.errors import RobobtError, short_repr, unknown_name
+from robobt.config.validation import first_problem, nested
 from robobt.tree.signatures import signature_of
 
 
@@ -69,6 +70,12 @@ class Parameter:
         try:
             return adapter.validate_json(text, strict=True)
         except ValidationError as error:
+            groups = [
+                one for one in members_of(self.hint) if isinstance(one, type) and issubclass(one, BaseModel)
+            ]
+            if len(groups) == 1 and isinstance(value, Mapping):
+                field, said = first_problem(error, groups[0], value)
+                raise ParameterError(f"{self.name}.{field}", said) from error
             problem = error.errors(include_url=False)[0]
             place = ".".join([self.name, *[str(part) for part in problem["loc"]]])
             raise ParameterError(place, f"{problem['msg']}, not {short_repr(problem['input'])}") from error
@@ -115,10 +122,38 @@ def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
 def check_parameters(
     what: str, builder: Callable[..., object], given: Mapping[str, object]
 ) -> dict[str, Any]:
-    """Convert plain data by name to the types of a signature; ``what`` names its owner in messages."""
+    """Convert plain data by name to the types of a signature; ``what`` names its owner in messages.
+
+    A name with dots is that of a value inside a parameter, as ``tactics.switch_gain``.
+    """
     known = {parameter.name: parameter for parameter in parameters_of(builder)}
-    check_names(what, known, given)
-    return {name: known[name].convert(value) for name, value in given.items()}
+    whole: dict[str, object] = {}
+    for name, value in given.items():
+        key, _, inner = name.partition(".")
+        whole[key] = nested(whole.get(key), inner, value) if inner else value
+    check_names(what, known, whole)
+    return {name: known[name].convert(value) for name, value in whole.items()}
+
+
+def parameter_at(what: str, builder: Callable[..., object], name: str) -> Parameter:
+    """Return the parameter with that name, or the field of a group of settings among the parameters.
+
+    Raises:
+        ParameterError: there is none; ``what`` names the owner in the message.
+    """
+    key, *inner = name.split(".")
+    known = {parameter.name: parameter for parameter in parameters_of(builder)}
+    if key not in known:
+        check_names(what, known, {key: None})
+    found = known[key]
+    for part in inner:
+        fields = getattr(found.hint, "model_fields", {})
+        if part not in fields:
+            there = unknown_name(part, fields, "it has") if fields else "it is no group of settings"
+            raise ParameterError(name, f"{found.name} has no such field; {there}")
+        hint, metadata = fields[part].annotation, fields[part].metadata
+        found = Parameter(f"{found.name}.{part}", Annotated[hint, *metadata] if metadata else hint)
+    return found
 
 
 def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, object]) -> None:
@@ -152,11 +187,15 @@ def say_hint(hint: object) -> str:
 
 
 def _say_default(default: object) -> str:
+    if isinstance(default, BaseModel):
+        return f"{default.model_dump(mode='json', exclude_defaults=True)}"
     return "null" if default is None else repr(str(default)) if isinstance(default, str) else f"{default}"
 
 
 def members_of(hint: object) -> set[object]:
     """Return the members of a union type, or the type itself."""
+    if typing.get_origin(hint) is Annotated:
+        hint = typing.get_args(hint)[0]
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         return {member for part in typing.get_args(hint) for member in members_of(part)}
     try:

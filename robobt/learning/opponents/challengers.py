@@ -35,7 +35,7 @@ from robobt.motion.scene import (
 from robobt.motion.speeds import BRAKING, FORWARD, TOP, numbers
 from robobt.motion.way import travel_numbers
 from robobt.skills.defence.wall import GAP, wall_place
-from robobt.skills.tactics.agree import FRESH_FOR, FRESH_GAIN, HELD, SWITCH_GAIN
+from robobt.skills.tactics.settings import DEFAULT_TACTICS
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled
 from robobt.world.field import FieldGeometry
@@ -54,6 +54,8 @@ defence area. Nobody marks, supports, passes or shoots. The play's own speed is 
 """
 
 _ATTACKER, _SINCE = range(2)
+SWITCH_GAIN, FRESH_GAIN = DEFAULT_TACTICS.switch_gain, DEFAULT_TACTICS.fresh_gain
+FRESH_FOR, HELD = DEFAULT_TACTICS.fresh_for, DEFAULT_TACTICS.held_gain
 _OWN_REACH, _REACH, _BEHIND_BALL, _REST = 0.12, 0.06, 0.3, 0.5
 """So far round its own area and the others' nobody goes for the ball [m]; by so much at most a robot beyond
 a ball counts as later [s], if that is slower than this [m/s]."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from robobt.config.errors import unknown_name
-from robobt.config.validation import first_problem
+from robobt.config.validation import first_problem, nested
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.game import Team
@@ -55,8 +55,9 @@ def _with_robot(scenario: Scenario, robot: str, name: str, value: object) -> Sce
         raise scenario.error("takes a field or a parameter of the robot, as in 'blue 0.play'", robot)
     key, _, inner = name.partition(".")
     if inner:
-        setups = {str(identity): setup for identity, setup in scenario.robots}
-        value = _nested(getattr(setups.get(robot), key, None), inner, value)
+        setup = next((setup for identity, setup in scenario.robots if str(identity) == robot), None)
+        params = {} if setup is None else setup.params
+        value = nested(getattr(setup, key, params.get(key)), inner, value)
     return scenario.with_robot(robot, **{key: _frozen(value) if key in RobotSetup.model_fields else value})
 
 
@@ -68,7 +69,7 @@ def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:
         problem = f"there is no such field; {unknown_name(key, [*fields, *robots])}"
         raise scenario.error(problem, name)
     data = {field: getattr(scenario, field) for field in scenario.model_fields_set}
-    data[key] = _frozen(_nested(data.get(key), inner, value) if inner else value)
+    data[key] = _frozen(nested(data.get(key), inner, value) if inner else value)
     try:
         validated = Scenario.model_validate(data)
     except ValidationError as error:
@@ -82,14 +83,3 @@ def _frozen(value: object) -> object:
     if isinstance(value, Mapping):
         return {name: _frozen(inner) for name, inner in value.items()}
     return tuple([_frozen(item) for item in value]) if isinstance(value, list | tuple) else value
-
-
-def _nested(current: object, path: str, value: object) -> dict[str, object]:
-    """Return plain data of ``current`` with the value at the path inside it."""
-    data: dict[str, object] = {}
-    if isinstance(current, BaseModel):
-        data = current.model_dump(exclude_unset=True)
-    elif isinstance(current, Mapping):
-        data = dict(current)
-    key, _, inner = path.partition(".")
-    return {**data, key: _nested(data.get(key), inner, value) if inner else value}

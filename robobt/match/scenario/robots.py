@@ -135,7 +135,7 @@ class RobotSetup(Part):
             known = {parameter.name for parameter in parameters_of(find_play(play))}
         except TreeFileError:
             return self.params
-        return {name: value for name, value in self.params.items() if name in known}
+        return {name: value for name, value in self.params.items() if name.partition(".")[0] in known}
 
     def limits_over(self, base: RobotLimits) -> RobotLimits:
         """Return the robot's limits, with those of ``base`` where the scenario gives none."""

@@ -22,53 +22,7 @@ from robobt.world.geometry import Point, distance
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
 from robobt.world.state import Frame, RobotState
 
-SWITCH_GAIN = 0.3
-"""Another robot goes for the ball when it can have it so much sooner [s]."""
-
-FRESH_FOR, FRESH_GAIN = 1.0, 1.3
-"""For so long after it has begun the gain has to be larger [s, s]."""
-
-SHOT_FROM = 4.5
-"""A ball that goes faster towards the opponents' goal, and is no pass, was shot at it [m/s]."""
-
-RESTART_GAIN = 1.5
-"""The same before a restart, where there is no hurry [s]."""
-
-HELD = 0.3
-"""How much sooner a robot counts that has the ball [s]."""
-
-MEANT = 0.4
-"""How much sooner a robot counts that a pass is meant for [s]."""
-
-MEANT_FOR = 1.0
-"""A robot that a pass was meant for waits for it so long [s]."""
-
-KEEP_GAIN = 0.8
-"""How much sooner a robot counts at the place of the task that it has [s]."""
-
-OURS_AFTER = 0.5
-"""For how long the ball has to look like the other team's before it counts as theirs, or as ours [s]."""
-
-TURNS_AFTER = 1.2
-"""For how long it counts as theirs or ours at least [s]."""
-
-QUICKEST = 3.0
-"""Opponents are taken to use no more of their speed and acceleration than this [m/s, m/s^2].
-
-With all that grSim's robots have (5 and 4.15), 85 of 100 looks found no pass worth trying, though four of
-five passes that were played arrived.
-"""
-
-AHEAD_FROM = 0.6
-"""The ball has to be so far beyond the half-way line to count as in the other half [m]."""
-
-_PASS_LASTS = 3.0
-_INTENT_LASTS = 1.0
-_REACH = 0.06
-_OWN_REACH = 0.12
-_BEHIND_BALL = 0.3
-_SAME = 0.4
-_ROLLS, _RASTER = 0.5, 0.05
+_RASTER = 0.05
 
 
 def agree(frame: Frame, team: TeamStore) -> Plan:
@@ -87,7 +41,7 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
     team.meeting = _meeting(frame, team, plan)
     if team.attacker != before:
         plan.attacker_since = frame.time
-    if team.attacker != before or frame.time - plan.next_pass_time > _INTENT_LASTS:
+    if team.attacker != before or frame.time - plan.next_pass_time > plan.tactics.intent_lasts:
         plan.next_pass = None
     _share_out(frame, team, plan, players)
     return plan
@@ -95,7 +49,7 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
 
 def pass_under_way(frame: Frame, team: TeamStore) -> bool:
     """Return whether an own pass still rolls towards its receiver."""
-    if team.receiver is None or not 0.0 <= frame.time - team.pass_time <= _PASS_LASTS:
+    if team.receiver is None or not 0.0 <= frame.time - team.pass_time <= team.plan.tactics.pass_lasts:
         return False
     if frame.time - team.pass_time < 0.2:
         return True
@@ -104,10 +58,11 @@ def pass_under_way(frame: Frame, team: TeamStore) -> bool:
 
 def _look(frame: Frame, plan: Plan) -> None:
     ball, field = frame.ball, frame.field
+    plan.apply_tactics(field, frame.ball_model)
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
     plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
-    theirs[:, TOP:BRAKING] = np.minimum(theirs[:, TOP:BRAKING], QUICKEST)
+    theirs[:, TOP:BRAKING] = np.minimum(theirs[:, TOP:BRAKING], plan.tactics.quickest)
     plan.their_movers = theirs
     state = np.array((ball.x, ball.y, ball.vx, ball.vy))
     slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
@@ -125,29 +80,33 @@ def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
     elif pass_under_way(frame, team):
         ours = True
     else:
+        margin = plan.tactics.ours_margin
         own = min((plan.own_times[n] for n in plan.players if n in plan.own_times), default=inf)
-        ours = own < min(plan.their_times.values(), default=inf) + (0.1 if plan.ours else -0.1)
+        ours = own < min(plan.their_times.values(), default=inf) + (margin if plan.ours else -margin)
     if not frame.game.in_play and frame.game.next_team is not None:
         ours = frame.game.next_team is frame.team
     if frame.game.restart is not None:
         ours = frame.game.restart_team is frame.team
     if ours == plan.ours:
         plan.ours_since = frame.time
-    elif frame.time - plan.ours_since >= OURS_AFTER and frame.time - plan.turned >= TURNS_AFTER:
+    elif (
+        frame.time - plan.ours_since >= plan.tactics.ours_after
+        and frame.time - plan.turned >= plan.tactics.turns_after
+    ):
         plan.ours, plan.ours_since, plan.turned = ours, frame.time, frame.time
 
 
 def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> int | None:
-    ball, game, field = frame.ball, frame.game, frame.field
+    ball, game, field, tactics = frame.ball, frame.game, frame.field, plan.tactics
     if game.penalty is frame.team and game.may_touch and team.attacker in plan.own_times:
         return team.attacker
     placing = game.restart is Restart.BALL_PLACEMENT
     if not placing and (
-        in_own_defense_area(field, ball.x, ball.y, _OWN_REACH)
-        or in_their_defense_area(field, ball.x, ball.y, _REACH)
+        in_own_defense_area(field, ball.x, ball.y, tactics.own_reach)
+        or in_their_defense_area(field, ball.x, ball.y, tactics.their_reach)
     ):
         return None
-    shot = ball.vx > SHOT_FROM and not pass_under_way(frame, team)
+    shot = ball.vx > tactics.shot_from and not pass_under_way(frame, team)
     if shot and game.in_play and team.attacker in plan.own_times and team.attacker != team.kicker:
         # Who gets it depends on what stops it.
         return team.attacker
@@ -162,24 +121,24 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotStat
         else:
             time = plan.own_times[robot.id]
             if has_ball(robot, ball):
-                time = -HELD
-            elif ball.speed < 0.5:
-                time += min(_BEHIND_BALL, max(0.0, robot.x - ball.x))
+                time = -tactics.held_gain
+            elif ball.speed < tactics.behind_below:
+                time += min(tactics.behind_ball, max(0.0, robot.x - ball.x))
             if robot.id == meant:
-                time -= MEANT
+                time -= tactics.meant_gain
         if robot.id == team.attacker:
             present = time
         if time < least:
             best, least = robot.id, time
-    gain = SWITCH_GAIN if frame.time - plan.attacker_since > FRESH_FOR else FRESH_GAIN
+    gain = tactics.switch_gain if frame.time - plan.attacker_since > tactics.fresh_for else tactics.fresh_gain
     if game.restart is not None:
-        gain = RESTART_GAIN
+        gain = tactics.restart_gain
     return team.attacker if present < least + gain else best
 
 
 def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
     """Return where the attacker meets the ball, to within a few centimetres so that it changes seldom."""
-    if frame.ball.speed < _ROLLS or not frame.game.in_play:
+    if frame.ball.speed < plan.tactics.meeting_from or not frame.game.in_play:
         return None
     for row, robot in enumerate(frame.own):
         if robot.id == team.attacker:
@@ -190,7 +149,8 @@ def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
 
 def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:
     """Give everybody but the attacker a task and a place."""
-    if abs(frame.ball.x) > AHEAD_FROM:
+    tactics = plan.tactics
+    if abs(frame.ball.x) > tactics.ahead_from:
         plan.ahead = frame.ball.x > 0.0
     team.threats = []
     tasks: dict[int, Task] = {}
@@ -201,22 +161,30 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
         plan.meant[intended.receiver] = frame.time, intended.target
     for number, (time, target) in plan.meant.items():
         # Whoever was meant a moment ago stays, for it may be meant again.
-        if number in plan.players and number != team.attacker and 0.0 <= frame.time - time < MEANT_FOR:
+        if (
+            number in plan.players
+            and number != team.attacker
+            and 0.0 <= frame.time - time < tactics.meant_for
+        ):
             tasks[number] = Task.RECEIVE
             plan.places[number] = target
     free = [robot for robot in players if robot.id not in tasks]
     jobs: list[tuple[Task, Point, int | None]] = []
     if free:
         walls = 0 if plan.without == "wall" else wall_size(plan, len(players), len(free))
-        jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls))]
-        plan.short = None if plan.without == "short_place" else short_place(frame, plan.short)
-        if plan.short is not None and len(free) > len(jobs) and not _near(intended, plan.short):
+        jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))]
+        plan.short = None if plan.without == "short_place" else short_place(frame, plan.short, tactics)
+        if (
+            plan.short is not None
+            and len(free) > len(jobs)
+            and not _near(intended, plan.short, tactics.same_place)
+        ):
             jobs.append((Task.SUPPORT, plan.short, None))
         left = len(free) - len(jobs)
         if left and not plan.ours and plan.without != "marks":
-            dangerous = threats(frame, set(plan.marks.values()))
+            dangerous = threats(frame, tactics, set(plan.marks.values()))
             team.threats = [robot.id for robot in dangerous]
-            marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left])
+            marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left], tactics)
             jobs += [(Task.MARK, place, number) for number, place in marks]
             left = len(free) - len(jobs)
         if left:
@@ -231,9 +199,9 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
             old = old_tasks.get(robot.id)
             for j, (task, _, what) in enumerate(jobs):
                 if old is task and (task is not Task.MARK or old_marks.get(robot.id) == what):
-                    times[i, j] -= KEEP_GAIN
+                    times[i, j] -= tactics.keep_gain
         # Crossing over is worse than two short ways: the longest counts most.
-        cost = times + 0.15 * times * times
+        cost = times + tactics.long_way * times * times
         for row, column in assign(cost):
             task, place, what = jobs[column]
             number = free[row].id
@@ -245,8 +213,8 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     team.marks = plan.marks
 
 
-def _near(intended: Pass | None, place: Point) -> bool:
-    return intended is not None and distance(intended.target, place) < _SAME
+def _near(intended: Pass | None, place: Point, gap: float) -> bool:
+    return intended is not None and distance(intended.target, place) < gap
 
 
 def wall_size(plan: Plan, players: int, free: int) -> int:

@@ -4,54 +4,47 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import cos, hypot, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.motion.arrival import arrival_time
 from robobt.skills.store import Pass, TeamStore
-from robobt.skills.tactics.chances import WIDEST, point_worth, redirect_angle
+from robobt.skills.tactics.chances import point_worth, redirect_angle
 from robobt.skills.tactics.lanes import (
-    LONGEST_CHIP,
-    RECEIVE_SPEED,
     arrive_chance,
-    ball_row,
     chip_chance,
     chip_speed,
     chip_time,
     flight_time,
     kick_speed,
 )
+from robobt.skills.tactics.settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import Frame, RobotState
 
-SHORTEST = 1.4
-"""Of a pass [m]."""
 
-SHORTEST_RESTART = 0.35
-"""Of a pass from an own restart, where no opponent may be so near [m]."""
+class _Allowed(NamedTuple):
+    """Which passes are looked for.
 
-AREA_GAP, AREA_GAP_RESTART = 0.15, 0.3
-"""How far from the defence areas a pass may end: at an own restart no hull within the rules' 0.2 m [m]."""
+    Attributes:
+        least: chance with which they arrive, at least.
+        chips: whether they may fly.
+        shortest: length of one along the ground [m].
+        area_gap: from its target to the defence areas [m].
+        widest: angle in which one is sent on with one touch [rad].
+    """
 
-LONGEST_WAIT = 1.2
-"""For a receiver that is not there yet [s]."""
+    least: float
+    chips: bool
+    shortest: float
+    area_gap: float
+    widest: float
 
-REDIRECT_SPEED = 3.2
-"""Of a ball that is to be sent on with one touch, as it arrives [m/s]."""
-
-SHORTEST_REDIRECT = 1.8
-"""Of a pass that is to be sent on with one touch [m]."""
-
-REDIRECT_WORTH = 0.25
-"""Least that the ball has to be worth at the end of a pass that is to be sent on with one touch."""
-
-TURNS = 0.2
-"""What a receiver needs to turn to where it sends the ball on [s]."""
 
 _RINGS = ((0.0, 1), (0.35, 6), (0.8, 8))
-_TURN_RATE = 4.0
 
 
 def passes(
@@ -71,7 +64,7 @@ def passes(
     chance to arrive, which is at least ``least``, times what the ball is worth there; ``last`` counts
     ``keep`` times. ``chips`` says whether it may fly over opponents.
     """
-    plan, ball, field = team.plan, frame.ball, frame.field
+    plan, ball, tactics = team.plan, frame.ball, team.plan.tactics
     own, opponents = plan.own_movers, plan.their_movers
     keeper = frame.game.status(frame.team).keeper
     rows = [
@@ -103,21 +96,14 @@ def passes(
         me.heading,
         own,
         opponents,
-        np.array(
-            (
-                field.half_length,
-                field.half_width,
-                field.goal_width / 2.0,
-                field.defense_depth,
-                field.defense_width / 2.0,
-                least,
-                1.0 if chips else 0.0,
-                SHORTEST if plan.short is None else SHORTEST_RESTART,
-                AREA_GAP if frame.game.in_play else AREA_GAP_RESTART,
-                0.0 if plan.without == "one_touch" else WIDEST,
-            )
+        _Allowed(
+            least,
+            chips,
+            tactics.shortest if plan.short is None else tactics.shortest_restart,
+            tactics.area_gap if frame.game.in_play else tactics.area_gap_restart,
+            0.0 if plan.without == "one_touch" else tactics.widest,
         ),
-        ball_row(frame.ball_model),
+        plan.numbers,
     )
     found = []
     for (score, speed, wait, chip), index, point in zip(rated.tolist(), owners, points, strict=True):
@@ -150,16 +136,17 @@ def _rate(
     heading: float,
     own: FloatArray,
     opponents: FloatArray,
-    size: FloatArray,
-    ball: FloatArray,
+    allowed: _Allowed,
+    numbers: FloatArray,
 ) -> FloatArray:
     """Rate passes to points (G, 2) of the robots ``owners``.
 
     Returns (G, 4): score, kick speed [m/s], wait [s] and whether it is chipped.
     """
     out = np.zeros((len(points), 4))
-    half_length, half_width, half_goal, depth, half_area = size[0], size[1], size[2], size[3], size[4]
-    least, chips, shortest, area_gap, widest = size[5], size[6] > 0.0, size[7], size[8], size[9]
+    tactics: AppliedTactics = numbers.view(TACTICS)[0]
+    half_length, half_width = tactics.half_length, tactics.half_width
+    depth, half_area, area_gap = tactics.defense_depth, tactics.defense_width / 2.0, allowed.area_gap
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
@@ -167,43 +154,52 @@ def _rate(
         if abs(x) > half_length - depth - area_gap and abs(y) < half_area + area_gap:
             continue
         length = hypot(x - ox, y - oy)
-        if length < shortest:
+        if length < allowed.shortest:
             continue
         i = owners[g]
         turn = np.arctan2(y - oy, x - ox) - heading
         turn = abs((turn + pi) % (2.0 * pi) - pi)
-        delay = 0.1 + turn / _TURN_RATE
+        delay = 0.1 + turn / tactics.turn_rate
         there = arrival_time(own[i], x, y, 0.1)
         for kind in range(3):
             redirect, chip = kind == 1, kind == 2
             ready = there
             if redirect:
-                if length < SHORTEST_REDIRECT or redirect_angle(ox, oy, x, y, half_length) > widest:
+                if (
+                    length < tactics.shortest_redirect
+                    or redirect_angle(ox, oy, x, y, half_length) > allowed.widest
+                ):
                     continue
-                ready += TURNS
+                ready += tactics.redirect_turn
             if chip:
-                if not chips or not SHORTEST <= length <= LONGEST_CHIP or out[g, 0] > 0.0:
+                if (
+                    not allowed.chips
+                    or not tactics.shortest <= length <= tactics.longest_chip
+                    or out[g, 0] > 0.0
+                ):
                     continue
-                speed = chip_speed(length, ball)
-                flight = chip_time(length, ball)
+                speed = chip_speed(length, tactics)
+                flight = chip_time(length, tactics)
             else:
-                arrival = REDIRECT_SPEED if redirect else min(RECEIVE_SPEED, 0.8 + 0.4 * length)
-                speed = kick_speed(length, arrival, ball)
-                flight = flight_time(length, speed, ball)
+                arrival = (
+                    tactics.redirect_speed if redirect else min(tactics.receive_speed, 0.8 + 0.4 * length)
+                )
+                speed = kick_speed(length, arrival, tactics)
+                flight = flight_time(length, speed, tactics)
             wait = delay
             if wait + flight < ready:
                 # The ball waits for the robot.
                 wait = ready - flight
-                if wait > LONGEST_WAIT:
+                if wait > tactics.longest_wait:
                     continue
             if chip:
-                chance = chip_chance(ox, oy, x, y, wait, opponents, own, i, ball)
+                chance = chip_chance(ox, oy, x, y, wait, opponents, own, i, tactics)
             else:
-                chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i, ball)
-            if chance < least:
+                chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i, tactics)
+            if chance < allowed.least:
                 continue
-            worth = point_worth(ox, oy, x, y, wait + flight, opponents, half_length, half_goal)
-            if redirect and worth < REDIRECT_WORTH:
+            worth = point_worth(ox, oy, x, y, wait + flight, opponents, tactics)
+            if redirect and worth < tactics.redirect_worth:
                 continue
             score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
             if score > out[g, 0]:

@@ -11,10 +11,12 @@ from robobt.skills.rate_limit import RateLimit
 from robobt.skills.store import Pass, Shot
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
-from robobt.skills.tactics.chances import point_worth
-from robobt.skills.tactics.lanes import PASS_SPEEDS
+from robobt.skills.tactics.chances import worth_at
 from robobt.tree import Status
 from robobt.world.rules import has_ball
+
+_SHOWN = 5
+"""Number of candidate passes that are shown."""
 
 
 @skill
@@ -79,15 +81,21 @@ class ChooseKick(Skill):
         """Weigh shots and passes."""
         store, frame, me, ball = self.store, self.frame, self.me, self.ball
         plan = agree(frame, store.team)
+        tactics = plan.tactics
         has = has_ball(me, ball)
         if has:
             self._had = frame.time
-        kept = frame.time - self._had < _KEPT and hypot(ball.x - me.x, ball.y - me.y) < _NEAR
+        kept = (
+            frame.time - self._had < tactics.kept_for
+            and hypot(ball.x - me.x, ball.y - me.y) < tactics.kept_within
+        )
         if not self.restart and not kept:
             mine = plan.own_times.get(me.id, 0.0)
-            if ball.speed > _RESTS or mine + _FREE > min(plan.their_times.values(), default=10.0):
+            if ball.speed > tactics.run_up_below or mine + tactics.run_up_lead > min(
+                plan.their_times.values(), default=10.0
+            ):
                 return self.fail("it does not have the ball")
-        if frame.time - self._seen > _PAUSE:
+        if frame.time - self._seen > tactics.anew_after:
             self._shot = self._pass = None
             self._since = frame.time
         if self.restart and not frame.game.may_touch:
@@ -109,18 +117,17 @@ class ChooseKick(Skill):
 
     def _choose(self, has: bool) -> None:
         frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
-        old_pass = self._pass
+        old_pass, plan, tactics = self._pass, team.plan, team.plan.tactics
         self._shot = self._pass = None
         share = max(self.floor, 1.0 - (frame.time - self._since) / self.patience)
-        pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < _PRESSED for r in frame.opponents)
+        pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < tactics.pressed for r in frame.opponents)
         if pressed:
             share = min(share, 2.0 * self.floor)
         shot = self._best_shot()
-        field, there = frame.field, team.plan.their_movers
-        goal = (field.half_length, 0.5 * field.goal_width)
-        hold = point_worth(ball.x - 1.0, ball.y, ball.x, ball.y, _HOLDS, there, *goal)
-        enough = min(self.pass_at * share, _BETTER * hold)
-        late = self.restart and frame.time - self._since > self.patience + _LATE
+        behind = (ball.x - 1.0, ball.y)
+        hold = worth_at(behind, ball.position, tactics.holds, plan.their_movers, plan.numbers)
+        enough = min(self.pass_at * share, tactics.better * hold)
+        late = self.restart and frame.time - self._since > self.patience + tactics.late
         least = 0.0 if late else self.least
         candidates = passes(frame, team, me, old_pass, self.keep, least=least, chips=self.chips)
         self.store.candidates = candidates[:_SHOWN]
@@ -131,7 +138,7 @@ class ChooseKick(Skill):
             self._shot = shot
         elif best is not None and (pass_score >= enough or late):
             # Never later than the receiver, unless somebody is about to take the ball away.
-            self._pass = best if best.wait > _IN_TIME and not pressed else replace(best, wait=0.0)
+            self._pass = best if best.wait > tactics.in_time and not pressed else replace(best, wait=0.0)
         elif shot_score >= self.shoot_at * share:
             self._shot = shot
         elif late:
@@ -140,9 +147,11 @@ class ChooseKick(Skill):
     def _into_space(self) -> Pass:
         """Return a short kick towards the opponents' goal, for whoever gets there."""
         ball, (x, y) = self.ball, self.frame.field.their_goal
-        way = max(hypot(x - ball.x, y - ball.y), _SPACE)
-        target = (ball.x + _SPACE / way * (x - ball.x), ball.y + _SPACE / way * (y - ball.y))
-        return Pass(self.me.id, target, PASS_SPEEDS[0], 0.0)
+        tactics = self.store.team.plan.tactics
+        space = tactics.into_space
+        way = max(hypot(x - ball.x, y - ball.y), space)
+        target = (ball.x + space / way * (x - ball.x), ball.y + space / way * (y - ball.y))
+        return Pass(self.me.id, target, tactics.slowest_pass, 0.0)
 
     def _best_shot(self) -> Shot | None:
         frame, me, ball, field = self.frame, self.me, self.ball, self.frame.field
@@ -150,37 +159,3 @@ class ChooseKick(Skill):
             return None
         shots = self._rater.rate_all(frame, ball.position, me)
         return shots[0] if shots else None
-
-
-_SHOWN = 5
-"""So many passes are told of."""
-
-_PAUSE = 0.3
-"""After so long without it, it begins anew [s]."""
-
-_KEPT, _NEAR = 0.25, 0.25
-"""It still has a ball that has left its mouth for no longer [s] and is no farther away than this [m]."""
-
-_RESTS = 0.3
-"""A slower ball may be kicked with a run-up [m/s]."""
-
-_FREE = 0.8
-"""How much later opponents have to be at a ball that it kicks with a run-up [s]."""
-
-_PRESSED = 0.35
-"""An opponent nearer to the ball than this is about to take it [m]."""
-
-_HOLDS = 0.5
-"""What the ball is worth where it is, is what it will be so much later [s]."""
-
-_BETTER = 1.15
-"""How many times that a pass has to be worth to be played at once."""
-
-_IN_TIME = 0.1
-"""A receiver that is so much too late meets the ball a little farther on [s]."""
-
-_SPACE = 1.5
-"""How far a restart goes for which there is neither shot nor pass [m]."""
-
-_LATE = 1.0
-"""So long after its patience is at an end it takes a restart with what there is [s]."""

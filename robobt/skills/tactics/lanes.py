@@ -2,84 +2,41 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import exp, hypot, inf, sqrt
 
-import numpy as np
-
+from robobt.skills.tactics.settings import AppliedTactics
 from robobt.world import ball_model
-from robobt.world.ball_model import BallModel, time_for
+from robobt.world.ball_model import time_for
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-PASS_SPEEDS = (2.0, 5.8)
-"""Slowest and fastest kick of a pass [m/s]."""
-
-RECEIVE_SPEED = 2.2
-"""Of the ball at the receiver [m/s]."""
-
-CHIP_TOUCH_DOWNS = 4
-"""A chipped pass has touched down so often when it comes to its receiver: it hardly hops any more."""
-
-LONGEST_CHIP = 6.0
-"""Of a chipped pass [m]: what a chip within the rules' speed reaches."""
-
-_RISES = 0.2
-"""A chipped ball has risen over robots so far from where it was kicked [m]."""
-
-_FALLS = 0.15
-"""From so far before it first touches down on robots can stop it [m]."""
-
-_CHIPPED = 0.9
-"""Chance that a chipped ball is taken that gets there."""
-
 _CHIP_SAMPLES = 4
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
-_REACTION = 0.15
-"""Before an opponent moves to a ball that it sees kicked [s]."""
-
-_MARGIN = 0.12
-"""Head start of the ball over an opponent that gives a chance of 0.73 [s]."""
 
 _SAMPLES = 8
 
-_SLIDE, _ROLL, _SHARE, _CHIP_SPEED, _LANDS, _LANDS_AT, _ROLLS = range(7)
-"""Columns of :func:`ball_row`; the last four are of a chip of 1 m."""
-
-
-@lru_cache(maxsize=8)
-def ball_row(model: BallModel) -> FloatArray:
-    """Return a ball's model as the functions of this module take it."""
-    chip = model.chip_speed(1.0, CHIP_TOUCH_DOWNS)
-    # Times grow with the root of the distance, ways with the distance. A chip of 25 m hops often enough.
-    downs = model.touch_downs(5.0 * chip)
-    lands, lands_at = downs[0][0] / 5.0, downs[0][1] / 25.0
-    rolls = downs[min(CHIP_TOUCH_DOWNS, len(downs)) - 1][0] / 5.0
-    flat = (model.slide_deceleration, model.roll_deceleration, model.switch_share)
-    return np.array((*flat, chip, lands, lands_at, rolls))
-
 
 @compiled
-def kick_speed(length: float, arrival: float, ball: FloatArray) -> float:
+def kick_speed(length: float, arrival: float, tactics: AppliedTactics) -> float:
     """Return the kick speed with which a ball has the speed ``arrival`` after ``length`` [m/s, m]."""
-    speed = ball_model.kick_speed(length, arrival, ball[_SLIDE], ball[_ROLL], ball[_SHARE])
-    return min(PASS_SPEEDS[1], max(PASS_SPEEDS[0], speed))
+    speed = ball_model.kick_speed(length, arrival, tactics.slide, tactics.roll, tactics.share)
+    return min(tactics.fastest_pass, max(tactics.slowest_pass, speed))
 
 
 @compiled
-def flight_time(length: float, speed: float, ball: FloatArray) -> float:
+def flight_time(length: float, speed: float, tactics: AppliedTactics) -> float:
     """Return when a ball kicked at ``speed`` has gone ``length`` [s]; 10 where it rests before."""
-    time = time_for(length, speed, ball[_SHARE] * speed, ball[_SLIDE], ball[_ROLL])
+    time = time_for(length, speed, tactics.share * speed, tactics.slide, tactics.roll)
     return time if time < inf else 10.0
 
 
 @compiled
-def time_to_pass(robot: FloatArray, x: float, y: float) -> float:
+def time_to_pass(robot: FloatArray, x: float, y: float, tactics: AppliedTactics) -> float:
     """Return when a robot, a row of movers, can touch a ball at (x, y), passing at any speed [s]."""
-    px = robot[0] + _REACTION * robot[2]
-    py = robot[1] + _REACTION * robot[3]
+    px = robot[0] + tactics.reaction * robot[2]
+    py = robot[1] + tactics.reaction * robot[3]
     dx, dy = x - px, y - py
     gap = hypot(dx, dy)
     if gap <= _BODY:
@@ -88,16 +45,16 @@ def time_to_pass(robot: FloatArray, x: float, y: float) -> float:
     gap -= _BODY
     acceleration = robot[5]
     needed = (sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
-    return float(max(needed, gap / robot[4]) + _REACTION)
+    return float(max(needed, gap / robot[4]) + tactics.reaction)
 
 
 @compiled
-def cannot_pass_by(robot: FloatArray, x: float, y: float, time: float) -> bool:
+def cannot_pass_by(robot: FloatArray, x: float, y: float, time: float, tactics: AppliedTactics) -> bool:
     """Return whether :func:`time_to_pass` is surely above ``time`` [s], told without taking roots."""
-    free = max(0.0, time - _REACTION)
+    free = max(0.0, time - tactics.reaction)
     fastest = abs(robot[2]) + abs(robot[3]) + 0.5 * robot[5] * free
     reach = _BODY + min(robot[4], fastest) * free
-    dx, dy = x - robot[0] - _REACTION * robot[2], y - robot[1] - _REACTION * robot[3]
+    dx, dy = x - robot[0] - tactics.reaction * robot[2], y - robot[1] - tactics.reaction * robot[3]
     return bool(dx * dx + dy * dy > reach * reach + 1e-6)
 
 
@@ -110,7 +67,7 @@ def lane_margin(
     speed: float,
     delay: float,
     robots: FloatArray,
-    ball: FloatArray,
+    tactics: AppliedTactics,
 ) -> float:
     """Return the least head start of a ball over every robot on its way from (ox, oy) to (x, y) [s].
 
@@ -121,12 +78,12 @@ def lane_margin(
     least = 10.0
     for k in range(1, _SAMPLES + 1):
         share = k / _SAMPLES
-        when = delay + flight_time(share * length, speed, ball)
+        when = delay + flight_time(share * length, speed, tactics)
         px, py = ox + share * dx, oy + share * dy
         for j in range(len(robots)):
-            if cannot_pass_by(robots[j], px, py, least + when):
+            if cannot_pass_by(robots[j], px, py, least + when, tactics):
                 continue
-            margin = time_to_pass(robots[j], px, py) - when
+            margin = time_to_pass(robots[j], px, py, tactics) - when
             if margin < least:
                 least = margin
     # Between the points nothing may stand in the lane either.
@@ -158,13 +115,13 @@ def arrive_chance(
     opponents: FloatArray,
     mates: FloatArray,
     skip: int,
-    ball: FloatArray,
+    tactics: AppliedTactics,
 ) -> float:
     """Return the chance that a pass kicked at ``speed`` after ``delay`` gets from (ox, oy) to (x, y).
 
     Of ``mates``, which block by standing in the lane, the row ``skip`` is the receiver's.
     """
-    chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents, ball) / _MARGIN)
+    chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents, tactics) / tactics.margin)
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
     for i in range(len(mates)):
@@ -179,15 +136,15 @@ def arrive_chance(
 
 
 @compiled
-def chip_speed(length: float, ball: FloatArray) -> float:
+def chip_speed(length: float, tactics: AppliedTactics) -> float:
     """Return the speed of a chip that rolls after ``length`` [m/s, m]."""
-    return float(ball[_CHIP_SPEED] * sqrt(length))
+    return float(tactics.chip_speed * sqrt(length))
 
 
 @compiled
-def chip_time(length: float, ball: FloatArray) -> float:
+def chip_time(length: float, tactics: AppliedTactics) -> float:
     """Return how long such a chip takes [s]."""
-    return float(ball[_ROLLS] * sqrt(length))
+    return float(tactics.chip_rolls * sqrt(length))
 
 
 @compiled
@@ -200,7 +157,7 @@ def chip_chance(
     opponents: FloatArray,
     mates: FloatArray,
     skip: int,
-    ball: FloatArray,
+    tactics: AppliedTactics,
 ) -> float:
     """Return the chance that a pass chipped after ``delay`` gets from (ox, oy) to (x, y), where it rolls.
 
@@ -209,33 +166,33 @@ def chip_chance(
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
     ux, uy = dx / length, dy / length
-    lands = ball[_LANDS_AT] * length
+    lands = tactics.chip_lands_at * length
     root = sqrt(length)
     least = 10.0
     for j in range(len(opponents)):
-        if _in_chips_way(opponents[j, 0] - ox, opponents[j, 1] - oy, ux, uy, 0.15):
+        if _in_chips_way(opponents[j, 0] - ox, opponents[j, 1] - oy, ux, uy, 0.15, tactics):
             return 0.0
         for k in range(_CHIP_SAMPLES + 1):
             share = k / _CHIP_SAMPLES
-            way = lands - _FALLS + share * (length - lands + _FALLS)
-            when = delay + root * (ball[_LANDS] + share * (ball[_ROLLS] - ball[_LANDS]))
+            way = lands - tactics.chip_falls + share * (length - lands + tactics.chip_falls)
+            when = delay + root * (tactics.chip_lands + share * (tactics.chip_rolls - tactics.chip_lands))
             px, py = ox + way * ux, oy + way * uy
-            if not cannot_pass_by(opponents[j], px, py, least + when):
-                least = min(least, time_to_pass(opponents[j], px, py) - when)
-    chance = _CHIPPED * sigmoid(least / _MARGIN)
+            if not cannot_pass_by(opponents[j], px, py, least + when, tactics):
+                least = min(least, time_to_pass(opponents[j], px, py, tactics) - when)
+    chance = tactics.chip_taken * sigmoid(least / tactics.margin)
     for i in range(len(mates)):
         if i == skip:
             continue
         mx, my = mates[i, 0] - ox, mates[i, 1] - oy
         along, aside = mx * ux + my * uy, abs(mx * uy - my * ux)
-        down = lands - _FALLS - _BODY < along < length and aside < _BODY + 0.02
-        if down or _in_chips_way(mx, my, ux, uy, 0.02):
+        down = lands - tactics.chip_falls - _BODY < along < length and aside < _BODY + 0.02
+        if down or _in_chips_way(mx, my, ux, uy, 0.02, tactics):
             chance *= 0.1
     return chance
 
 
 @compiled
-def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float) -> bool:
+def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float, tactics: AppliedTactics) -> bool:
     """Tell whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) has not risen yet."""
     along = dx * ux + dy * uy
-    return 0.0 < along < _RISES + _BODY + gap and abs(dx * uy - dy * ux) < _BODY + gap
+    return 0.0 < along < tactics.chip_rises + _BODY + gap and abs(dx * uy - dy * ux) < _BODY + gap

@@ -14,43 +14,11 @@ from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.skills.tactics.agree import agree, pass_under_way
-from robobt.skills.tactics.chances import aim_of, redirect_angle, redirect_kick, shot_chance
+from robobt.skills.tactics.chances import aim_of, redirect_angle, redirect_kick, shot_from
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.rules import has_ball, in_own_defense_area
-
-_ARMED = 0.7
-"""The kicker waits for a ball nearer than this [m]."""
-
-_CATCH = 0.25
-"""A receiver nearer to the ball's line than this is on it [m]."""
-
-_BOUNCE = 0.05
-"""For so long after it was armed a ball that bounced off is kicked still [s]."""
-
-_FAST = 1.2
-"""A slower ball is not sent on with one touch [m/s]."""
-
-_SOON = 1.5
-"""A ball that takes longer is not yet one to send on with one touch [s]."""
-
-_FLIES, _HOPS = 0.05, 0.5
-"""A ball higher than this, or that rises or falls faster, is not sent on with one touch [m, m/s]."""
-
-_AREA = 0.3
-"""Nobody gives way to the ball this near to the own defence area [m]."""
-
-_ASTRAY = 0.6
-"""A pass that misses its target by more is met where it comes [m]."""
-
-_PASS_TIME = 3.0
-
-_FACING = 0.35
-"""How far off a ball that comes from afar it may look [rad]."""
-
-_ON_LINE = 0.5
-"""A receiver nearer to the ball's line than this stays where it is along it [m]."""
 
 
 @skill
@@ -98,10 +66,10 @@ class ReceivePass(Skill):
     def on_running(self) -> Status:
         """Drive one tick."""
         frame, me, ball, store = self.frame, self.me, self.ball, self.store
-        speed = ball.speed
+        speed, tactics = ball.speed, store.team.plan.tactics
         if speed < self.slowest and not has_ball(me, ball):
             return self.fail("the ball does not roll")
-        if self._armed > 0.0 and 0.0 < frame.time - self._armed_at < _BOUNCE and has_ball(me, ball):
+        if self._armed > 0.0 and 0.0 < frame.time - self._armed_at < tactics.bounced and has_ball(me, ball):
             # It has bounced off before the kicker saw it: kick it now.
             store.command.kick_speed = self._armed
             store.command.kick_trigger = KickTrigger.ON_CONTACT
@@ -121,7 +89,7 @@ class ReceivePass(Skill):
         planned = self._planned(ux, uy, speed, rolling)
         if planned is not None:
             x, y = planned
-        elif aside < _ON_LINE and ahead > 0.1:
+        elif aside < tactics.stays_within and ahead > 0.1:
             # On the line already: here, unless an opponent would be there before.
             place = max(ahead - MOUTH, 0.0)
             time = frame.ball_model.time_for(place, speed, rolling)
@@ -132,19 +100,26 @@ class ReceivePass(Skill):
         time = min(3.0, frame.ball_model.time_for(way, speed, rolling))
         heading = self._redirect(x, y, time, speed, ux, uy)
         if heading is None:
-            if ahead > MOUTH and aside < _CATCH and not in_own_defense_area(frame.field, me.x, me.y, _AREA):
+            if (
+                ahead > MOUTH
+                and aside < tactics.catch_within
+                and not in_own_defense_area(frame.field, me.x, me.y, tactics.catch_area)
+            ):
                 store.command = catch(me, ball, limits, frame.period)
             else:
-                store.command = meet(frame, me, limits, rolling, slack=_FACING, sketch=self.draw)
+                store.command = meet(
+                    frame, me, limits, rolling, slack=tactics.receive_facing, sketch=self.draw
+                )
             return self.run("taking the ball")
         place_at = (x - MOUTH * cos(heading), y - MOUTH * sin(heading))
         order = travel(frame, me, place_at, heading, limits, sketch=self.draw)
         gap = hypot(dx, dy)
-        if gap < _ARMED and abs(wrap_angle(heading - me.heading)) < 0.12:
+        if gap < tactics.armed and abs(wrap_angle(heading - me.heading)) < 0.12:
             v = max(0.0, speed - frame.ball_model.roll_deceleration * min(time, 0.3))
             c, s = cos(me.heading), sin(me.heading)
             order.kick_speed = (
-                redirect_kick((c * uy - s * ux) * v) + me.limits.kick_rebound * (c * ux + s * uy) * v
+                redirect_kick((c * uy - s * ux) * v, tactics.shot_speed, tactics.fastest)
+                + me.limits.kick_rebound * (c * ux + s * uy) * v
             )
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time
@@ -154,7 +129,7 @@ class ReceivePass(Skill):
     def _planned(self, ux: float, uy: float, speed: float, rolling: float) -> Point | None:
         """Return where on the ball's line a pass to this robot was to be received, if that is in time."""
         frame, team, ball = self.frame, self.store.team, self.ball
-        target = team.pass_target
+        target, tactics = team.pass_target, team.plan.tactics
         if team.receiver != self.me.id or target is None or not pass_under_way(frame, team):
             return None
         way = (target[0] - ball.x) * ux + (target[1] - ball.y) * uy
@@ -162,7 +137,7 @@ class ReceivePass(Skill):
             return None
         x, y = ball.x + way * ux, ball.y + way * uy
         time = frame.ball_model.time_for(way, speed, rolling)
-        if hypot(x - target[0], y - target[1]) > _ASTRAY or time > _PASS_TIME:
+        if hypot(x - target[0], y - target[1]) > tactics.astray or time > tactics.planned_within:
             return None
         row = movers((self.me,))[0]
         return (x, y) if arrival_time(row, x, y, 0.15) <= time + 0.1 else None
@@ -170,19 +145,23 @@ class ReceivePass(Skill):
     def _redirect(self, x: float, y: float, time: float, speed: float, ux: float, uy: float) -> float | None:
         """Return the heading from which the ball goes at the goal with one touch; None where it is taken."""
         store, frame = self.store, self.frame
-        plan = store.team.plan
-        field = frame.field
-        there = plan.their_movers
+        plan, tactics, field = store.team.plan, store.team.plan.tactics, frame.field
         angle = redirect_angle(x - ux, y - uy, x, y, field.half_length)
         first = min(plan.their_times.values(), default=10.0)
-        flies = frame.ball.z > _FLIES or abs(frame.ball.vz) > _HOPS
-        if plan.without == "one_touch" or flies or speed < _FAST or time > _SOON or first < time:
+        flies = frame.ball.z > tactics.flies or abs(frame.ball.vz) > tactics.hops
+        if (
+            plan.without == "one_touch"
+            or flies
+            or speed < tactics.redirect_from
+            or time > tactics.redirect_within
+            or first < time
+        ):
             self._redirecting = False
             return None
         if angle > self.widest + (0.1 if self._redirecting else 0.0):
             self._redirecting = False
             return None
-        chance = shot_chance(x, y, time, there, field.half_length, 0.5 * field.goal_width, self._best)
+        chance = shot_from(x, y, time, plan.their_movers, self._best, plan.numbers)
         if chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
             self._redirecting = False
             return None
@@ -190,4 +169,4 @@ class ReceivePass(Skill):
         target: Point = (field.half_length, float(self._best[0]))
         store.shot = Shot(target, max(0.01, float(self._best[1])), chance)
         v = max(0.3, speed - 0.5 * time)
-        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v)
+        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)

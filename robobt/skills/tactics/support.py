@@ -11,80 +11,50 @@ from robobt.motion.arrival import movers_of
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
-from robobt.skills.tactics.lanes import ball_row
+from robobt.skills.tactics.settings import TacticsSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Restart
 from robobt.world.geometry import FloatArray, Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import Frame
 
-EVERY = 0.25
-"""From one look to the next [s]."""
-
-APART = 1.6
-"""Supporters keep so far from each other and from the ball [m]."""
-
-STAY = 1.25
-"""How much better another place has to be than the one before."""
-
-SHORT = 0.45
-"""At an own restart one supporter is so near to the ball that no opponent may come between [m]."""
-
-_SHORT_GAIN = 0.15
-"""It goes to another side of the ball only where opponents are so much farther off [m]."""
-
 _SHORT_ANGLES = 16
-_LINE, _AREA = 0.15, 0.3
 _ALL_ROOM = 10.0
-
-_ROLLS = 1.0
-"""A pass under way is faster [m/s]."""
-
-_SPACING = 0.5
-_EDGE = 0.3
 
 
 def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> list[Point]:
     """Return ``count`` places for supporters, the best first."""
-    if len(plan.support) >= count and 0.0 <= frame.time - plan.support_time < EVERY:
+    tactics = plan.tactics
+    if len(plan.support) >= count and 0.0 <= frame.time - plan.support_time < tactics.support_every:
         return plan.support[:count]
     plan.support_time = frame.time
-    grid = support_grid(frame.field)
+    grid = support_grid(frame.field, tactics.spacing, tactics.edge)
     old = list(plan.support)
     points = np.concatenate([grid, np.array(old).reshape(-1, 2)])
     origin = _origin(frame, team)
-    field = frame.field
-    rated = rate_points(
-        points,
-        origin[0],
-        origin[1],
-        0.4,
-        plan.their_movers,
-        field.half_length,
-        field.goal_width / 2.0,
-        ball_row(frame.ball_model),
-    )
+    rated = rate_points(points, origin[0], origin[1], 0.4, plan.their_movers, plan.numbers)
     value = rated[:, 0] * rated[:, 1]
     # Where no pass gets to now it may in a moment.
     value += 0.15 * rated[:, 1]
-    value[len(grid) :] *= STAY
+    value[len(grid) :] *= tactics.stay
+    apart = tactics.apart
     gap = np.hypot(points[:, 0] - origin[0], points[:, 1] - origin[1])
-    value *= np.clip(gap / APART, 0.0, 1.0) ** 2 * np.clip(1.0 - (gap - 4.0) / 5.0, 0.3, 1.0)
+    value *= np.clip(gap / apart, 0.0, 1.0) ** 2 * np.clip(1.0 - (gap - 4.0) / 5.0, 0.3, 1.0)
     intended = plan.next_pass
     taken: list[Point] = [] if intended is None else [intended.target]
     for place in taken:
-        _spread(value, points, place)
+        _spread(value, points, place, apart)
     chosen: list[Point] = []
     for _ in range(count):
         best = int(value.argmax())
         place = (float(points[best, 0]), float(points[best, 1]))
         chosen.append(place)
-        _spread(value, points, place)
+        _spread(value, points, place, apart)
     plan.support = chosen
     return chosen
 
 
-def short_place(frame: Frame, last: Point | None) -> Point | None:
+def short_place(frame: Frame, last: Point | None, tactics: TacticsSettings) -> Point | None:
     """Return the place beside the ball of an own restart that opponents are farthest from.
 
     ``last`` is the one before. None without such a restart, and where no place is in the field and
@@ -95,38 +65,47 @@ def short_place(frame: Frame, last: Point | None) -> Point | None:
         return None
     x, y = game.placement or frame.ball.position
     best, most = None, -inf
-    places = np.array((x, y)) + _beside()
+    places = np.array((x, y)) + _beside(tactics.short)
     theirs = movers_of(frame)[len(frame.own) :, :2]
     rooms = np.hypot(*(places[:, None] - theirs).T).min(axis=0, initial=_ALL_ROOM).tolist()
     for (px, py), room in zip(places.tolist(), rooms, strict=True):
-        inside = abs(px) < field.half_length - _LINE and abs(py) < field.half_width - _LINE
+        inside = (
+            abs(px) < field.half_length - tactics.short_line
+            and abs(py) < field.half_width - tactics.short_line
+        )
         if not inside:
             continue
-        if in_own_defense_area(field, px, py, _AREA) or in_their_defense_area(field, px, py, _AREA):
+        if in_own_defense_area(field, px, py, tactics.short_area) or in_their_defense_area(
+            field, px, py, tactics.short_area
+        ):
             continue
         place = (px, py)
         if last is not None and distance(place, last) < 0.1:
-            room += _SHORT_GAIN
+            room += tactics.short_gain
         if room > most:
             best, most = place, room
     return best
 
 
 @lru_cache(maxsize=1)
-def _beside() -> FloatArray:
+def _beside(gap: float) -> FloatArray:
     angles = 2.0 * np.pi * np.arange(_SHORT_ANGLES) / _SHORT_ANGLES
-    return SHORT * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+    return gap * np.stack((np.cos(angles), np.sin(angles)), axis=1)
 
 
-def _spread(value: FloatArray, points: FloatArray, place: Point) -> None:
+def _spread(value: FloatArray, points: FloatArray, place: Point, apart: float) -> None:
     gap = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1])
-    value *= np.clip(gap / APART, 0.0, 1.0) ** 2
+    value *= np.clip(gap / apart, 0.0, 1.0) ** 2
 
 
 def _origin(frame: Frame, team: TeamStore) -> Point:
     """Return where the next pass will come from: the target of the one under way, else the ball."""
     target = team.pass_target
-    if target is not None and team.attacker == team.receiver and frame.ball.speed > _ROLLS:
+    if (
+        target is not None
+        and team.attacker == team.receiver
+        and frame.ball.speed > team.plan.tactics.origin_from
+    ):
         return target
     if not frame.game.in_play and frame.game.placement is not None:
         return frame.game.placement
@@ -134,14 +113,12 @@ def _origin(frame: Frame, team: TeamStore) -> Point:
 
 
 @lru_cache(maxsize=8)
-def support_grid(field: FieldGeometry) -> FloatArray:
+def support_grid(field: FieldGeometry, spacing: float, edge: float) -> FloatArray:
     """Return the points that a supporter may stand at, (G, 2) [m]."""
-    rows = int((field.half_length - _EDGE) / _SPACING)
-    columns = int((field.half_width - _EDGE) / _SPACING)
+    rows = int((field.half_length - edge) / spacing)
+    columns = int((field.half_width - edge) / spacing)
     points = [
-        (x * _SPACING, y * _SPACING)
-        for x in range(-rows // 2, rows + 1)
-        for y in range(-columns, columns + 1)
+        (x * spacing, y * spacing) for x in range(-rows // 2, rows + 1) for y in range(-columns, columns + 1)
     ]
     kept = [
         point

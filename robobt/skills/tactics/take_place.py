@@ -9,9 +9,6 @@ from robobt.skills.tactics.agree import agree
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
 
-_FACING = 0.5
-"""How far off the ball it looks at most: a pass takes longer than to turn by that [rad]."""
-
 
 @skill
 class TakePlace(Skill):
@@ -44,7 +41,8 @@ class TakePlace(Skill):
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
         frame = self.frame
-        place = agree(frame, self.store.team).places.get(self.me.id)
+        plan = agree(frame, self.store.team)
+        place = plan.places.get(self.me.id)
         if place is None:
             return self.fail("no place")
         if self._learned is not None:
@@ -58,7 +56,8 @@ class TakePlace(Skill):
             if command is not None:
                 self.store.command = command
                 return self.run("to its place as learned")
+        slack = plan.tactics.facing
         self.drive_to(
-            place, frame.ball.position, avoid_ball=True, thereabouts=True, slack=_FACING, spare_mates=True
+            place, frame.ball.position, avoid_ball=True, thereabouts=True, slack=slack, spare_mates=True
         )
         return self.run(f"to ({place[0]:.1f}, {place[1]:.1f})")

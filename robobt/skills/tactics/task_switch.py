@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from robobt.skills.plan import Omitted, Task
 from robobt.skills.store import Store
 from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
 from robobt.world.game import Restart
@@ -50,6 +51,7 @@ class TaskSwitch(Switch, Bound[Store]):
         cases: a child for each part by its name; one child may serve several parts.
         otherwise: the child for every other part.
         without: what the team does without, for comparisons.
+        tactics: settings of the team's tactics. What one robot is given holds for its team.
 
     Raises:
         ValueError: a case does not name a part; the message lists those there are.
@@ -64,17 +66,22 @@ class TaskSwitch(Switch, Bound[Store]):
         *,
         otherwise: Behaviour | None = None,
         without: Omitted = "nothing",
+        tactics: TacticsSettings = DEFAULT_TACTICS,
     ) -> None:
         super().__init__(name, cases, otherwise=otherwise)
         self.without: Omitted = without
+        self.tactics = tactics
+        self._told = False
 
     def case(self) -> str:
         """Return the robot's present part."""
         store = self.store
         frame, team, number = store.frame, store.team, store.me.id
-        if number not in team.plan.players:
+        if not self._told or number not in team.plan.players:
+            self._told = True
             team.plan.players.add(number)
             team.plan.without = self.without
+            team.plan.change_tactics(self.tactics)
             team.attackers[number] = inf
             team.plan.frame = None
         task = agree(frame, team).tasks.get(number, Task.SUPPORT)

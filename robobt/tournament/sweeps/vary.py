@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robobt.config.errors import ConfigError, RobobtError, short_repr
 from robobt.config.yaml import parse_marked
 from robobt.plays.files import find_play
-from robobt.tree.parameters import Parameter, ParameterError, check_names, members_of, parameters_of
+from robobt.tree.parameters import Parameter, ParameterError, members_of, parameter_at
 
 if TYPE_CHECKING:
     from optuna import Trial
@@ -74,7 +74,7 @@ def read_varied(play: str, text: str) -> Varied:
 
     Args:
         play: a play's name, or that of one in a Python file; its parameters' types say what fits.
-        text: what is varied.
+        text: what is varied; a field of a group of settings by its path, as ``tactics.switch_gain``.
 
     Raises:
         SweepError: the play has no such parameter, or the values do not fit it.
@@ -82,14 +82,12 @@ def read_varied(play: str, text: str) -> Varied:
     name, equals, values = text.partition("=")
     if not equals or not name:
         raise SweepError(f"{text!r}: what is varied is NAME=VALUE,VALUE,... or NAME=LOW:HIGH")
-    known = {parameter.name: parameter for parameter in parameters_of(find_play(play))}
     try:
-        if name not in known:
-            check_names(play, known, {name: None})
-        numbers = members_of(known[name].hint) & {int, float}
+        parameter = parameter_at(play, find_play(play), name)
+        numbers = members_of(parameter.hint) & {int, float}
         if numbers and ":" in values:
-            return _range(known[name], values, numbers == {int})
-        return _choices(known[name], values)
+            return _range(parameter, values, numbers == {int})
+        return _choices(parameter, values)
     except ParameterError as error:
         raise SweepError(f"{error.parameter}: {error}") from error
 

@@ -8,11 +8,8 @@ import pytest
 from robobt.motion.arrival import ACCELERATION, TOP
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Omitted, Task
-from robobt.skills.tactics.agree import QUICKEST
 from robobt.skills.tactics.chances import rate_points
-from robobt.skills.tactics.lanes import ball_row
 from robobt.world import DIVISION_B, RobotLimits, Team
-from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from tests.skills.fixed_world import held, robot
@@ -149,8 +146,7 @@ def test_who_has_passed_runs_to_where_the_ball_can_come_back_to_it() -> None:
         plan = agreement.at(step / 60, ball, theirs=near)
     assert plan.tasks[passer.id] is Task.SUPPORT
     rows = np.array([plan.places[passer.id], passer.position])
-    goal = DIVISION_B.half_length, DIVISION_B.goal_width / 2
-    there, stays = rate_points(rows, *target, 0.4, plan.their_movers, *goal, ball_row(DEFAULT_BALL))
+    there, stays = rate_points(rows, *target, 0.4, plan.their_movers, plan.numbers)
     # The chance that the ball comes back, times what it is worth there.
     assert there[0] > 0.5
     assert there[0] * there[1] > 1.5 * stays[0] * stays[1]
@@ -160,7 +156,7 @@ def test_opponents_are_not_taken_to_use_all_that_their_robots_could() -> None:
     quick = RobotLimits(max_speed=5.0, acceleration=4.15)
     theirs = tuple(replace(it, limits=quick) for it in THEIRS)
     plan = Agreement().at(0.0, theirs=theirs)
-    assert (plan.their_movers[:, [TOP, ACCELERATION]] == QUICKEST).all()
+    assert (plan.their_movers[:, [TOP, ACCELERATION]] == plan.tactics.quickest).all()
     slow = tuple(replace(it, limits=RobotLimits(max_speed=1.5)) for it in THEIRS)
     assert (Agreement().at(0.0, theirs=slow).their_movers[:, TOP] == 1.5).all()
 

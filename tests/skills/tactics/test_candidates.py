@@ -6,7 +6,8 @@ from robobt.skills.aims import Pass
 from robobt.skills.plan import Omitted
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
-from robobt.skills.tactics.candidates import SHORTEST, passes
+from robobt.skills.tactics.candidates import passes
+from robobt.skills.tactics.settings import DEFAULT_TACTICS
 from robobt.world import DIVISION_B, GameState, RobotState, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
@@ -47,7 +48,7 @@ def test_no_pass_is_too_short_out_of_the_field_or_into_a_defence_area() -> None:
     rated = found((robot(4.0, 1.4, number=4), robot(-0.2, 2.9, number=5), robot(-0.5, 0.3, number=6)))
     ball = held(ME)
     for one in rated:
-        assert distance(ball, one.target) >= SHORTEST
+        assert distance(ball, one.target) >= DEFAULT_TACTICS.shortest
         assert DIVISION_B.contains(*one.target)
         assert not in_their_defense_area(DIVISION_B, *one.target)
 

@@ -9,22 +9,25 @@ from hypothesis import strategies as st
 
 from robobt.motion.arrival import movers
 from robobt.skills.tactics.chances import (
-    FASTEST,
     aim_of,
     point_worth,
     redirect_angle,
     redirect_kick,
     shot_chance,
 )
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.world import DIVISION_B
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import FloatArray, wrap_angle
 from tests.skills.fixed_world import robot
 
-GOAL = (4.5, 0.5)
+APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
+SPEEDS = DEFAULT_TACTICS.shot_speed, DEFAULT_TACTICS.fastest
 NOBODY = np.empty((0, 7))
 
 
 def chance(x: float, y: float, opponents: FloatArray = NOBODY, delay: float = 0.0) -> float:
-    return shot_chance(x, y, delay, opponents, *GOAL, np.empty(2))
+    return shot_chance(x, y, delay, opponents, np.empty(2), APPLIED)
 
 
 def test_an_open_goal_is_as_good_as_scored_from_nearby() -> None:
@@ -42,14 +45,14 @@ def test_a_goalkeeper_close_by_leaves_nothing() -> None:
 
 def test_the_aim_avoids_the_goalkeeper() -> None:
     best = np.empty(2)
-    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.3)]), *GOAL, best)
+    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.3)]), best, APPLIED)
     assert best[0] < -0.1
     assert best[1] > 0.0
 
 
 def test_a_goalkeeper_on_its_way_is_aimed_behind() -> None:
     best = np.empty(2)
-    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.0, velocity=(0.0, 1.5, 0.0))]), *GOAL, best)
+    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.0, velocity=(0.0, 1.5, 0.0))]), best, APPLIED)
     assert best[0] < 0.0
 
 
@@ -72,16 +75,16 @@ def test_the_angle_of_a_redirect_lies_between_where_it_comes_from_and_the_goal()
 
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(-1.0, 1.0))
 def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, wanted: float) -> None:
-    heading = aim_of(cos(wanted), sin(wanted), vx, vy)
+    heading = aim_of(cos(wanted), sin(wanted), vx, vy, *SPEEDS)
     sideways = cos(heading) * vy - sin(heading) * vx
-    kick = redirect_kick(sideways)
+    kick = redirect_kick(sideways, *SPEEDS)
     assert abs(wrap_angle(heading + atan2(sideways, kick) - wanted)) < 0.01
-    assert hypot(kick, sideways) < FASTEST + 1e-9
+    assert hypot(kick, sideways) < DEFAULT_TACTICS.fastest + 1e-9
 
 
 def test_the_ball_is_worth_more_near_the_goal_and_away_from_opponents() -> None:
     def worth(x: float, y: float, opponents: FloatArray = NOBODY) -> float:
-        return point_worth(0.0, -2.0, x, y, 0.8, opponents, *GOAL)
+        return point_worth(0.0, -2.0, x, y, 0.8, opponents, APPLIED)
 
     assert worth(2.5, 0.5) > worth(0.5, 0.5) > worth(-3.0, 0.5) > 0.0
     near = movers([robot(-2.8, 0.6)])

@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.tactics.defence import threats
+from robobt.skills.tactics.settings import DEFAULT_TACTICS
 from robobt.world import RobotState
 from tests.skills.fixed_world import frame, robot
 
@@ -12,7 +13,7 @@ KEEPER = robot(-4.3, 0.0, number=0)
 def ranked(
     *theirs: RobotState, ball: tuple[float, float] = (1.0, 0.0), marked: tuple[int, ...] = ()
 ) -> list[int]:
-    return [one.id for one in threats(frame(KEEPER, ball, opponents=theirs), marked)]
+    return [one.id for one in threats(frame(KEEPER, ball, opponents=theirs), DEFAULT_TACTICS, marked)]
 
 
 def test_who_is_nearer_to_the_goal_is_more_dangerous() -> None:

@@ -8,11 +8,7 @@ from hypothesis import strategies as st
 from robobt.motion.arrival import movers
 from robobt.sim import PRESETS, preset
 from robobt.skills.tactics.lanes import (
-    CHIP_TOUCH_DOWNS,
-    LONGEST_CHIP,
-    PASS_SPEEDS,
     arrive_chance,
-    ball_row,
     cannot_pass_by,
     chip_chance,
     chip_speed,
@@ -22,25 +18,29 @@ from robobt.skills.tactics.lanes import (
     lane_margin,
     time_to_pass,
 )
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
 from tests.skills.fixed_world import robot
 
 NOBODY = np.empty((0, 7))
-BALL = ball_row(DEFAULT_BALL)
+APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
 
 
 @given(st.floats(0.5, 7.0), st.floats(0.5, 4.0))
 def test_kick_and_flight_are_those_of_the_ball_model(length: float, arrival: float) -> None:
-    least, most = PASS_SPEEDS
-    speed = kick_speed(length, arrival, BALL)
+    least, most = DEFAULT_TACTICS.slowest_pass, DEFAULT_TACTICS.fastest_pass
+    speed = kick_speed(length, arrival, APPLIED)
     assert speed == pytest.approx(min(most, max(least, DEFAULT_BALL.kick_speed(length, arrival))))
-    assert flight_time(length, speed, BALL) == pytest.approx(min(10.0, DEFAULT_BALL.time_to(length, speed)))
+    assert flight_time(length, speed, APPLIED) == pytest.approx(
+        min(10.0, DEFAULT_BALL.time_to(length, speed))
+    )
 
 
 @pytest.mark.parametrize("name", sorted(PRESETS))
 def test_passes_reach_their_receiver_with_the_speed_that_was_planned_on_any_carpet(name: str) -> None:
     model = preset(name).ball.model
-    row = ball_row(model)
+    row = applied(DEFAULT_TACTICS, DIVISION_B, model).view(TACTICS)[0]
     speed = kick_speed(4.0, 2.2, row)
     time = flight_time(4.0, speed, row)
     slid = (1.0 - model.switch_share) * speed / model.slide_deceleration
@@ -49,11 +49,11 @@ def test_passes_reach_their_receiver_with_the_speed_that_was_planned_on_any_carp
 
 
 def chance(opponent: tuple[float, float], speed: float = 4.0, delay: float = 0.0) -> float:
-    return arrive_chance(0.0, 0.0, 3.0, 0.0, speed, delay, movers([robot(*opponent)]), NOBODY, -1, BALL)
+    return arrive_chance(0.0, 0.0, 3.0, 0.0, speed, delay, movers([robot(*opponent)]), NOBODY, -1, APPLIED)
 
 
 def test_a_lane_without_opponents_is_safe() -> None:
-    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, NOBODY, -1, BALL) > 0.99
+    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, NOBODY, -1, APPLIED) > 0.99
     assert chance((-2.0, 2.0)) > 0.95
 
 
@@ -73,14 +73,14 @@ def test_a_faster_ball_and_an_earlier_kick_are_safer() -> None:
 
 def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
     mates = movers([robot(1.5, 0.0)])
-    blocked = arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, -1, BALL)
-    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, 0, BALL) > 5.0 * blocked
+    blocked = arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, -1, APPLIED)
+    assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, 0, APPLIED) > 5.0 * blocked
 
 
 @given(st.floats(0.3, 2.7), st.floats(-2.0, 2.0))
 def test_both_sides_of_a_lane_are_alike(x: float, y: float) -> None:
     left, right = (
-        lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)]), BALL) for side in (y, -y)
+        lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)]), APPLIED) for side in (y, -y)
     )
     assert left == pytest.approx(right)
 
@@ -93,23 +93,23 @@ def test_whoever_cannot_pass_by_a_time_passes_later(
     x: float, y: float, vx: float, vy: float, time: float
 ) -> None:
     one = movers([robot(0.0, 0.0, velocity=(vx, vy, 0.0))])[0]
-    if cannot_pass_by(one, x, y, time):
-        assert time_to_pass(one, x, y) > time
+    if cannot_pass_by(one, x, y, time, APPLIED):
+        assert time_to_pass(one, x, y, APPLIED) > time
     # Far enough off nobody can, so that it tells something.
-    assert cannot_pass_by(one, 40.0, 0.0, time)
+    assert cannot_pass_by(one, 40.0, 0.0, time, APPLIED)
 
 
-@given(st.floats(1.4, LONGEST_CHIP))
+@given(st.floats(1.4, DEFAULT_TACTICS.longest_chip))
 def test_a_chipped_pass_rolls_at_its_target(length: float) -> None:
-    speed = chip_speed(length, BALL)
-    assert speed == pytest.approx(DEFAULT_BALL.chip_speed(length, CHIP_TOUCH_DOWNS))
+    speed = chip_speed(length, APPLIED)
+    assert speed == pytest.approx(DEFAULT_BALL.chip_speed(length, DEFAULT_TACTICS.chip_touch_downs))
     time, way = DEFAULT_BALL.touch_downs(speed)[-1]
     assert way == pytest.approx(length, rel=0.05)
-    assert chip_time(length, BALL) == pytest.approx(time, rel=0.1)
+    assert chip_time(length, APPLIED) == pytest.approx(time, rel=0.1)
 
 
 def chipped(opponent: tuple[float, float]) -> float:
-    return chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, movers([robot(*opponent)]), NOBODY, -1, BALL)
+    return chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, movers([robot(*opponent)]), NOBODY, -1, APPLIED)
 
 
 def test_a_chip_flies_over_whoever_stands_in_the_lane() -> None:
@@ -124,5 +124,5 @@ def test_a_chip_is_stopped_where_it_rises_and_where_it_comes_down(opponent: tupl
 
 def test_a_mate_where_a_chip_comes_down_blocks_it_unless_it_is_the_receiver() -> None:
     mates = movers([robot(2.5, 0.0)])
-    blocked = chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, -1, BALL)
-    assert blocked < 0.2 < chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, 0, BALL)
+    blocked = chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, -1, APPLIED)
+    assert blocked < 0.2 < chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, 0, APPLIED)
