@@ -15,7 +15,8 @@ from robobt.cli.common import Imports, Json, console, import_files, print_json, 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robobt.skills.aim.raters import ShotRater
+    from pydantic.fields import FieldInfo
+
     from robobt.skills.base import Skill
     from robobt.tree.parameters import Parameter
     from robobt.tree.registry import Registry
@@ -73,27 +74,17 @@ def raters(
 ) -> None:
     """List the shot raters, which judge shots for SelectShot and others, with their settings.
 
+    A file names one alone or with settings, as rater: {name: expected_goal, threshold: 0.8}.
+
     Keys of --json: raters, a list with name, description, parameters (name,
     type, required, default) and package (the distribution it came with, null
     for robobt's own and imported files'); problems: what is wrong with other
     packages' raters.
     """
     from robobt.skills.aim.raters import RATERS
-    from robobt.tree.parameters import Parameter
 
     import_files(imports)
-
-    def listed(cls: type[ShotRater]) -> _Listed:
-        fields = cls.model_fields.items()
-        own = [
-            Parameter(
-                key, given.annotation, inspect.Parameter.empty if given.is_required() else given.default
-            )
-            for key, given in fields
-        ]
-        return _Listed(_doc(cls), own, meanings={key: given.description or "" for key, given in fields})
-
-    _list("raters", RATERS, name, as_json, listed)
+    _list("raters", RATERS, name, as_json, _with_settings)
 
 
 def policies(
@@ -101,15 +92,29 @@ def policies(
     imports: Imports = None,
     as_json: Json = False,
 ) -> None:
-    """List the policies of GoToBall: what may stand in its parameter policy.
+    """List the policies of GoToBall, which may stand in its parameter policy, with their settings.
 
-    Keys of --json: policies, a list with name, description, parameters (none)
-    and package (null); problems (none).
+    A file names one alone or with settings, as policy: {name: geometric, arrival_speed: 0.3}.
+
+    Keys of --json: policies, a list with name, description, parameters (name,
+    type, required, default) and package (null); problems (none).
     """
     from robobt.skills.ball.go_to_ball import POLICIES
 
     import_files(imports)
-    _list("policies", POLICIES, name, as_json, lambda policy: _Listed(_doc(policy), []))
+    _list("policies", POLICIES, name, as_json, _with_settings)
+
+
+def _with_settings(entry: object) -> _Listed:
+    """Describe what may be named alone or with settings, which are the fields of a pydantic model."""
+    from robobt.tree.parameters import Parameter
+
+    fields: dict[str, FieldInfo] = getattr(entry, "model_fields", {})
+    own = [
+        Parameter(key, given.annotation, inspect.Parameter.empty if given.is_required() else given.default)
+        for key, given in fields.items()
+    ]
+    return _Listed(_doc(entry), own, meanings={key: given.description or "" for key, given in fields.items()})
 
 
 @dataclass

@@ -24,10 +24,13 @@ ATTACKERS: dict[str, dict[str, object]] = {
     "attack_main as published": {
         "play": "attack_main",
         "kick": "robobulls",
-        "tolerance": 0.1965,
+        "rater": {"name": "segment_clearance", "tolerance": 0.1965},
         "steady": 0.9,
     },
-    "attack_main, wide": {"play": "attack_main", "tolerance": 0.3645},
+    "attack_main, wide": {
+        "play": "attack_main",
+        "rater": {"name": "segment_clearance", "tolerance": 0.3645},
+    },
     "attack_nn, no feint": {"play": "attack_nn", "feint": False},
     "attack_nn": {"play": "attack_nn"},
     "attack_expected": {"play": "attack_expected"},

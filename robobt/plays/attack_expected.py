@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
-from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
@@ -13,13 +13,20 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
+from robobt.tree.parameters import formerly
+
+_STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong"}
 
 
+@formerly(
+    model="rater: {name: expected_goal, model: ...}",
+    threshold="min_score: ..., and rater: {name: expected_goal, threshold: ...}",
+)
 @PLAYS.register("attack_expected")
 def attack_expected(
     *,
-    model: str = "shot_expected_strong",
-    threshold: float = 0.9,
+    rater: Rater = _STRONG,
+    min_score: float = 0.9,
     last_resort: float = 0.3,
     patience: float = 10.0,
     max_distance: float | None = None,
@@ -35,9 +42,9 @@ def attack_expected(
     patience is at an end it takes what there is.
 
     Args:
-        model: predictor of the ``expected_goal`` rater: a shipped model or a file. The default
-            knows our own goalkeeper; ``shot_expected`` knows the weaker one of the paper's real shots.
-        threshold: least probability of a goal, 0 to 1.
+        rater: the shot rater, by name or with settings. The default's model knows our own goalkeeper;
+            ``shot_expected`` knows the weaker one of the paper's real shots.
+        min_score: worst shot taken, 0 to 1; of the default rater the probability of a goal.
         last_resort: the same once its patience is at an end.
         patience: longest time to draw the goalkeeper for [s].
         max_distance: no shots from farther than this from the goal [m]; None is any.
@@ -45,12 +52,11 @@ def attack_expected(
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
     """
-    rater = ExpectedGoal(model=model, threshold=threshold)
     return first_of(
         "attack expected",
         when(
             "score",
-            SelectShot(rater=rater, min_score=threshold, max_distance=max_distance),
+            SelectShot(rater=rater, min_score=min_score, max_distance=max_distance),
             KickToTarget(kick_speed=shot_speed, speed=speed),
         ),
         when(

@@ -7,6 +7,7 @@ from typing import Literal
 from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.pass_is_steady import PassIsSteady
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.aim.shot_is_steady import ShotIsSteady
@@ -17,13 +18,14 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess
+from robobt.tree.parameters import formerly
 
 
+@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
 @PLAYS.register("attack_main")
 def attack_main(
     *,
-    rater: str = "segment_clearance",
-    tolerance: float | None = None,
+    rater: Rater = "segment_clearance",
     min_score: float = 0.0,
     max_distance: float | None = None,
     kick: Literal["default", "robobulls"] = "default",
@@ -41,8 +43,7 @@ def attack_main(
     Source: RoboBulls' published code, AttackMain.
 
     Args:
-        rater: name of the shot rater.
-        tolerance: of the ``segment_clearance`` rater [m]; None is its default.
+        rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1.
         max_distance: no shots from farther than this from the goal [m]; None is any.
         kick: "default", or "robobulls" for the paper's baseline, which also gets
@@ -53,7 +54,7 @@ def attack_main(
         steady: see above [s]; RoboBulls' own is 0.9.
     """
     limits = ROBOBULLS_LIMITS if kick == "robobulls" else None
-    look = SelectShot(rater=rater, tolerance=tolerance, min_score=min_score, max_distance=max_distance)
+    look = SelectShot(rater=rater, min_score=min_score, max_distance=max_distance)
     return first_of(
         "attack main",
         when(

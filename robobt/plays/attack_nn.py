@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
-from robobt.skills.aim.raters.nn_filtered import NNFiltered
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.aim.shot_is_steady import ShotIsSteady
 from robobt.skills.ball.dribble_to import DribbleTo
@@ -14,14 +14,20 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess
+from robobt.tree.parameters import formerly
+
+_STRONG: Rater = {"name": "nn_filtered", "model": "shot_nn_strong"}
 
 
+@formerly(
+    model="rater: {name: nn_filtered, model: ...}",
+    threshold="rater: {name: nn_filtered, threshold: ...}",
+    tolerance="rater: {name: nn_filtered, tolerance: ...}",
+)
 @PLAYS.register("attack_nn")
 def attack_nn(
     *,
-    model: str = "shot_nn_strong",
-    threshold: float = 0.5,
-    tolerance: float = 0.3645,
+    rater: Rater = _STRONG,
     max_distance: float | None = None,
     shot_speed: float | None = None,
     speed: float = 1.0,
@@ -38,10 +44,8 @@ def attack_nn(
     AttackNN.
 
     Args:
-        model: predictor of the ``nn_filtered`` rater: a shipped model or a file. The default knows
-            our own goalkeeper; ``shot_nn`` knows the weaker one of the paper's real shots.
-        threshold: least chance of a goal that a robot has to leave, 0 to 1.
-        tolerance: a robot nearer to the line of the shot blocks it [m].
+        rater: the shot rater, by name or with settings. The default's model knows our own goalkeeper;
+            ``shot_nn`` knows the weaker one of the paper's real shots.
         max_distance: no shots from farther than this from the goal [m]; None is any.
         shot_speed: kick speed of a shot [m/s]; None is the kick's own.
         speed: factor on the top speed without the ball.
@@ -50,7 +54,6 @@ def attack_nn(
         feint: draw the goalkeeper; the paper's play does not, and waits where it has dribbled to.
     """
     draw = (DrawGoalkeeper(),) if feint else ()
-    rater = NNFiltered(model=model, threshold=threshold, tolerance=tolerance)
     return first_of(
         "attack nn",
         when(

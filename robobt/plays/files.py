@@ -15,7 +15,7 @@ from robobt.plays.mistakes import PlayError, check_returned, mistake_in_play
 from robobt.plays.private_files import join_play, private_files, split_play
 from robobt.plays.sources import PythonFileError
 from robobt.skills import SKILLS
-from robobt.skills.aim.raters import RATERS, ShotRater
+from robobt.skills.aim.raters import RATERS, Rater
 from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.restarts.referee_switch import RefereeSwitch
@@ -48,7 +48,7 @@ VOCABULARY = Vocabulary(
     SKILLS,
     PLAYS,
     (RefereeSwitch, StayOut, AvoidCrash, GoRound, TaskSwitch),
-    {ShotRater: RATERS},
+    {RATERS.kind: Rater},
     Store,
     _place_models,
 )

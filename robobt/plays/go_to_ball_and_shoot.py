@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Literal
 
 from robobt.plays.base import PLAYS, first_of, when
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_shot import SelectShot
-from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.go_to_ball import GoToBall, GoToBallPolicy
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.shoot import Shoot
@@ -18,11 +19,11 @@ from robobt.tree import Behaviour
 def go_to_ball_and_shoot(
     *,
     style: Literal["default", "robobulls"] = "default",
-    policy: str = "geometric",
+    policy: GoToBallPolicy = "geometric",
     shoot: Literal["kick_to_target", "geometric", "ddpg"] = "kick_to_target",
     shoot_model: str = "ddpg",
     pickup_speed: float | None = 0.5,
-    rater: str = "segment_clearance",
+    rater: Rater = "segment_clearance",
 ) -> Behaviour:
     """Go to the ball, pick it up, shoot at the opponent's goal: Table 4 of the paper.
 
@@ -37,13 +38,13 @@ def go_to_ball_and_shoot(
         style: "default" goes through the three skills; "robobulls" is the paper's
             baseline, whose kick includes the way behind the ball.
         policy: what decides the approach in the default style: "geometric", "ddpg",
-            or the name or file of a model for GoToBall.
+            or the name or file of a model for GoToBall; as ``{name: NAME, SETTING: VALUE}`` with settings.
         shoot: what shoots in the default style: KickToTarget at the rater's choice, or
             Shoot with its hand-written or its learned policy.
         shoot_model: the learned policy of Shoot: "ddpg", or the name or file of a model.
         pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for
             as fast as the robot's dribbler takes it, for approaches that arrive at speed.
-        rater: name of the shot rater that chooses the point to shoot at.
+        rater: the shot rater that chooses the point to shoot at, by name or with settings.
     """
     if style == "robobulls":
         return when("go to ball and shoot", SelectShot(rater=rater), KickToTarget(style="robobulls"))

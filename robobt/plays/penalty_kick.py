@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
-from robobt.skills.aim.raters.expected_goal import ExpectedGoal
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
@@ -15,13 +15,20 @@ from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.stop import Stop
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
+from robobt.tree.parameters import formerly
+
+_STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong", "threshold": 0.85}
 
 
+@formerly(
+    model="rater: {name: expected_goal, model: ...}",
+    threshold="min_score: ..., and rater: {name: expected_goal, threshold: ...}",
+)
 @PLAYS.register("penalty_kick")
 def penalty_kick(
     *,
-    model: str = "shot_expected_strong",
-    threshold: float = 0.85,
+    rater: Rater = _STRONG,
+    min_score: float = 0.85,
     distance: float = 2.8,
     patience: float = 2.5,
     carry: float = 0.8,
@@ -34,18 +41,18 @@ def penalty_kick(
     the ball to stand within that way and draw the goalkeeper at rest.
 
     Args:
-        model: predictor of the ``expected_goal`` rater: a shipped model or a file.
-        threshold: probability of a goal with which it shoots at once, 0 to 1.
+        rater: the shot rater, by name or with settings.
+        min_score: score of a shot that it takes at once, 0 to 1; of the default rater the probability of
+            a goal.
         distance: from the goal at which it draws the goalkeeper [m].
         patience: longest time to do that; then it shoots at what there is [s].
         carry: farthest that it carries the ball at once [m].
         dribble_speed: top speed with the ball [m/s].
     """
-    rater = ExpectedGoal(model=model, threshold=threshold)
     return first_of(
         "penalty kick",
         when("let go", CarriedFar(limit=carry), Stop()),
-        when("score", SelectShot(rater=rater, min_score=threshold), KickToTarget()),
+        when("score", SelectShot(rater=rater, min_score=min_score), KickToTarget()),
         when(
             "draw",
             HasBall(),

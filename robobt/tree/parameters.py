@@ -7,17 +7,23 @@ import json
 import types
 import typing
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
-from robobt.config.errors import RobobtError, short_repr, unknown_name
+from robobt.config.errors import FieldError, RobobtError, message_of, short_repr, unknown_name
 from robobt.config.validation import first_problem, nested
+from robobt.tree.by_name import ByName
 from robobt.tree.signatures import signature_of
+
+BuilderT = TypeVar("BuilderT", bound=Callable[..., object])
+
+_NOTHING: Mapping[str, str] = {}
 
 
 class ParameterError(RobobtError, ValueError):
@@ -60,12 +66,14 @@ class Parameter:
         """Convert plain data to this parameter's type.
 
         The rules are those of strict JSON: a list fits a tuple and an integer a
-        float, but "1.5" is not a number.
+        float, but "1.5" is not a number. What is no plain data but of the type stays as it is.
         """
         adapter = self._adapter()
         try:
             text = json.dumps(value)
         except (TypeError, ValueError, RecursionError) as error:
+            with suppress(Exception):
+                return adapter.validate_python(value, strict=True)
             raise ParameterError(self.name, f"{short_repr(value)} is not plain data") from error
         try:
             return adapter.validate_json(text, strict=True)
@@ -78,7 +86,11 @@ class Parameter:
                 raise ParameterError(f"{self.name}.{field}", said) from error
             problem = error.errors(include_url=False)[0]
             place = ".".join([self.name, *[str(part) for part in problem["loc"]]])
-            raise ParameterError(place, f"{problem['msg']}, not {short_repr(problem['input'])}") from error
+            cause = problem.get("ctx", {}).get("error")
+            if isinstance(cause, FieldError):
+                raise ParameterError(f"{place}.{cause.field}", message_of(cause)) from error
+            said = message_of(cause) if isinstance(cause, ValueError) else problem["msg"]
+            raise ParameterError(place, f"{said}, not {short_repr(problem['input'])}") from error
         except Exception as error:
             # Validators run foreign code, and an abstract model cannot be made at all.
             raise ParameterError(self.name, f"{type(error).__name__}: {error}") from error
@@ -88,7 +100,7 @@ class Parameter:
         adapter = self._adapter()
         try:
             data = adapter.dump_python(value, mode="json", warnings="error", exclude_defaults=True)
-            if self.convert(data) == value:
+            if self.convert(data) == self.convert(value):
                 return data
         except (PydanticSerializationError, ValueError, TypeError):
             pass
@@ -130,9 +142,16 @@ def check_parameters(
     whole: dict[str, object] = {}
     for name, value in given.items():
         key, _, inner = name.partition(".")
-        whole[key] = nested(whole.get(key), inner, value) if inner else value
-    check_names(what, known, whole)
+        whole[key] = nested(_settings_of(whole.get(key), known.get(key)), inner, value) if inner else value
+    check_names(what, known, whole, former_names(builder))
     return {name: known[name].convert(value) for name, value in whole.items()}
+
+
+def _settings_of(given: object, parameter: Parameter | None) -> object:
+    """Return what is given, or else the default; of one that is a name, the mapping with it."""
+    if given is None and parameter is not None and not parameter.required:
+        given = parameter.default
+    return {"name": given} if isinstance(given, str) else given
 
 
 def parameter_at(what: str, builder: Callable[..., object], name: str) -> Parameter:
@@ -156,11 +175,35 @@ def parameter_at(what: str, builder: Callable[..., object], name: str) -> Parame
     return found
 
 
-def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, object]) -> None:
-    """Check that every given name is known and every parameter without a default is given."""
+def formerly(**written: str) -> Callable[[BuilderT], BuilderT]:
+    """Return a decorator that says what to write for parameters a play or node had in earlier versions."""
+
+    def mark(builder: BuilderT) -> BuilderT:
+        builder.former_parameters = written  # type: ignore[attr-defined]
+        return builder
+
+    return mark
+
+
+def former_names(builder: object) -> Mapping[str, str]:
+    """Return what is to be written for parameters that a play or node had in earlier versions."""
+    found: Mapping[str, str] = getattr(builder, "former_parameters", _NOTHING)
+    return found
+
+
+def check_names(
+    what: str,
+    known: Mapping[str, Parameter],
+    given: Mapping[str, object],
+    former: Mapping[str, str] = _NOTHING,
+) -> None:
+    """Check that every given name is known and every parameter without a default is given.
+
+    ``former`` says what is to be written for parameters of earlier versions.
+    """
     for name in given:
         if name not in known:
-            there = unknown_name(name, known, "it has")
+            there = f"write {former[name]}" if name in former else unknown_name(name, known, "it has")
             raise ParameterError(name, f"{what} has no such parameter; {there}")
     for name, parameter in known.items():
         if parameter.required and name not in given:
@@ -171,7 +214,8 @@ def say_hint(hint: object) -> str:
     """Return a type as a person would write it."""
     origin, arguments = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
-        return say_hint(arguments[0])
+        named = [str(part) for part in arguments[1:] if isinstance(part, ByName)]
+        return named[0] if named else say_hint(arguments[0])
     if origin is typing.Literal:
         return " | ".join([repr(argument) for argument in arguments])
     if hint is type(None) or hint is None:

@@ -79,8 +79,8 @@ def test_the_goalkeeper_is_that_of_the_collection_scenario(speed: str, factor: f
 
 def test_attackers_differ_in_what_their_names_say():
     params = {name: deployed_scenario(NEAR[0], name).robots.blue[0].params for name in ATTACKERS}
-    assert params["attack_main, wide"]["tolerance"] == 0.3645
-    assert "tolerance" not in params["attack_main"]
+    assert params["attack_main, wide"]["rater"] == {"name": "segment_clearance", "tolerance": 0.3645}
+    assert "rater" not in params["attack_main"]
     assert params["attack_nn, no feint"]["feint"] is False
     assert "feint" not in params["attack_nn"]
     assert params["attack_main as published"]["kick"] == "robobulls"

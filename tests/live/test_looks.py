@@ -98,7 +98,7 @@ def test_it_is_used_by_the_keyboard_alone(live: Page, session: Session) -> None:
 
 
 def test_texts_stay_in_the_boxes_of_a_trees_picture(page: Page, tmp_path: Path) -> None:
-    shot = SelectShot(tolerance=0.123456, min_score=0.12345, max_distance=3.4567)
+    shot = SelectShot(keep=0.123456, min_score=0.12345, max_distance=3.4567)
     kick = KickToTarget(name="with the widest letters: WWWWMMMM", target=(4.123456789, -0.123456789))
     (tmp_path / "tree.svg").write_text(tree_svg(Sequence("both", memory=False, children=[shot, kick])))
     page.open((tmp_path / "tree.svg").as_uri())

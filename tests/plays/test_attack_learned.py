@@ -40,7 +40,7 @@ def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
 
 def test_without_patience_it_takes_what_there_is():
     impatient = deployed_scenario(Situation(speed="half"), "attack_expected").with_robot(
-        "blue 0", threshold=1.0, patience=0.5, last_resort=0.2
+        "blue 0", min_score=1.0, patience=0.5, last_resort=0.2
     )
     results = run_trials(impatient, sim_world, 3, seed=4).results
     assert all(result.robots["blue 0"].kicks for result in results)

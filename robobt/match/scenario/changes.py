@@ -55,10 +55,17 @@ def _with_robot(scenario: Scenario, robot: str, name: str, value: object) -> Sce
         raise scenario.error("takes a field or a parameter of the robot, as in 'blue 0.play'", robot)
     key, _, inner = name.partition(".")
     if inner:
-        setup = next((setup for identity, setup in scenario.robots if str(identity) == robot), None)
-        params = {} if setup is None else setup.params
-        value = nested(getattr(setup, key, params.get(key)), inner, value)
+        setups = {str(identity): setup for identity, setup in scenario.robots}
+        value = nested(_current(setups.get(robot), key), inner, value)
     return scenario.with_robot(robot, **{key: _frozen(value) if key in RobotSetup.model_fields else value})
+
+
+def _current(setup: RobotSetup | None, key: str) -> object:
+    """Return a field of a robot, or a parameter of its play; of one that is a name, the mapping with it."""
+    if setup is None or key in RobotSetup.model_fields:
+        return getattr(setup, key, None)
+    given = setup.params.get(key, setup.default_of(key))
+    return {"name": given} if isinstance(given, str) else given
 
 
 def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:

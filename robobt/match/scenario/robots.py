@@ -127,6 +127,11 @@ class RobotSetup(Part):
             data["params"] = {**data["params"], **params}
         return RobotSetup.model_validate(data)
 
+    def default_of(self, parameter: str) -> object:
+        """Return the default of a parameter of the play, None where it has none."""
+        known = {each.name: each.default for each in parameters_of(find_play(self.play)) if not each.required}
+        return known.get(parameter)
+
     def _params_in(self, play: object) -> dict[str, object]:
         """Return the parameters that another play has too; of none that can be read, all."""
         if play == self.play or not isinstance(play, str) or problem_with_play(play):

@@ -15,6 +15,7 @@ from robobt.plays.baselines.go_round import GoRound
 from robobt.plays.goalkeeper import goalkeeper
 from robobt.plays.penalty_kick import penalty_kick
 from robobt.skills.aim.aim_upfield import AimUpfield
+from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.intercept import Intercept
@@ -50,12 +51,12 @@ class _Shooting(NamedTuple):
     """Which shots are taken.
 
     Attributes:
-        rater: name of the shot rater.
+        rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1; what a score means is the rater's.
         distance: farthest from the goal [m].
     """
 
-    rater: str
+    rater: Rater
     min_score: float
     distance: float
 
@@ -63,7 +64,7 @@ class _Shooting(NamedTuple):
 @PLAYS.register("field_player_2026_11")
 def field_player_2026_11(
     *,
-    rater: str = "open_angle",
+    rater: Rater = "open_angle",
     min_score: float = 0.05,
     shot_distance: float = 5.0,
     dribble_speed: float = 1.2,
@@ -72,7 +73,7 @@ def field_player_2026_11(
     """Attack when first to the ball, else mark in the own half and support in the other.
 
     Args:
-        rater: name of the shot rater.
+        rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1.
         shot_distance: no shots from farther than this from the goal [m].
         dribble_speed: top speed with the ball [m/s].
@@ -99,7 +100,7 @@ def defender_2026_11(
     *,
     place: int = 0,
     size: int = 1,
-    rater: str = "open_angle",
+    rater: Rater = "open_angle",
     min_score: float = 0.05,
     shot_distance: float = 5.0,
     dribble_speed: float = 1.0,
@@ -110,7 +111,7 @@ def defender_2026_11(
     Args:
         place: in the wall, counted from 0 on the left as it looks out.
         size: how many defenders the wall has.
-        rater: name of the shot rater.
+        rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1.
         shot_distance: no shots from farther than this from the goal [m].
         dribble_speed: top speed with the ball [m/s].

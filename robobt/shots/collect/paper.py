@@ -68,7 +68,10 @@ def paper_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     seed = trial_seed(settings.seed, trial)
     variant = "mid_range" if trial // len(PARTS) % 2 == 0 else "close_range"
     section: Section | None = None
-    params: dict[str, float] = {"tolerance": tolerance, "shot_speed": SHOT_SPEED}
+    params: dict[str, object] = {
+        "rater": {"name": "segment_clearance", "tolerance": tolerance},
+        "shot_speed": SHOT_SPEED,
+    }
     base = _base(kind)
     blue = base.robots.blue[0]
     if kind == "motion":

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import exp, hypot, inf
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field
 
 from robobt.config.validation import Settings
-from robobt.skills.aim.raters import RATERS, OpenAngle, ShotRater, make_rater
+from robobt.skills.aim.raters import OpenAngle, ShotRater, make_rater
+from robobt.skills.aim.raters.base import BY_NAME
 from robobt.skills.aim.raters.goal_line import lane_clearances, obstacles
 from robobt.skills.store import Pass
 from robobt.world.ball_model import BallModel
@@ -41,7 +43,9 @@ class PassRater(Settings):
     interception rating.
     """
 
-    shot_rater: ShotRater = Field(OpenAngle(), description="judges the receiver's shot")
+    shot_rater: Annotated[ShotRater, BY_NAME, AfterValidator(make_rater)] = Field(
+        OpenAngle(), description="judges the receiver's shot"
+    )
     shot_weight: float = Field(0.6, ge=0, le=1, description="of the receiver's shot against progress")
     receive_speed: float = Field(2.0, gt=0, le=6.5, description="of the ball at the receiver [m/s]")
     max_speed: float = Field(6.0, gt=0, le=20, description="fastest kick [m/s]")
@@ -50,11 +54,6 @@ class PassRater(Settings):
     reaction: float = Field(0.12, ge=0, le=2, description="before an opponent moves to intercept [s]")
     margin_scale: float = Field(0.4, gt=0, le=10, description="head start that gives a safety of 0.73 [s]")
     ball: BallModel | None = Field(None, description="how the ball travels; by default as the frame says")
-
-    @field_validator("shot_rater", mode="before")
-    @classmethod
-    def _by_name(cls, value: object) -> object:
-        return make_rater(value) if isinstance(value, str) and value in RATERS else value
 
     def rate_all(self, frame: Frame, me: RobotState) -> list[Pass]:
         """Return every possible pass of ``me`` from where the ball lies, the best first."""

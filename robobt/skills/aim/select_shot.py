@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from robobt.skills.aim.raters import ShotRater, make_rater
+from robobt.skills.aim.raters import Rater, make_rater
 from robobt.skills.aim.raters.goal_line import judged_goal_line
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
+from robobt.tree.parameters import formerly
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 
 
+@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
 @skill
 class SelectShot(Skill):
     """Rate the shots from where the ball lies and write the best one to ``shot``.
@@ -19,8 +21,7 @@ class SelectShot(Skill):
     goes to ``goal_line``, to be recorded and shown.
 
     Args:
-        rater: name of a shot rater, or a rater with settings of its own.
-        tolerance: the tolerance of the ``segment_clearance`` rater [m]; None is its default.
+        rater: a shot rater: its name, ``{name: NAME, SETTING: VALUE}``, or the rater itself.
         min_score: worst score still accepted, 0 to 1; what a score means is the rater's.
         max_distance: no shots from farther than this from the goal's centre [m]; None is any.
         keep: stay with the opening of the last shot while it scores at most this
@@ -32,15 +33,14 @@ class SelectShot(Skill):
     writes = ("shot", "goal_line")
     optional = ("shot",)
 
-    rater: str | ShotRater = "segment_clearance"
-    tolerance: float | None = None
+    rater: Rater = "segment_clearance"
     min_score: float = 0.0
     max_distance: float | None = None
     keep: float = 0.1
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._rater = make_rater(self.rater, tolerance=self.tolerance)
+        self._rater = make_rater(self.rater)
 
     def on_running(self) -> Status:
         """Rate and choose."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from robobt.skills.aim.raters import ShotRater, make_rater
+from robobt.skills.aim.raters import Rater, make_rater
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.tree.parameters import formerly
 from robobt.world.geometry import distance
 
 
+@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
 @skill
 class ShotIsOpen(Skill):
     """SUCCESS when a shot from where the ball lies is good enough, else FAILURE with the reason.
@@ -15,20 +17,18 @@ class ShotIsOpen(Skill):
     Rates as :class:`SelectShot` does and writes nothing.
 
     Args:
-        rater: name of a shot rater, or a rater with settings of its own.
-        tolerance: the tolerance of the ``segment_clearance`` rater [m]; None is its default.
+        rater: a shot rater: its name, ``{name: NAME, SETTING: VALUE}``, or the rater itself.
         min_score: worst score still accepted, 0 to 1.
         max_distance: no shots from farther than this from the goal's centre [m]; None is any.
     """
 
-    rater: str | ShotRater = "segment_clearance"
-    tolerance: float | None = None
+    rater: Rater = "segment_clearance"
     min_score: float = 0.0
     max_distance: float | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._rater = make_rater(self.rater, tolerance=self.tolerance)
+        self._rater = make_rater(self.rater)
 
     def on_running(self) -> Status:
         """Rate and compare."""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
-from typing import Literal
+from typing import Annotated, Literal, TypeAlias
 
+from pydantic import Field
+
+from robobt.config.validation import Settings
 from robobt.motion.dribbling import carry
 from robobt.motion.path_planner import allowed_target, travel
 from robobt.motion.pilot import roughly, travel_time
-from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
+from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
@@ -30,8 +33,6 @@ _FACING = radians(30.0)
 _FACING_STILL = radians(60.0)
 _CLOSE = 0.16
 """How far from the ball's centre the approach aims [m]: the planner's ball detour is just narrower."""
-_ARRIVAL_SPEED = 0.5
-"""Speed at the end of the approach [m/s], kept by the pick-up."""
 _REACHABLE = 0.03
 _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
@@ -62,11 +63,13 @@ class Approach:
 Policy = Callable[[Store, Approach], RobotCommand]
 """What decides an approach, tick by tick."""
 
-POLICIES: Registry[Policy] = Registry("go-to-ball policy")
-"""Every way to get to the ball by its name."""
+POLICIES: Registry[Callable[..., object]] = Registry("go-to-ball policy")
+"""Every way to get to the ball by its name: a function, or a class of them that each leaf makes one of."""
 
-SHIPPED = {"ddpg": "go_to_ball_ddpg"}
-"""Those of them that are models, which are loaded when a leaf is made."""
+_BY_NAME = policies_by_name(POLICIES)
+
+GoToBallPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
+"""What decides an approach, as parameters take it."""
 
 
 @skill
@@ -82,8 +85,8 @@ class GoToBall(DrivingSkill):
     its answer is not a valid action, the skill fails and the robot stops.
 
     Args:
-        policy: what decides the motion, by name: "geometric", or another of
-            ``POLICIES``; or a trained one by its model's name or file.
+        policy: what decides the motion, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric", or
+            another of ``POLICIES``; or a trained one by its model's name or file.
         approach: "nearest" drives straight at the ball; "behind_target" comes
             from the side opposite to ``store.shot``, else ``store.target``, else
             the attacked goal.
@@ -98,7 +101,7 @@ class GoToBall(DrivingSkill):
     reads = ("shot", "target")
     optional = ("shot", "target")
 
-    policy: str = "geometric"
+    policy: GoToBallPolicy = "geometric"
     approach: Literal["nearest", "behind_target"] = "nearest"
     goalkeeper: bool = False
     _handed_over: bool = field(default=False, init=False)
@@ -107,7 +110,7 @@ class GoToBall(DrivingSkill):
         super().__post_init__()
         if self.approach not in ("nearest", "behind_target"):
             raise ValueError(f"approach must be 'nearest' or 'behind_target', not {self.approach!r}")
-        self._decide = find_policy(self.policy, POLICIES, SHIPPED, LearnedApproach)
+        self._decide = find_policy(self.policy, _BY_NAME, LearnedApproach)
         self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
 
     def on_running(self) -> Status:
@@ -154,29 +157,34 @@ class GoToBall(DrivingSkill):
 
 
 @POLICIES.register("geometric")
-def geometric(store: Store, approach: Approach) -> RobotCommand:
+class Geometric(Settings):
     """Drive to the place beside the ball by the planned way, facing it."""
-    frame, me = store.frame, store.me
-    meeting, facing = approach.meeting, approach.facing
-    bearing = direction(me.position, meeting)
-    heading = direction(me.position, frame.ball.position)
-    round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
-    far = distance(me.position, meeting) >= _TURN_DISTANCE
-    if far:
-        heading = roughly(me.heading, heading, _LOOKING)
-    elif facing is not None:
-        heading = facing
-    return travel(
-        frame,
-        me,
-        beside(meeting, bearing if facing is None else facing),
-        heading,
-        approach.limits,
-        avoid_ball=round_it,
-        goalkeeper=approach.goalkeeper,
-        final_speed=0.0 if round_it else _ARRIVAL_SPEED,
-        sketch=store.draw,
-    )
+
+    arrival_speed: float = Field(0.5, ge=0, le=10, description="at the end, kept by the pick-up [m/s]")
+
+    def __call__(self, store: Store, approach: Approach) -> RobotCommand:
+        """Compute the command of one tick."""
+        frame, me = store.frame, store.me
+        meeting, facing = approach.meeting, approach.facing
+        bearing = direction(me.position, meeting)
+        heading = direction(me.position, frame.ball.position)
+        round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
+        far = distance(me.position, meeting) >= _TURN_DISTANCE
+        if far:
+            heading = roughly(me.heading, heading, _LOOKING)
+        elif facing is not None:
+            heading = facing
+        return travel(
+            frame,
+            me,
+            beside(meeting, bearing if facing is None else facing),
+            heading,
+            approach.limits,
+            avoid_ball=round_it,
+            goalkeeper=approach.goalkeeper,
+            final_speed=0.0 if round_it else self.arrival_speed,
+            sketch=store.draw,
+        )
 
 
 class LearnedApproach:
@@ -231,9 +239,11 @@ def _reached(contact: object) -> tuple[float, float]:
 
 
 @POLICIES.register("ddpg")
-def ddpg(store: Store, approach: Approach) -> RobotCommand:
+class Ddpg(LearnedApproach):
     """Drive by the shipped model that was trained with DDPG: straight at the ball, from any side."""
-    return LearnedApproach(SHIPPED["ddpg"])(store, approach)
+
+    def __init__(self) -> None:
+        super().__init__("go_to_ball_ddpg")
 
 
 @compilable

@@ -14,12 +14,14 @@ from robobt.config.errors import RobobtError
 from robobt.config.resources import models_folder
 from robobt.models.actions import command_of
 from robobt.models.file import ModelError, UnknownModelError
+from robobt.models.find import find_model
 from robobt.models.fitting import read_fitting_model
 from robobt.models.policy import load_policy
 from robobt.motion.dribbling import carry
 from robobt.skills.store import TeamStore
 from robobt.skills.team.teamwork import has_kicked
 from robobt.tree import Registry
+from robobt.tree.by_name import ByName
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of
 from robobt.world.command import RobotCommand
 from robobt.world.features import (
@@ -211,28 +213,32 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
     return partial(team_view_of, mates=places[0], opponents=places[1], told=places[2])
 
 
-def find_policy(
-    name: str, policies: Registry[P], shipped: Mapping[str, str], learned: Callable[[str], P]
-) -> P:
-    """Return what decides for a skill, by the name in its ``policy`` parameter.
+def policies_by_name(registry: Registry[Callable[..., object]]) -> ByName:
+    """Return what reads the policies of a skill by name; what is no policy of its registry may be a model."""
+    return ByName(registry, others=_may_be_model, also="models go by name or file (robobt models)")
+
+
+def _may_be_model(name: str) -> bool:
+    try:
+        find_model(name)
+    except UnknownModelError:
+        return False
+    except ModelError:
+        # It is said where it is loaded.
+        pass
+    return True
+
+
+def find_policy(given: object, by_name: ByName, learned: Callable[[str], P]) -> P:
+    """Return what decides for a skill, by its ``policy`` parameter.
 
     Args:
-        name: of a policy, or the name or file of a model.
-        policies: the skill's own, by name.
-        shipped: names of policies that are models, with the models' names.
+        given: the name of a policy, a mapping with that and settings, a model by name or file, or a policy.
+        by_name: reads the skill's own policies.
         learned: makes a policy of a model.
 
     Raises:
-        ValueError: there is no such policy, or its model cannot be used.
+        ValueError: there is no such policy, its settings do not fit, or its model cannot be used.
     """
-    if name in policies and name not in shipped:
-        return policies[name]
-    try:
-        return learned(shipped.get(name, name))
-    except UnknownModelError as error:
-        if name in shipped:
-            raise
-        raise ValueError(
-            f"no {policies.kind} is called {name!r}; there are {', '.join(sorted({*policies, *shipped}))}, "
-            "and models by name or file (robobt models)"
-        ) from error
+    made = by_name.make(given)
+    return learned(made) if isinstance(made, str) else made

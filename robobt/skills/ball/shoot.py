@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from math import atan2, cos, hypot, inf, sin, sqrt
+from typing import Annotated, TypeAlias
 
+from pydantic import Field
+
+from robobt.config.validation import Settings
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.motion.path_planner import TARGETS
-from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy
+from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
@@ -16,11 +20,6 @@ from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.geometry import Point, direction, wrap_angle
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, RobotState
 
-KICK_SPEED = 6.4
-"""Kick speed of the hand-written policy [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
-
-_MAX_TURN = 4.0
-"""Turning rate of the hand-written policy with the ball [rad/s]."""
 _INSIDE = 0.6
 """Share of the open angle to each side of the aim in which it kicks."""
 _LEFT = 1.0
@@ -32,11 +31,13 @@ _LOST_AFTER = 0.15
 Policy = Callable[[Store], RobotCommand]
 """What decides a shot, tick by tick, while the robot has the ball."""
 
-POLICIES: Registry[Policy] = Registry("shoot policy")
-"""Every hand-written way to shoot by its name."""
+POLICIES: Registry[Callable[..., object]] = Registry("shoot policy")
+"""Every way to shoot by its name: a function, or a class of them that each leaf makes one of."""
 
-SHIPPED = {"ddpg": "shoot_ddpg"}
-"""The shipped models by the name of their policy, loaded when a leaf is made."""
+_BY_NAME = policies_by_name(POLICIES)
+
+ShootPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
+"""What decides a shot, as parameters take it."""
 
 
 @skill
@@ -48,9 +49,9 @@ class Shoot(Skill):
     a trained policy's answer is not a valid action, the skill fails and the robot stops.
 
     Args:
-        policy: what decides turning and kick, by name: "geometric" aims at
-            ``store.shot``, else at the middle of the goal; or another of
-            ``POLICIES``; "ddpg", or another trained one by its model's name or file.
+        policy: what decides turning and kick, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric"
+            aims at ``store.shot``, else at the middle of the goal; "ddpg", or another of ``POLICIES``;
+            or another trained one by its model's name or file.
 
     Raises:
         ValueError: no policy has that name, or its model cannot be used.
@@ -59,13 +60,13 @@ class Shoot(Skill):
     reads = ("shot",)
     optional = ("shot",)
 
-    policy: str = "geometric"
+    policy: ShootPolicy = "geometric"
     _kicked: bool = field(default=False, init=False)
     _had_it: float = field(default=-inf, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._decide = find_policy(self.policy, POLICIES, SHIPPED, LearnedShot)
+        self._decide = find_policy(self.policy, _BY_NAME, LearnedShot)
 
     def on_start(self) -> None:
         """Forget the last shot."""
@@ -91,21 +92,28 @@ class Shoot(Skill):
 
 
 @POLICIES.register("geometric")
-def geometric(store: Store) -> RobotCommand:
+class Geometric(Settings):
     """Turn to the aim at the rate the dribbler bears, and kick once the ball would leave towards it.
 
-    The ball leaves along the heading with whatever sideways velocity it has.
+    The ball leaves along the heading with whatever sideways velocity it has. The kick's speed is the rules'
+    6.5 m/s less what sideways motion may add.
     """
-    frame, me, ball = store.frame, store.me, store.frame.ball
-    aim, tolerance = _aim(store)
-    store.draw.line(TARGETS, ball.position, aim)
-    heading = direction(ball.position, aim)
-    decided = turn_with_ball(me, heading, dribbling_limits(max_turn=_MAX_TURN), frame.period)
-    sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
-    if abs(wrap_angle(heading - me.heading - atan2(sideways, KICK_SPEED))) <= tolerance:
-        decided.kick_speed = KICK_SPEED
-        decided.kick_trigger = KickTrigger.NOW
-    return decided
+
+    kick_speed: float = Field(6.4, gt=0, le=20, description="of the shot [m/s]")
+    max_turn: float = Field(4.0, gt=0, le=30, description="turning rate with the ball [rad/s]")
+
+    def __call__(self, store: Store) -> RobotCommand:
+        """Compute the command of one tick."""
+        frame, me, ball = store.frame, store.me, store.frame.ball
+        aim, tolerance = _aim(store)
+        store.draw.line(TARGETS, ball.position, aim)
+        heading = direction(ball.position, aim)
+        decided = turn_with_ball(me, heading, dribbling_limits(max_turn=self.max_turn), frame.period)
+        sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
+        if abs(wrap_angle(heading - me.heading - atan2(sideways, self.kick_speed))) <= tolerance:
+            decided.kick_speed = self.kick_speed
+            decided.kick_trigger = KickTrigger.NOW
+        return decided
 
 
 class LearnedShot:
@@ -131,6 +139,14 @@ class LearnedShot:
             c, s = left * cos(me.heading), left * sin(me.heading)
             decided.vx, decided.vy = c * me.vx + s * me.vy, c * me.vy - s * me.vx
         return decided
+
+
+@POLICIES.register("ddpg")
+class Ddpg(LearnedShot):
+    """Turn and kick by the shipped model that was trained with DDPG."""
+
+    def __init__(self) -> None:
+        super().__init__("shoot_ddpg")
 
 
 def _aim(store: Store) -> tuple[Point, float]:

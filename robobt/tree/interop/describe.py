@@ -31,7 +31,7 @@ def _describe(node: Behaviour, vocabulary: Vocabulary) -> Node:
         parameter = kind.parameters[name]
         if parameter.required or not _is_default(value, parameter.default):
             try:
-                described.parameters[name] = vocabulary.plain(parameter, value)
+                described.parameters[name] = parameter.plain(value)
             except ParameterError as error:
                 raise ValueError(f"{node_path(node)}: {error.parameter}: {error}") from error
     for name, shape in kind.branches.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import reduce
 from operator import or_
 from typing import Any
@@ -18,13 +19,14 @@ _WORDS: dict[str, Any] = {
 }
 
 
-def hint_of(words: str) -> Any:
-    """Return the type that words such as ``float | none`` stand for."""
+def hint_of(words: str, more: Mapping[str, Any]) -> Any:
+    """Return the type that words such as ``float | none`` stand for, ``more`` of them known besides ours."""
+    known = {**_WORDS, **more}
     members = [word.strip() for word in words.split("|")]
     for word in members:
-        if word not in _WORDS:
-            raise ValueError(f"{word!r} is not a type of a parameter; there are {', '.join(_WORDS)}")
-    return reduce(or_, [_WORDS[word] for word in members])
+        if word not in known:
+            raise ValueError(f"{word!r} is not a type of a parameter; there are {', '.join(known)}")
+    return reduce(or_, [known[word] for word in members])
 
 
 def words_of_default(default: object) -> str:

@@ -36,8 +36,7 @@ class Vocabulary:
         leaves: classes of leaves.
         controls: classes of control nodes besides these.
         plays: functions that return a tree.
-        values: for parameters of a type, the classes by whose names a file may give
-            one: ``{gaussian: {sigma: 0.1}}``.
+        words: types of a file's own parameters besides the common ones, by what the file calls them.
         store: the class of the store, to check entries against; None to leave them unchecked.
         place: a value as it is seen from the file's folder, where files name other files in values.
     """
@@ -45,7 +44,7 @@ class Vocabulary:
     leaves: Named
     plays: Named = field(default_factory=dict[str, Any])
     controls: tuple[type[Behaviour], ...] = ()
-    values: Mapping[type, Named] = field(default_factory=dict)
+    words: Mapping[str, Any] = field(default_factory=dict)
     store: type | None = None
     place: Callable[[Value, Path], Value] = lambda value, _: value
     _types: dict[object, NodeType] = field(default_factory=dict, repr=False)
@@ -91,22 +90,7 @@ class Vocabulary:
                     parameter.name, f"takes a value, and cannot be wired to the entry {value.entry!r}"
                 )
             return value
-        named = self._named(parameter)
-        if named is not None and isinstance(value, dict) and len(value) == 1:
-            ((name, settings),) = value.items()
-            if name in named:
-                return self._make_value(parameter, named[name], name, settings)
         return parameter.convert(value)
-
-    def plain(self, parameter: Parameter, value: object) -> object:
-        """Return the plain data that :meth:`convert` makes into an equal value."""
-        named = self._named(parameter)
-        if named is not None and not isinstance(value, str):
-            for name in named:
-                if named[name] is type(value):
-                    settings = Parameter(parameter.name, named[name]).plain(value)
-                    return {name: settings}
-        return parameter.plain(value)
 
     def from_text(self, parameter: Parameter, text: str) -> object:
         """Return the plain data that a text stands for, as BehaviorTree.CPP writes values.
@@ -153,20 +137,6 @@ class Vocabulary:
         except ParameterError:
             return False
         return True
-
-    def _named(self, parameter: Parameter) -> Named | None:
-        for member in members_of(parameter.hint):
-            if isinstance(member, type) and member in self.values:
-                return self.values[member]
-        return None
-
-    def _make_value(self, parameter: Parameter, cls: object, name: str, settings: object) -> object:
-        try:
-            return Parameter(parameter.name, cls).convert({} if settings is None else settings)
-        except ParameterError as error:
-            place = error.parameter.partition(".")[2]
-            where = ".".join([parameter.name, name, *([place] if place else [])])
-            raise ParameterError(where, str(error)) from error
 
 
 def takes_entry(parameter: Parameter) -> bool:

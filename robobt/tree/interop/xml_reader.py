@@ -310,7 +310,7 @@ class _Reader(ElementChecker):
     def _port(self, port: Element, name: str) -> Parameter:
         text = port.attributes.get("default")
         try:
-            hint = hint_of(port.attributes.get("type", ""))
+            hint = hint_of(port.attributes.get("type", ""), self.vocabulary.words)
         except ValueError:
             # A C++ type; what it means shows where the port is used.
             hint = Any

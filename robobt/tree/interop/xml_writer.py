@@ -131,7 +131,7 @@ class _Writer:
                 port["default"] = f"{{{parameter.name}}}"
             elif not parameter.required and parameter.default is not None:
                 try:
-                    default = self.vocabulary.plain(parameter, parameter.default)
+                    default = parameter.plain(parameter.default)
                     port["default"] = self.vocabulary.to_text(parameter, default)
                 except ParameterError:
                     # A default that only Python can say; Groot2 leaves it out and so it holds.

@@ -94,7 +94,8 @@ class _Reader:
                 raise self._error(marked, f"{name}: it needs a type or a default")
         try:
             value = None if default is None else self._plain(default)
-            parameter = Parameter(name, hint_of(words_of_default(value) if words is None else words))
+            words = words_of_default(value) if words is None else words
+            parameter = Parameter(name, hint_of(words, self.vocabulary.words))
             if default is None:
                 return parameter
             parameter.convert(value)

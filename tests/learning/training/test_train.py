@@ -271,7 +271,9 @@ def test_the_best_actor_is_chosen_by_success_and_time_and_never_by_the_return(tm
 
 
 def test_training_stops_once_the_bar_is_met(tmp_path):
-    early = slide_settings(collection__gradient_steps=4, evaluation__stop_success=0.9, evaluation__stop_time=9.0)
+    early = slide_settings(
+        collection__gradient_steps=4, evaluation__stop_success=0.9, evaluation__stop_time=9.0
+    )
     result = train(early, tmp_path, problem=SLIDE)
     assert result.figures["stopped_early"]
     assert result.figures["steps"] < 1920

@@ -19,11 +19,12 @@ def test_fields_are_changed_at_any_depth_and_the_rest_stays() -> None:
 
 def test_a_robot_is_changed_with_its_play_and_its_limits() -> None:
     scenario = load_scenario("deployed_full")
-    changes = {"blue 0.play": "attack_nn", "blue  0.threshold": 0.7, "yellow 0.limits.max_speed": 1}
+    changes = {"blue 0.play": "attack_nn", "blue  0.rater.threshold": 0.7, "yellow 0.limits.max_speed": 1}
     other = changed(scenario, changes)
     striker, keeper = other.robots.blue[0], other.robots.yellow[0]
     assert striker.play == "attack_nn"
-    assert (striker.params["threshold"], striker.params["max_distance"]) == (0.7, 3.5)
+    assert striker.params["max_distance"] == 3.5
+    assert striker.params["rater"] == {"name": "nn_filtered", "model": "shot_nn_strong", "threshold": 0.7}
     assert keeper.limits is not None
     assert keeper.limits.max_speed == 1.0
 

@@ -74,31 +74,60 @@ def test_a_spoiled_shot_model_is_refused_with_file_field_and_reason(
     tmp_path: Path, play: str, good: Path, how: str
 ):
     model = spoiled(tmp_path, how, good)
-    path = written(tmp_path, play, {"model": str(model)})
+    rater = "nn_filtered" if play == "attack_nn" else "expected_goal"
+    path = written(tmp_path, play, {"rater": {"name": rater, "model": str(model)}})
     said = refusal(path)
-    assert said.startswith(f"{path}: robots.blue.0.params.model: {model}: ")
+    assert said.startswith(f"{path}: robots.blue.0.params.rater.model: {model}: ")
     assert REASONS[how] in said
 
 
 @pytest.mark.parametrize(
-    ("play", "model", "reason"),
+    ("rater", "model", "reason"),
     [
-        ("attack_nn", "shot_expected", "takes the observation 'shot_scene', not 'shot'"),
-        ("attack_expected", "shot_nn", "takes the observation 'shot', not 'shot_scene'"),
-        ("attack_expected", "shot_expcted", "no model is called 'shot_expcted'; installed: "),
+        ("nn_filtered", "shot_expected", "takes the observation 'shot_scene', not 'shot'"),
+        ("expected_goal", "shot_nn", "takes the observation 'shot', not 'shot_scene'"),
+        ("expected_goal", "shot_expcted", "no model is called 'shot_expcted'; installed: "),
     ],
 )
 def test_a_model_for_something_else_or_of_no_such_name_is_refused(
-    tmp_path: Path, play: str, model: str, reason: str
+    tmp_path: Path, rater: str, model: str, reason: str
 ):
-    said = refusal(written(tmp_path, play, {"model": model}))
-    assert "robots.blue.0.params.model: " in said
+    said = refusal(written(tmp_path, "attack_main", {"rater": {"name": rater, "model": model}}))
+    assert "robots.blue.0.params.rater.model: " in said
     assert reason in said
 
 
 def test_a_setting_of_a_rater_is_named_in_one_line(tmp_path: Path):
-    said = refusal(written(tmp_path, "attack_expected", {"threshold": 3.0}))
-    assert said.endswith("robots.blue.0.params.threshold: input should be less than or equal to 1, not 3.0")
+    def said(**rater: object) -> str:
+        path = written(tmp_path, "attack_expected", {"rater": rater})
+        return refusal(path).removeprefix(f"{path}: robots.blue.0.params.rater.")
+
+    too_much = "threshold: input should be less than or equal to 1, not 3.0"
+    assert said(name="expected_goal", threshold=3.0) == too_much
+    misspelt = said(name="expected_goal", treshold=0.5)
+    assert misspelt.startswith("treshold: there is no such field; ")
+    assert misspelt.endswith("did you mean threshold?")
+    unknown = said(name="expected_gaol")
+    assert unknown.startswith("name: no shot rater is called 'expected_gaol'; ")
+    assert unknown.endswith("did you mean expected_goal?")
+    assert said(expected_goal={"threshold": 0.5}).startswith("name: is missing: write {name: expected_goal, ")
+
+
+@pytest.mark.parametrize(
+    ("play", "former", "now"),
+    [
+        ("attack_main", {"tolerance": 0.3}, "rater: {name: segment_clearance, tolerance: ...}"),
+        ("attack_nn", {"model": "shot_nn"}, "rater: {name: nn_filtered, model: ...}"),
+        ("attack_expected", {"threshold": 0.8}, "rater: {name: expected_goal, threshold: ...}"),
+        ("penalty_kick", {"threshold": 0.8}, "min_score: ..."),
+    ],
+)
+def test_a_setting_of_earlier_versions_is_refused_with_what_to_write(
+    tmp_path: Path, play: str, former: dict[str, object], now: str
+):
+    said = refusal(written(tmp_path, play, former))
+    assert f"robots.blue.0.params.{next(iter(former))}: " in said
+    assert now in said
 
 
 def test_a_tree_file_with_a_spoiled_model_is_refused_with_its_line(tmp_path: Path):
@@ -114,7 +143,7 @@ def test_a_tree_file_with_a_spoiled_model_is_refused_with_its_line(tmp_path: Pat
 
 def test_a_model_that_was_mended_is_read_again(tmp_path: Path):
     model = spoiled(tmp_path, "empty", SCENE)
-    path = written(tmp_path, "attack_expected", {"model": str(model)})
+    path = written(tmp_path, "attack_expected", {"rater": {"name": "expected_goal", "model": str(model)}})
     refusal(path)
     model.write_bytes(SCENE.read_bytes())
     load_scenario(path)
@@ -123,7 +152,8 @@ def test_a_model_that_was_mended_is_read_again(tmp_path: Path):
 
 
 def test_a_match_with_a_missing_model_ends_before_it_begins(tmp_path: Path):
-    path = written(tmp_path, "attack_expected", {"model": str(tmp_path / "gone.pt")})
+    rater = {"name": "expected_goal", "model": str(tmp_path / "gone.pt")}
+    path = written(tmp_path, "attack_expected", {"rater": rater})
     result = CliRunner().invoke(app, ["match", str(path)])
     assert result.exit_code == 1
     assert result.output.count("\n") == 1
@@ -143,22 +173,22 @@ def test_models_lie_beside_the_file_that_names_them(tmp_path: Path, monkeypatch)
         '<ChooseKick model="models/mine.pt"/></BehaviorTree></root>'
     )
     for play, params in (
-        ("attack_expected", {"model": "models/mine.pt"}),
+        ("attack_expected", {"rater": {"name": "expected_goal", "model": "models/mine.pt"}}),
         ("tree.yaml", {}),
         ("tree.xml", {}),
     ):
         load_scenario(written(away, play, params))
     (away / "models" / "mine.pt").unlink()
     assert "away/models/mine.pt: there is no such file" in refusal(
-        written(away, "attack_expected", {"model": "models/mine.pt"})
+        written(away, "attack_expected", {"rater": {"name": "expected_goal", "model": "models/mine.pt"}})
     )
 
 
 def test_a_model_given_on_the_command_line_is_refused_too():
-    settings = ["--set", "blue 0.play=attack_nn", "--set", "blue 0.model=/nowhere.pt"]
+    settings = ["--set", "blue 0.play=attack_nn", "--set", "blue 0.rater.model=/nowhere.pt"]
     result = CliRunner().invoke(app, ["match", "striker_vs_goalie", *settings])
     assert result.exit_code == 1
-    assert "blue 0: model: /nowhere.pt: there is no such file" in result.output
+    assert "blue 0: rater.model: /nowhere.pt: there is no such file" in result.output
     assert result.output.count("\n") == 1
 
 
@@ -166,4 +196,6 @@ def test_loading_a_scenario_with_a_model_does_not_need_torch(tmp_path: Path, mon
     copy = tmp_path / "mine.pt"
     copy.write_bytes(SCENE.read_bytes())
     monkeypatch.setitem(sys.modules, "torch", None)
-    load_scenario(written(tmp_path, "attack_expected", {"model": str(copy)}))
+    load_scenario(
+        written(tmp_path, "attack_expected", {"rater": {"name": "expected_goal", "model": str(copy)}})
+    )

@@ -14,17 +14,17 @@ from tests.match.scripted import data
 def test_a_parameter_of_the_play_is_set_beside_those_it_has() -> None:
     scenario = load_scenario("deployed_half")
     before = dict(scenario.robots.blue[0].params)
-    changed = scenario.with_robot("blue 0", play="attack_nn", threshold=0.9)
-    assert changed.robots.blue[0].params == {**before, "threshold": 0.9}
+    changed = scenario.with_robot("blue 0", play="attack_nn", steady=0.9)
+    assert changed.robots.blue[0].params == {**before, "steady": 0.9}
     assert changed.robots.blue[0].play == "attack_nn"
     assert scenario.robots.blue[0].params == before
     assert changed.source == scenario.source
 
 
 def test_another_play_keeps_only_the_parameters_that_it_has() -> None:
-    scenario = load_scenario("deployed_half").with_robot("blue 0", tolerance=0.3, min_score=0.2)
+    scenario = load_scenario("deployed_half").with_robot("blue 0", steady=0.3, min_score=0.2)
     changed = scenario.with_robot("blue 0", play="attack_nn")
-    assert changed.robots.blue[0].params == {"max_distance": 3.5, "shot_speed": 7.5, "tolerance": 0.3}
+    assert changed.robots.blue[0].params == {"max_distance": 3.5, "shot_speed": 7.5, "steady": 0.3}
     assert scenario.with_robot("blue 0", play="goalkeeper").robots.blue[0].params == {}
 
 

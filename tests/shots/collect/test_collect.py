@@ -201,7 +201,8 @@ def test_the_papers_shots_are_attack_mains_with_its_tolerances():
     attempt = paper_attempt(CollectionSettings(protocol="paper"), 1)
     blue, yellow = attempt.scenario.robots.blue[0], attempt.scenario.robots.yellow[0]
     assert (blue.play, yellow.params["speed"]) == ("attack_main", 0.5)
-    assert blue.params["tolerance"] == attempt.labels["tolerance"] == 0.3645
+    assert blue.params["rater"] == {"name": "segment_clearance", "tolerance": attempt.labels["tolerance"]}
+    assert attempt.labels["tolerance"] == 0.3645
     still = paper_attempt(CollectionSettings(protocol="paper"), 5)
     assert still.section in SECTIONS.values()
 

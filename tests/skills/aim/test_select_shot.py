@@ -70,7 +70,10 @@ def test_it_rates_from_the_ball_and_not_from_the_robot() -> None:
 
 
 def test_the_tolerance_is_that_of_the_corridor() -> None:
-    narrow, wide = Alone(SelectShot(tolerance=0.15)), Alone(SelectShot(tolerance=0.486))
+    narrow, wide = (
+        Alone(SelectShot(rater={"name": "segment_clearance", "tolerance": tolerance}))
+        for tolerance in (0.15, 0.486)
+    )
     assert narrow.tick(guarded(0.0)) is Status.SUCCESS
     assert wide.tick(guarded(0.0)) is Status.FAILURE
 
@@ -106,10 +109,10 @@ def test_a_clearly_better_opening_wins_over_the_last_one() -> None:
 
 
 def test_a_mistaken_setting_is_refused_when_the_tree_is_made() -> None:
-    with pytest.raises(KeyError, match="segment_clearance"):
+    with pytest.raises(ValueError, match="segment_clearance"):
         SelectShot(rater="segment_clearence")
     with pytest.raises(ValueError, match="tolerance"):
-        SelectShot(rater="gaussian", tolerance=0.2)
+        SelectShot(rater={"name": "gaussian", "tolerance": 0.2})
 
 
 @pytest.mark.parametrize("rater", [NNFiltered(), ExpectedGoal()])

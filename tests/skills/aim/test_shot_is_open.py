@@ -32,7 +32,8 @@ def test_how_open_is_a_parameter() -> None:
     assert Alone(skill).tick(GUARDED) is Status.FAILURE
     assert "scores" in skill.feedback_message
     assert Alone(ShotIsOpen(rater="open_angle", min_score=0.5)).tick(GUARDED) is Status.SUCCESS
-    assert Alone(ShotIsOpen(tolerance=0.486)).tick(GUARDED) is Status.FAILURE
+    wide = ShotIsOpen(rater={"name": "segment_clearance", "tolerance": 0.486})
+    assert Alone(wide).tick(GUARDED) is Status.FAILURE
 
 
 def test_how_near_is_a_parameter() -> None:

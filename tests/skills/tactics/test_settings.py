@@ -81,7 +81,11 @@ def test_a_scenario_changes_them_one_by_one() -> None:
     ("name", "value", "problem"),
     [
         ("swich_gain", 0.7, r"tactics\.swich_gain: blue 1: there is no such field; did you mean switch_gain"),
-        ("switch_gain", -1, r"tactics\.switch_gain: blue 1: input should be greater than or equal to 0, not -1"),
+        (
+            "switch_gain",
+            -1,
+            r"tactics\.switch_gain: blue 1: input should be greater than or equal to 0, not -1",
+        ),
         ("switch_gain", "much", r"tactics\.switch_gain: blue 1: input should be a valid number, not 'much'"),
     ],
 )

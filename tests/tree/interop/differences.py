@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
-from robobt.tree.interop.vocabulary import NodeType, Vocabulary
+from robobt.tree.interop.node_types import Arguments, NodeType
+from robobt.tree.interop.vocabulary import Vocabulary
 from robobt.tree.walk import node_path
 
 
@@ -16,10 +17,15 @@ def tree_differences(one: Behaviour, other: Behaviour, vocabulary: Vocabulary) -
     kind = vocabulary.type_of(one)
     assert kind is not None
     mine, theirs = kind.arguments(one), kind.arguments(other)
+
+    def plain(given: Arguments, name: str) -> object:
+        # A rater may be given as a mapping or made.
+        return kind.parameters[name].plain(given[name])
+
     found = [
         f"{path}: {name} is {mine[name]!r} and {theirs[name]!r}"
         for name in mine
-        if mine[name] != theirs[name]
+        if mine[name] != theirs[name] and plain(mine, name) != plain(theirs, name)
     ]
     if _cases(one, kind) != _cases(other, kind):
         found.append(f"{path}: the cases differ")

@@ -42,7 +42,7 @@ params:
   far: {type: float | none, default: null}
 trees:
   part:
-    params: {again: true, name: {type: str}}
+    params: {again: true, name: {type: shot rater}}
     tree: {Sequence: {name: part, memory: $again, children: [HasBall, {SelectShot: {rater: $name}}]}}
 tree:
   Selector:
@@ -56,7 +56,7 @@ tree:
       - ParallelCount: {name: both, success_count: 1, children: [Stop, {IsRestart: {kind: penalty}}]}
       - RefereeSwitch: {name: phases, cases: {halt | stop: Stop, play: Wall}, otherwise: Stop}
       - SubTree: {tree: keeper}
-      - {SelectShot: {rater: {gaussian: {}}, name: "a \\"name\\""}}
+      - {SelectShot: {rater: {name: gaussian, spacing: 0.03}, name: "a \\"name\\""}}
 """
 
 YAML_SEEDS = [EVERYTHING, *[tree_yaml(PLAYS[name](), name) for name in ("attack_support", "keeper")]]

@@ -376,7 +376,7 @@ def test_values_of_all_kinds_are_read(attributes: str, expected: Behaviour) -> N
     ids=lambda root: f"{type(root).__name__}-{root.name}",
 )
 def test_values_of_all_kinds_are_written(root: Behaviour) -> None:
-    vocabulary = Vocabulary(all_leaves(), values=PLAY_VOCABULARY.values)
+    vocabulary = Vocabulary(all_leaves())
     text = write_xml(describe_tree(root, vocabulary, "Main"), vocabulary)
     again = build_tree(read(text, vocabulary), vocabulary)
     assert tree_differences(root, again, vocabulary) == []

@@ -284,8 +284,23 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("play: p\ntree: {GoToPose: {limits: {top_speed: 1}}}", "limits.top_speed"),
         ("play: p\ntree: {GoToPose: {limits: {max_speed: -1}}}", "limits.max_speed"),
         ("play: p\ntree: {IsRestart: {kind: corner}}", "IsRestart: kind"),
-        ("play: p\ntree: {SelectShot: {rater: {open_angle: {width: 1}}}}", "rater.open_angle"),
-        ("play: p\ntree: {SelectShot: {rater: {guess: {}}}}", "SelectShot: rater"),
+        (
+            "play: p\ntree:\n  SelectShot:\n    rater: {name: open_angle, clearence: 1}",
+            r"test.yaml:4: SelectShot: rater.clearence: .*did you mean clearance\?",
+        ),
+        ("play: p\ntree: {SelectShot: {rater: {name: guess}}}", "SelectShot: rater.name: no shot rater"),
+        (
+            "play: p\ntree: {SelectShot: {rater: {open_angle: {}}}}",
+            r"rater.name: .*write {name: open_angle, ",
+        ),
+        (
+            "play: p\ntree: {SelectShot: {tolerance: 0.3}}",
+            r"tolerance: .*write rater: {name: segment_clearance",
+        ),
+        (
+            "play: p\nparams: {r: {type: shot rater, default: {name: gausian}}}\ntree: Stop",
+            r"r.name: .*did you mean gaussian\?",
+        ),
         ("play: p\ntree: {SelectShot: {rater: guess}}", "SelectShot: .*no shot rater is called 'guess'"),
         ("play: p\ntree: {Stop: {name: [1]}}", "name is a text"),
         ("play: p\ntree: {Sequence: {name: s, children: [Stop]}}", "memory: Sequence needs this parameter"),

@@ -1,6 +1,7 @@
 """Shot raters: small interchangeable objects that return target, tolerance and score."""
 
 from robobt.skills.aim.raters.base import RATERS as RATERS
+from robobt.skills.aim.raters.base import Rater as Rater
 from robobt.skills.aim.raters.base import ShotRater as ShotRater
 from robobt.skills.aim.raters.base import make_rater as make_rater
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal as ExpectedGoal

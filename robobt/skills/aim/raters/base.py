@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
-from typing import TypeAlias
+from collections.abc import Iterable, Mapping
+from typing import Annotated, TypeAlias
 
-from pydantic import ValidationError
-
-from robobt.config.validation import Settings, first_problem
+from robobt.config.errors import FieldError
+from robobt.config.validation import Settings
 from robobt.skills.store import Shot
 from robobt.tree import Registry
+from robobt.tree.by_name import ByName
 from robobt.world.geometry import FloatArray, Point, direction, wrap_angle
 from robobt.world.state import Frame, RobotState
 
@@ -66,27 +66,24 @@ RATERS: Registry[type[ShotRater]] = Registry(
 """The shot raters by name."""
 
 
-def make_rater(rater: str | ShotRater, **settings: object) -> ShotRater:
-    """Return the rater with this name and these settings; a rater already made is returned as it is.
+BY_NAME = ByName(RATERS, ShotRater)
+"""Reads a rater by its name, alone or with settings."""
 
-    Settings that are None are left at the rater's default.
+Rater: TypeAlias = Annotated[str | Mapping[str, object] | ShotRater, BY_NAME]
+"""A shot rater as parameters take it: its name, a mapping with the name and settings, or a rater."""
+
+
+def make_rater(rater: Rater) -> ShotRater:
+    """Return the rater that a name or a mapping stands for; a rater already made is returned as it is.
 
     Raises:
-        KeyError: no rater has that name.
-        ValueError: the rater has no such setting or refuses its value, or
-            settings came with a rater already made.
+        ValueError: no rater has that name, it has no such setting, or it refuses a value.
     """
-    given = {key: value for key, value in settings.items() if value is not None}
-    if isinstance(rater, ShotRater):
-        if given:
-            raise ValueError(f"give {', '.join(sorted(given))} to the rater itself")
-        return rater
-    made = RATERS[rater]
     try:
-        return made.model_validate(given)
-    except ValidationError as error:
-        field, problem = first_problem(error, made)
-        raise ValueError(f"rater {rater}: {field}: {problem}") from error
+        made: ShotRater = BY_NAME.make(rater)
+    except FieldError as error:
+        raise ValueError(f"rater {error.field}: {error}") from error
+    return made
 
 
 def best_first(shots: Iterable[Shot], origin: Point, heading: float) -> list[Shot]:

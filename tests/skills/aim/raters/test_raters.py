@@ -250,27 +250,28 @@ def test_shots_are_at_the_goal_and_scores_are_shares(
 
 
 def test_a_rater_is_made_by_name_with_its_settings() -> None:
-    assert make_rater("segment_clearance", tolerance=0.3645) == SegmentClearance(tolerance=0.3645)
-    assert make_rater("segment_clearance", tolerance=None) == SegmentClearance()
+    named = make_rater({"name": "segment_clearance", "tolerance": 0.3645})
+    assert named == SegmentClearance(tolerance=0.3645)
+    assert make_rater({"name": "segment_clearance"}) == make_rater("segment_clearance") == SegmentClearance()
 
 
 def test_a_rater_already_made_is_used_as_it_is() -> None:
     rater = SegmentClearance(tolerance=0.3)
     assert make_rater(rater) is rater
-    with pytest.raises(ValueError, match="tolerance"):
-        make_rater(rater, tolerance=0.2)
 
 
 def test_an_unknown_rater_is_named_with_those_there_are() -> None:
-    with pytest.raises(KeyError, match="open_angle"):
+    with pytest.raises(ValueError, match="open_angle"):
         make_rater("crystal_ball")
+    with pytest.raises(ValueError, match=r"name: .*'open_angel'; .*did you mean open_angle\?"):
+        make_rater({"name": "open_angel", "full_angle": 0.2})
 
 
 def test_a_setting_a_rater_does_not_have_is_refused() -> None:
     with pytest.raises(ValueError, match="tolerance"):
-        make_rater("open_angle", tolerance=0.2)
+        make_rater({"name": "open_angle", "tolerance": 0.2})
     with pytest.raises(ValueError, match="tolerance"):
-        make_rater("segment_clearance", tolerance=-1.0)
+        make_rater({"name": "segment_clearance", "tolerance": -1.0})
 
 
 def test_a_rater_of_ones_own_needs_only_rate_all() -> None:
@@ -284,5 +285,5 @@ def test_a_rater_of_ones_own_needs_only_rate_all() -> None:
 
 
 def test_a_setting_that_a_rater_lacks_is_named() -> None:
-    with pytest.raises(ValueError, match=r"rater open_angle: tolerance: there is no such field; there are"):
-        make_rater("open_angle", tolerance=0.3)
+    with pytest.raises(ValueError, match=r"clearence: there is no such field; .*did you mean clearance\?"):
+        make_rater({"name": "open_angle", "clearence": 0.3})
