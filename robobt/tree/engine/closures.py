@@ -92,6 +92,26 @@ class Marks:
         self.feedback.append(node)
         self._news.append(self)
 
+    def watched(self, node: Behaviour, tick: Tick) -> Tick:
+        """Return a node's tick, or update, that marks what it returns and says as far as that is new."""
+        last: Status | None = None
+        said: str | None = None
+
+        def watching() -> Status:
+            nonlocal last, said
+            status = tick()
+            now = node.feedback_message
+            if status is not last:
+                self.change()
+                last, said = status, now if now.__class__ is str else None
+            elif now is not said and (now.__class__ is not str or now != said):
+                # A text made anew is often the same; of anything else nobody knows what != does.
+                self.say(node)
+                said = now if now.__class__ is str else None
+            return status
+
+        return watching
+
     def whenever(self, tick: Tick) -> Tick:
         """Return a tick that marks the tree as changed, for nodes that are not followed."""
 

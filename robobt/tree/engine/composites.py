@@ -65,15 +65,6 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
-                if marks is not None:
-                    said = child.feedback_message
-                    if status is not step.status:
-                        marks.change()
-                        step.status, step.said = status, said if said.__class__ is str else None
-                    elif said is not step.said and (said.__class__ is not str or said != step.said):
-                        # A text made anew is often the same; of anything else nobody knows what != does.
-                        marks.say(child)
-                        step.said = said if said.__class__ is str else None
             if status is not SUCCESS:
                 if not node.memory and child is not children[-1]:
                     for later in plan[children.index(child) + 1 :]:
@@ -134,15 +125,6 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
                 if status.__class__ is not Status:
                     status = not_a_status(child, status)
                 child.status = status
-                if marks is not None:
-                    said = child.feedback_message
-                    if status is not step.status:
-                        marks.change()
-                        step.status, step.said = status, said if said.__class__ is str else None
-                    elif said is not step.said and (said.__class__ is not str or said != step.said):
-                        # A text made anew is often the same; of anything else nobody knows what != does.
-                        marks.say(child)
-                        step.said = said if said.__class__ is str else None
             if status is RUNNING or status is SUCCESS:
                 node.current_child = child
                 if previous is not child:

@@ -28,11 +28,8 @@ def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     """Return what ``Behaviour.tick`` and ``Behaviour.stop`` do to a leaf."""
     initialise, update, terminate = lifecycle(node)
     marks, visit = marks_of(visit), shown(node, visit)
-    last: Status | None = None
-    said: str | None = None
 
     def tick() -> Status:
-        nonlocal last, said
         if initialise is not None and node.status is not RUNNING:
             initialise()
         status = update()
@@ -41,14 +38,6 @@ def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
         if terminate is not None and status is not RUNNING:
             terminate(status)
         node.status = status
-        if marks is not None:
-            now = node.feedback_message
-            if status is not last:
-                marks.change()
-                last, said = status, now if now.__class__ is str else None
-            elif now is not said and (now.__class__ is not str or now != said):
-                marks.say(node)
-                said = now if now.__class__ is str else None
         if visit is not None:
             visit(node)
         return status
@@ -58,7 +47,7 @@ def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
             terminate(status)
         node.status = status
 
-    return tick, stop
+    return tick if marks is None else marks.watched(node, tick), stop
 
 
 def lifecycle(node: Behaviour) -> tuple[Hook | None, Tick, Hook | None]:
@@ -89,8 +78,6 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated
     tick_child, stop_child = compile_node(decorated, visit)
-    last: Status | None = None
-    said: str | None = None
 
     def renew() -> None:
         nonlocal decorated, tick_child, stop_child
@@ -100,7 +87,6 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
             marks.change()
 
     def tick() -> Status:
-        nonlocal last, said
         if initialise is not None and node.status is not RUNNING:
             initialise()
         if node.decorated is not decorated:
@@ -112,14 +98,6 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
         if status is not RUNNING:
             stop(status)
         node.status = status
-        if marks is not None:
-            now = node.feedback_message
-            if status is not last:
-                marks.change()
-                last, said = status, now if now.__class__ is str else None
-            elif now is not said and (now.__class__ is not str or now != said):
-                marks.say(node)
-                said = now if now.__class__ is str else None
         if show is not None:
             show(node)
         return status
@@ -135,7 +113,7 @@ def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop
             stop_child(INVALID)
         node.status = status
 
-    return tick, stop
+    return tick if marks is None else marks.watched(node, tick), stop
 
 
 def _eternal_guard(node: EternalGuard, visit: Visit | None) -> tuple[Tick, Stop]:

@@ -17,6 +17,7 @@ from robobt.tree.engine.closures import (
     Stop,
     Tick,
     Visit,
+    marks_of,
     own_method,
     shown,
 )
@@ -32,10 +33,9 @@ class Step:
         tick, stop: its closures.
         update: set for a leaf of which nothing else is to be called, so that a
             composite may spare itself the closures.
-        status, said: what that leaf returned and said last, as far as anybody asks for it.
     """
 
-    __slots__ = ("child", "said", "status", "stop", "tick", "update")
+    __slots__ = ("child", "stop", "tick", "update")
 
     def __init__(self, child: Behaviour, visit: Visit | None, parent: Behaviour) -> None:
         self.child = child
@@ -44,11 +44,11 @@ class Step:
             tick = _until(child, visit, *_LEAVES_AT[type(parent).tick])
             self.tick = visit.whenever(tick) if isinstance(visit, Marks) else tick
         self.update: Tick | None = None
-        self.status: Status | None = None
-        self.said: str | None = None
         if shown(child, visit) is None and known_as(child).make is leaf_closures:
             initialise, update, terminate = lifecycle(child)
-            self.update = update if initialise is terminate is None else None
+            if initialise is terminate is None:
+                marks = marks_of(visit)
+                self.update = update if marks is None else marks.watched(child, update)
 
 
 Plan: TypeAlias = list[Step]
