@@ -4,20 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 import pymunk
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls_of
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
-from robobt.sim.columns import COMMAND, FLIGHT, ROBOT_PARAMETERS, arena_row, robot_row, wheel_row
 from robobt.sim.contacts.solver import Contacts
-from robobt.sim.kernels import control_tick, scratch
-from robobt.sim.reports import IntArray, report
+from robobt.sim.kernels import control_tick
+from robobt.sim.parameters import arena_parameters, robot_limits, wheel_parameters
+from robobt.sim.records import (
+    ARENA,
+    BODY,
+    COMMAND,
+    CONTACT,
+    FLIGHT,
+    FRONT,
+    MOVING,
+    ROBOT,
+    SEEN_BALL,
+    ArenaArrays,
+    BoolArray,
+    IntArray,
+    RecordArray,
+    size,
+)
+from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
-from robobt.sim.wheels import HELD, WHEEL_STATE
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
@@ -48,7 +63,7 @@ class Arenas:
     Attributes:
         robots: (n, R, 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
         balls: (n, 4) x, y, vx, vy [m, m/s].
-        flight: (n, FLIGHT) the balls' heights, 0 on the ground, how fast they rise, and how often
+        flight: (n, 3) the balls' heights, 0 on the ground, how fast they rise, and how often
             they touched down since the kick [m, m/s].
         contact: (n, R) whether the ball lies in the robot's mouth.
         kicked: (n, R) whether the robot kicked during the last step.
@@ -57,12 +72,8 @@ class Arenas:
             ball's last, with z and vz for heading and omega; empty unless
             ``keep_history``.
         sub_steps: physics steps a control period.
-        arena_parameters, robot_parameters, wheel_parameters: what the kernels use; columns are
-            named in :mod:`robobt.sim.columns`. Writing to them randomises arenas.
         delay: from a command to its effect [s].
         late: whether that is after the period in which the command was given.
-        switch: (n,) sub-step of a period from which a command is in force, the
-            part of the command delay beyond whole periods; may be written to as well.
     """
 
     def __init__(
@@ -84,7 +95,6 @@ class Arenas:
         self.dt = period / self.sub_steps
         count = len(limits)
         walls = walls_of(field)
-        self._walls = np.array([box for box, _ in walls])
         self._contacts = Contacts(settings, count, walls, n)
         self._spaces: list[pymunk.Space] = []
         self._bodies: list[list[pymunk.Body]] = []
@@ -94,43 +104,100 @@ class Arenas:
                 space.collision_slop = SLOP
             self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
         self._buffer = BodyBuffer(self._spaces, count + 1) if self._spaces else None
-        self.balls = np.zeros((n, 4))
+        self.balls = np.zeros((n, size(SEEN_BALL)))
         self._rows = np.zeros((n * (count + 1), ROW)) if self._buffer is None else self._buffer.rows
         self._arena_rows[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
-        self._calls = NO_CALLS if self._buffer is None else self._buffer.calls
-        self.robots = np.zeros((n, count, 6))
-        self.flight = np.zeros((n, FLIGHT))
-        self.contact: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
-        self.kicked: NDArray[np.bool_] = np.zeros((n, count), dtype=np.bool_)
-        self.touch: NDArray[np.int64] = np.full(n, -1, dtype=np.int64)
-        self.history = np.zeros((self.sub_steps if keep_history else 0, n, count + 1, 6))
-        self.arena_parameters = np.tile(arena_row(settings), (n, 1))
-        self.robot_parameters = np.tile(
-            np.array([robot_row(own or settings.limits) for own in limits]).reshape(
-                1, count, ROBOT_PARAMETERS
+        self.robots = np.zeros((n, count, size(BODY)))
+        self.flight = np.zeros((n, size(FLIGHT)))
+        self.contact: BoolArray = np.zeros((n, count), dtype=np.bool_)
+        self.kicked: BoolArray = np.zeros((n, count), dtype=np.bool_)
+        self.touch: IntArray = np.full(n, -1, dtype=np.int64)
+        self.history = np.zeros((self.sub_steps if keep_history else 0, n, count + 1, size(BODY)))
+        self._states = np.zeros((n, size(ARENA)))
+        self._state["parameters"] = arena_parameters(settings)
+        self._state["wheels"] = wheel_parameters(settings.wheels)
+        self._kept = np.zeros((n, count, size(ROBOT)))
+        for i, own in enumerate(limits):
+            self.robot_parameters[:, i] = robot_limits(own or settings.limits)
+        contacts, pairs = self._contacts, self._contacts.memory.shape[1]
+        calls = NO_CALLS if self._buffer is None else self._buffer.calls
+        # The very arrays from above, whose views would become arrays of their own in a copy.
+        self._arrays = cast(
+            ArenaArrays,
+            tuple(
+                ArenaArrays(
+                    states=self._states,
+                    kept=self._kept,
+                    bodies=self._rows,
+                    robots=self.robots,
+                    balls=self.balls,
+                    flight=self.flight,
+                    contact=self.contact,
+                    kicked=self.kicked,
+                    touch=self.touch,
+                    history=self.history,
+                    walls=contacts.walls,
+                    edges=contacts.edges,
+                    parts=contacts.parts,
+                    solver=contacts.solver,
+                    masses=contacts.masses,
+                    bias=contacts.bias,
+                    memory=contacts.memory,
+                    fronts=np.zeros((count, size(FRONT))),
+                    contacts=np.zeros((pairs, size(CONTACT))),
+                    moving=np.zeros((count + 2, size(MOVING))),
+                    **calls._asdict(),
+                )
             ),
-            (n, 1, 1),
         )
-        self.wheel_parameters = np.tile(wheel_row(settings.wheels), (n, 1))
-        self._wheels = np.zeros((n, count, WHEEL_STATE))
-        self._scratch = scratch(count, self._contacts.memory.shape[1])
-        self._velocity = np.zeros((n, 2))
-        self._spin = np.zeros((n, 2))
-        self._twist = np.zeros((n, 1))
-        self._cooldown = np.zeros((n, count))
         self.delay = settings.realism.command_delay
         if settings.wheels is None:  # which react late by themselves
             self.delay += settings.limits.reaction
         delay = round(self.delay / self.dt)
-        self.switch: NDArray[np.int64] = np.full(n, delay % self.sub_steps, dtype=np.int64)
+        self.switch[:] = delay % self.sub_steps
         self.late = delay >= self.sub_steps
         # The command in force before the switch, the one after it, and those still on their way.
-        self._pipeline = [np.zeros((n, count, COMMAND)) for _ in range(delay // self.sub_steps + 2)]
+        self._pipeline = [np.zeros((n, count, size(COMMAND))) for _ in range(delay // self.sub_steps + 2)]
 
     @property
     def _arena_rows(self) -> FloatArray:
         # Not kept: in a copy, or unpickled, it would be an array of its own.
         return self._rows.reshape(len(self.balls), -1, ROW)
+
+    @property
+    def _state(self) -> RecordArray:
+        return self._states.view(ARENA)[..., 0]
+
+    @property
+    def _robots(self) -> RecordArray:
+        return self._kept.view(ROBOT)[..., 0]
+
+    @property
+    def arena_parameters(self) -> RecordArray:
+        """(n,) :class:`~robobt.sim.records.Parameters`; writing to them randomises arenas."""
+        parameters: RecordArray = self._state["parameters"]
+        return parameters
+
+    @property
+    def wheel_parameters(self) -> RecordArray:
+        """(n,) :class:`~robobt.sim.records.Wheels`; may be written to as well."""
+        wheels: RecordArray = self._state["wheels"]
+        return wheels
+
+    @property
+    def robot_parameters(self) -> RecordArray:
+        """(n, R) :class:`~robobt.sim.records.Limits`; may be written to as well."""
+        limits: RecordArray = self._robots["limits"]
+        return limits
+
+    @property
+    def switch(self) -> IntArray:
+        """(n,) sub-step of a period from which a command is in force; may be written to as well.
+
+        It is the part of the command delay beyond whole periods.
+        """
+        switch: IntArray = self._state["switch"]
+        return switch
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
         """Set arenas up anew: positions and velocities, no command on its way.
@@ -151,12 +218,9 @@ class Arenas:
         rows[which, :count, : poses.shape[-1]] = poses
         rows[which, count, :2] = ball[:, :2]
         rows[which, count, 3:5] = ball[:, 2:]
-        self._velocity[which] = ball[:, 2:]
-        self._spin[which] = ball[:, 2:] if self.settings.ball.placed_rolls else 0.0
-        self._twist[which] = 0.0
+        self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._cooldown[which] = 0.0
-        self._wheels[which] = 0.0
+        self._restart_robots(which)
         self.touch[which] = -1
         self.kicked[which] = False
         for commands in self._pipeline:
@@ -188,15 +252,13 @@ class Arenas:
             vz: how fast it rises [m/s].
         """
         count = self.contact.shape[1]
-        self._wheels[arena, :, HELD] = 0.0
+        self._robots["hinge"]["held"][arena] = 0.0
         self._read()
         row = self._arena_rows[arena, count]
         row[:] = 0.0
         row[:2] = x, y
         row[3:5] = vx, vy
-        self._velocity[arena] = vx, vy
-        self._spin[arena] = (vx, vy) if rolls else (0.0, 0.0)
-        self._twist[arena] = 0.0
+        self._set_ball(arena, vx, vy, rolls)
         self.flight[arena] = z, vz, 0.0
         self._contacts.forget(arena)
         self._write()
@@ -211,8 +273,7 @@ class Arenas:
         """
         self._read()
         self._arena_rows[arena, robot] = state
-        self._cooldown[arena, robot] = 0.0
-        self._wheels[arena, robot] = 0.0
+        self._restart_robots((arena, robot))
         self._contacts.forget(arena)
         self._write()
 
@@ -234,47 +295,13 @@ class Arenas:
                 0 for a flat one. Must be finite.
         """
         oldest = self._pipeline.pop(0)
-        if commands.shape[-1] == COMMAND:
+        if commands.shape[-1] == oldest.shape[-1]:
             np.copyto(oldest, commands)
         else:
             oldest[..., :-1] = commands
             oldest[..., -1] = 0.0
         self._pipeline.append(oldest)
-        contacts = self._contacts
-        control_tick(
-            *self._scratch,
-            *self._calls,
-            contacts.numbers,
-            contacts.walls,
-            contacts.edges,
-            contacts.parts,
-            contacts.inverse,
-            contacts.bias,
-            contacts.memory,
-            contacts.clock,
-            self._rows,
-            self._walls,
-            self.arena_parameters,
-            self.robot_parameters,
-            self.wheel_parameters,
-            self._wheels,
-            self._pipeline[0],
-            self._pipeline[1],
-            self.switch,
-            self.sub_steps,
-            self.dt,
-            self._velocity,
-            self._spin,
-            self._twist,
-            self.flight,
-            self._cooldown,
-            self.contact,
-            self.touch,
-            self.kicked,
-            self.robots,
-            self.balls,
-            self.history,
-        )
+        control_tick(self._arrays, self._pipeline[0], self._pipeline[1], self.sub_steps, self.dt)
 
     def step_bare(self) -> None:
         """Step pymunk's spaces alone, by its own call: what benchmarks compare with."""
@@ -289,12 +316,17 @@ class Arenas:
     def _write(self) -> None:
         if self._buffer is not None:
             self._buffer.write()
-        report(
-            self._rows,
-            self.arena_parameters,
-            self._velocity,
-            self.flight,
-            self.contact,
-            self.robots,
-            self.balls,
-        )
+        report(self._arrays)
+
+    def _set_ball(
+        self, arenas: IntArray | int, vx: FloatArray | float, vy: FloatArray | float, rolls: bool
+    ) -> None:
+        balls = self._state["ball"]
+        balls["vx"][arenas], balls["vy"][arenas], balls["twist"][arenas] = vx, vy, 0.0
+        balls["spin_x"][arenas], balls["spin_y"][arenas] = (vx, vy) if rolls else (0.0, 0.0)
+
+    def _restart_robots(self, which: IntArray | tuple[int | IntArray, int | IntArray]) -> None:
+        """Forget what is kept of some robots but their limits."""
+        kept = self._robots
+        for name in (kept.dtype.names or ())[1:]:
+            kept[name][which] = 0.0

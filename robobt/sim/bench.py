@@ -9,7 +9,7 @@ from time import perf_counter, process_time
 import numpy as np
 
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import COMMAND
+from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import preset
 from robobt.sim.world import SimWorld
 from robobt.world.command import RobotCommand
@@ -59,7 +59,7 @@ def _crowded(side: int, n: int, seconds: float) -> float:
     arenas = Arenas(DIVISION_B, [None] * (2 * side), settings, TRAINING_PERIOD, n)
     angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(2 * side) * pi / side
     starts = np.stack([0.8 * np.cos(angles), 0.8 * np.sin(angles), angles + pi], axis=-1)
-    commands = np.zeros((n, 2 * side, COMMAND))
+    commands = np.zeros((n, 2 * side, size(COMMAND)))
     spent: list[float] = []
     second = round(1.0 / TRAINING_PERIOD)
     while sum(spent) < seconds:

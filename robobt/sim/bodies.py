@@ -8,11 +8,13 @@ from typing import NamedTuple
 
 import pymunk
 
-from robobt.sim.columns import SOFT
 from robobt.sim.robot_settings import BodySettings
 from robobt.sim.settings import ContactSettings, SimSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+
+SOFT = 0.008
+"""How far inside a robot's core, where there is one, the ball meets something hard [m]."""
 
 _WALL = 0.02
 """Thickness of a goal's walls in the rules [m]."""

@@ -14,7 +14,7 @@ and mended here.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pymunk
@@ -25,10 +25,10 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
+from robobt.sim.records import BODY, Body, Records, size
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
 
-ROW = 6
+ROW = size(BODY)
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
 
 _X, _Y, _TURN, _VX, _VY, _SPIN = _PLACES = (64, 72, 112, 80, 88, 120)
@@ -109,37 +109,53 @@ call_each_body = cast(Callable[..., None], _call_each_body)
 
 
 @compiled_lean
-def load_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
-    """Fill ``rows`` (k, 6) from the bodies at the addresses ``bodies`` (k,), after a step."""
-    for i in range(bodies.shape[0]):
+def load_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
+    """Fill ``bodies`` (k,) from those at the addresses ``places`` (k,), after a step."""
+    for i in range(places.shape[0]):
+        place, body = places[i], bodies[i]
         # As ``cpBodyGetPosition``, which knows no negative zero.
-        rows[i, 0] = load(bodies[i] + np.uint64(_X)) + 0.0
-        rows[i, 1] = load(bodies[i] + np.uint64(_Y)) + 0.0
-        rows[i, 2] = load(bodies[i] + np.uint64(_TURN))
-        rows[i, 3] = load(bodies[i] + np.uint64(_VX))
-        rows[i, 4] = load(bodies[i] + np.uint64(_VY))
-        rows[i, 5] = load(bodies[i] + np.uint64(_SPIN))
+        body.x = load(place + np.uint64(_X)) + 0.0
+        body.y = load(place + np.uint64(_Y)) + 0.0
+        body.heading = load(place + np.uint64(_TURN))
+        body.vx = load(place + np.uint64(_VX))
+        body.vy = load(place + np.uint64(_VY))
+        body.omega = load(place + np.uint64(_SPIN))
 
 
 @compiled_lean
-def store_bodies(bodies: NDArray[np.uint64], rows: FloatArray) -> None:
-    """Set the bodies at the addresses ``bodies`` (k,) from ``rows`` (k, 6), right before a step.
+def store_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
+    """Set the bodies at the addresses ``places`` (k,) from ``bodies`` (k,), right before a step.
 
     The step computes what follows from them; without one, ``cpSpaceEachBody`` has to write them.
     """
-    for i in range(bodies.shape[0]):
-        store(bodies[i] + np.uint64(_X), rows[i, 0])
-        store(bodies[i] + np.uint64(_Y), rows[i, 1])
-        store(bodies[i] + np.uint64(_TURN), rows[i, 2])
-        store(bodies[i] + np.uint64(_VX), rows[i, 3])
-        store(bodies[i] + np.uint64(_VY), rows[i, 4])
-        store(bodies[i] + np.uint64(_SPIN), rows[i, 5])
+    for i in range(places.shape[0]):
+        place, body = places[i], bodies[i]
+        store(place + np.uint64(_X), body.x)
+        store(place + np.uint64(_Y), body.y)
+        store(place + np.uint64(_TURN), body.heading)
+        store(place + np.uint64(_VX), body.vx)
+        store(place + np.uint64(_VY), body.vy)
+        store(place + np.uint64(_SPIN), body.omega)
 
 
-Calls = tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64], NDArray[np.int32]]
-"""What compiled code needs to call pymunk; see :class:`BodyBuffer`."""
+class Calls(NamedTuple):
+    """What compiled code needs to call pymunk.
 
-NO_CALLS: Calls = (
+    Attributes:
+        calls: the addresses of step, each-body and the writing callback.
+        handles: (spaces, 2) the addresses of each space and its batch descriptor.
+        places: (spaces, bodies) the addresses of the bodies.
+        cursors: (spaces, k) where in its rows a space's next batched call starts is the first number of a
+            row, to be set to 0 before each.
+    """
+
+    calls: NDArray[np.uint64]
+    handles: NDArray[np.uint64]
+    places: NDArray[np.uint64]
+    cursors: NDArray[np.int32]
+
+
+NO_CALLS = Calls(
     np.zeros(0, dtype=np.uint64),
     np.zeros((0, 2), dtype=np.uint64),
     np.zeros((0, 0), dtype=np.uint64),
@@ -159,10 +175,7 @@ class BodyBuffer:
         rows: (spaces * stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
             the order in which they were added, then spare rows [m, rad, m/s, rad/s].
         stride: rows of a space.
-        calls: what compiled code needs to call pymunk: the addresses of step, each-body and the writing
-            callback; (spaces, 2) of each space and its batch descriptor; (spaces, bodies) of the bodies;
-            and (spaces, k) cursors: where in its rows a space's next batched call starts is the first
-            number of a row, to be set to 0 before each.
+        calls: what compiled code needs to call pymunk.
     """
 
     def __init__(self, spaces: Sequence[pymunk.Space], bodies: int) -> None:
@@ -202,7 +215,7 @@ class BodyBuffer:
             [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)],
             dtype=np.uint64,
         )
-        self.calls: Calls = functions, handles, places, self._cursors
+        self.calls = Calls(functions, handles, places, self._cursors)
         self._check_order()
         _check_places()
 

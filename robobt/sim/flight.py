@@ -14,12 +14,11 @@ from __future__ import annotations
 
 from math import sqrt
 
-from robobt.sim.columns import BALL_R, BOUNCE_WALL, HOP_FIRST, HOP_OTHER, HOP_UP, HOPS, RISE, ROBOT_R, Z
+from robobt.sim.records import Arena
 from robobt.sim.sweep import in_a_wall
 from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
-from robobt.world.state import ROBOT_HEIGHT
+from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
 
 _LAST_APEX = 0.01
 """A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
@@ -27,98 +26,72 @@ _LAST_APEX = 0.01
 _STADIUM = 4
 """How many of an arena's walls surround the field; the others are the goals'."""
 
+_LEFT, _AHEAD = 0, 2
+"""Which of them bound y and x."""
+
 
 @compiled_lean
-def _above_something(
-    rows: FloatArray, first: int, robots: int, x: float, y: float, walls: FloatArray, p: FloatArray
-) -> bool:
-    """Return whether a robot or a goal's wall is below a ball at (x, y), in the arena's coordinates."""
-    ball = rows[first + robots]
-    reach = p[ROBOT_R] + p[BALL_R]
-    for i in range(robots):
-        dx, dy = rows[first + i, 0] - ball[0], rows[first + i, 1] - ball[1]
+def _above_something(arena: Arena) -> bool:
+    """Return whether a robot or a goal's wall is below the ball."""
+    body = arena.body
+    reach = ROBOT_RADIUS + BALL_RADIUS
+    for i in range(len(arena.robots)):
+        dx, dy = arena.robots[i].x - body.x, arena.robots[i].y - body.y
         if dx * dx + dy * dy < reach * reach:
             return True
-    return in_a_wall(x, y, walls[_STADIUM:], p[BALL_R])
+    return in_a_wall(body.x, body.y, arena.walls[_STADIUM:])
 
 
 @compiled_lean
-def fly(
-    air: FloatArray,
-    velocity: FloatArray,
-    spin: FloatArray,
-    rows: FloatArray,
-    first: int,
-    robots: int,
-    walls: FloatArray,
-    p: FloatArray,
-    dt: float,
-    move: FloatArray,
-) -> bool:
-    """Let a ball fly for one step.
+def fly(arena: Arena, dt: float) -> bool:
+    """Let the ball fly for one step; return whether it is above robots and goals all the time.
 
-    Args:
-        air: (FLIGHT,) its height above where it lies, its speed upwards and its touch-downs, changed.
-        velocity: of the ball along the ground, changed by a touch-down [m/s].
-        spin: its rolling as a velocity, changed by a touch-down [m/s].
-        rows: of robots and balls.
-        first: where the arena's robots begin in them.
-        robots: how many there are; the ball's row follows theirs.
-        walls: (W, 4) of the arena, those around the field first [m].
-        p: parameters of the arena.
-        dt: time step [s].
-        move: (2,) receives its mean velocity along the ground [m/s].
-
-    Returns:
-        whether it is above robots and goals all the time.
+    A touch-down changes its velocity along the ground and its rolling.
     """
-    ball = rows[first + robots]
-    before, rise = air[Z], air[RISE]
+    ball, air, settings = arena.ball, arena.air, arena.parameters.ball
+    before, rise = air.z, air.vz
     after = before + (rise - 0.5 * GRAVITY * dt) * dt
-    floor = 0.0
-    if before >= ROBOT_HEIGHT > after:
-        x, y = ball[0], ball[1]
-        if _above_something(rows, first, robots, x, y, walls, p):
-            floor = ROBOT_HEIGHT
-    move[0], move[1] = velocity[0], velocity[1]
+    floor = ROBOT_HEIGHT if before >= ROBOT_HEIGHT > after and _above_something(arena) else 0.0
+    ball.move_x, ball.move_y = ball.vx, ball.vy
     if after > floor:
-        air[Z] = after
-        air[RISE] = rise - GRAVITY * dt
+        air.z = after
+        air.vz = rise - GRAVITY * dt
         return bool(before >= ROBOT_HEIGHT and after >= ROBOT_HEIGHT)
     fall = sqrt(rise * rise + 2.0 * GRAVITY * (before - floor))
     left = dt - min((rise + fall) / GRAVITY, dt)
-    up = p[HOP_UP] * fall
+    up = settings.rebound * fall
     ends = up * up < 2.0 * GRAVITY * _LAST_APEX
     if floor == 0.0 or not ends:
-        keep = p[HOP_FIRST] if air[HOPS] == 0.0 else p[HOP_OTHER]
-        air[HOPS] += 1.0
-        for k in range(2):
-            velocity[k] *= keep
-            spin[k] = velocity[k]
-            move[k] += (velocity[k] - move[k]) * left / dt
+        keep = settings.first_hop if air.hops == 0.0 else settings.other_hops
+        air.hops += 1.0
+        ball.vx *= keep
+        ball.vy *= keep
+        ball.spin_x, ball.spin_y = ball.vx, ball.vy
+        ball.move_x += (ball.vx - ball.move_x) * left / dt
+        ball.move_y += (ball.vy - ball.move_y) * left / dt
     if ends:
-        air[Z], air[RISE] = floor, 0.0
+        air.z, air.vz = floor, 0.0
     else:
-        air[Z] = floor + (up - 0.5 * GRAVITY * left) * left
-        air[RISE] = up - GRAVITY * left
+        air.z = floor + (up - 0.5 * GRAVITY * left) * left
+        air.vz = up - GRAVITY * left
     return floor > 0.0
 
 
 @compiled_lean
-def pass_over(
-    ball: FloatArray,
-    velocity: FloatArray,
-    walls: FloatArray,
-    move: FloatArray,
-    p: FloatArray,
-    dt: float,
-) -> None:
-    """Move a high ball by ``move``, and back where it meets a wall around the field."""
-    for k in range(2):
-        limit = (walls[2, 0] if k == 0 else walls[0, 1]) - p[BALL_R]
-        place = ball[k] + move[k] * dt
-        if abs(place) > limit:
-            place = limit if place > 0.0 else -limit
-            if velocity[k] * place > 0.0:
-                velocity[k] *= -p[BOUNCE_WALL]
-        ball[k] = place
+def pass_over(arena: Arena, dt: float) -> None:
+    """Move a high ball, and back where it meets a wall around the field."""
+    body, ball, bounce = arena.body, arena.ball, arena.parameters.contact.wall_restitution
+    body.x, ball.vx = _along(body.x, ball.vx, ball.move_x * dt, arena.walls[_AHEAD].x0, bounce)
+    body.y, ball.vy = _along(body.y, ball.vy, ball.move_y * dt, arena.walls[_LEFT].y0, bounce)
+
+
+@compiled_lean
+def _along(place: float, speed: float, way: float, wall: float, bounce: float) -> tuple[float, float]:
+    """Return where a ball is along one axis, and its speed, after a ``way`` on which a wall may be."""
+    limit = wall - BALL_RADIUS
+    place += way
+    if abs(place) > limit:
+        place = limit if place > 0.0 else -limit
+        if speed * place > 0.0:
+            speed *= -bounce
+    return place, speed

@@ -10,45 +10,29 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-from robobt.sim.columns import (
-    FORWARD_DOWN,
-    FORWARD_UP,
-    MAX_SPEED,
-    MAX_TURN,
-    OMEGA,
-    ROLL,
-    SIDE_DOWN,
-    SIDE_UP,
-    SLIDE,
-    SPIN_GAIN,
-    STOP_SPEED,
-    TURN_RATE,
-    VX,
-    VY,
-)
+from robobt.sim.records import Ball, Body, Command, Limits, Parameters
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
 
 _SURE = 1.0 - 1e-9
 """Rounding may not make more of a change of velocity than it is."""
 
 
 @compiled_lean
-def drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> None:
+def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
     """Move a robot's velocity towards its command within its limits."""
-    c, s = cos(row[2]), sin(row[2])
-    target_vx, target_vy = command[VX], command[VY]
-    if abs(target_vx) + abs(target_vy) > p[MAX_SPEED]:
+    c, s = cos(robot.heading), sin(robot.heading)
+    target_vx, target_vy = command.vx, command.vy
+    if abs(target_vx) + abs(target_vy) > limits.max_speed:
         speed = hypot(target_vx, target_vy)
-        if speed > p[MAX_SPEED]:
-            target_vx *= p[MAX_SPEED] / speed
-            target_vy *= p[MAX_SPEED] / speed
-    dx = c * target_vx - s * target_vy - row[3]
-    dy = s * target_vx + c * target_vy - row[4]
-    if dx * row[3] + dy * row[4] < 0.0:
-        along, across = p[FORWARD_DOWN], p[SIDE_DOWN]
+        if speed > limits.max_speed:
+            target_vx *= limits.max_speed / speed
+            target_vy *= limits.max_speed / speed
+    dx = c * target_vx - s * target_vy - robot.vx
+    dy = s * target_vx + c * target_vy - robot.vy
+    if dx * robot.vx + dy * robot.vy < 0.0:
+        along, across = limits.braking, limits.lateral_braking
     else:
-        along, across = p[FORWARD_UP], p[SIDE_UP]
+        along, across = limits.acceleration, limits.lateral_acceleration
     # What the weaker limit allows needs no longer look.
     if abs(dx) + abs(dy) > _SURE * min(along, across) * dt:
         step = hypot(dx, dy)
@@ -59,46 +43,47 @@ def drive(row: FloatArray, command: FloatArray, p: FloatArray, dt: float) -> Non
         if step > most:
             dx *= most / step
             dy *= most / step
-    row[3] += dx
-    row[4] += dy
-    turn = min(max(command[OMEGA], -p[MAX_TURN]), p[MAX_TURN]) - row[5]
-    most = p[TURN_RATE] * dt
-    row[5] += min(max(turn, -most), most)
+    robot.vx += dx
+    robot.vy += dy
+    turn = min(max(command.omega, -limits.max_turn), limits.max_turn) - robot.omega
+    most = limits.turn_acceleration * dt
+    robot.omega += min(max(turn, -most), most)
 
 
 @compiled_lean
-def friction(velocity: FloatArray, spin: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
-    """Let a free ball slide and roll for ``dt``; ``move`` receives its mean velocity."""
-    start_x, start_y = velocity[0], velocity[1]
+def friction(ball: Ball, p: Parameters, dt: float) -> None:
+    """Let a free ball slide and roll for ``dt``."""
+    slide, roll, stop = p.ball.slide_deceleration, p.ball.roll_deceleration, p.ball.stop_speed
+    start_x, start_y = ball.vx, ball.vy
     left = dt
     moved_x = moved_y = 0.0
-    slip_x, slip_y = velocity[0] - spin[0], velocity[1] - spin[1]
+    slip_x, slip_y = ball.vx - ball.spin_x, ball.vy - ball.spin_y
     slip = hypot(slip_x, slip_y) if slip_x != 0.0 or slip_y != 0.0 else 0.0
     if slip > 1e-9:
         slip_x /= slip
         slip_y /= slip
-        sliding = min(slip / (p[SLIDE] * (1.0 + p[SPIN_GAIN])), dt)
-        loss = p[SLIDE] * sliding
+        sliding = min(slip / (slide * (1.0 + p.spin_gain)), dt)
+        loss = slide * sliding
         moved_x = (start_x - 0.5 * loss * slip_x) * sliding
         moved_y = (start_y - 0.5 * loss * slip_y) * sliding
-        velocity[0] -= loss * slip_x
-        velocity[1] -= loss * slip_y
-        spin[0] += p[SPIN_GAIN] * loss * slip_x
-        spin[1] += p[SPIN_GAIN] * loss * slip_y
+        ball.vx -= loss * slip_x
+        ball.vy -= loss * slip_y
+        ball.spin_x += p.spin_gain * loss * slip_x
+        ball.spin_y += p.spin_gain * loss * slip_y
         left = dt - sliding
     if left > 0.0:
-        speed = hypot(velocity[0], velocity[1])
+        speed = hypot(ball.vx, ball.vy)
         if speed > 0.0:
-            rolling = min(left, speed / p[ROLL])
-            mean = (speed - 0.5 * p[ROLL] * rolling) * rolling / speed
-            moved_x += velocity[0] * mean
-            moved_y += velocity[1] * mean
-            keep = (speed - p[ROLL] * rolling) / speed
-            velocity[0] *= keep
-            velocity[1] *= keep
-        spin[0] = velocity[0]
-        spin[1] = velocity[1]
-        if abs(velocity[0]) < p[STOP_SPEED] and hypot(velocity[0], velocity[1]) < p[STOP_SPEED]:
-            velocity[0] = velocity[1] = spin[0] = spin[1] = 0.0
-    move[0] = moved_x / dt
-    move[1] = moved_y / dt
+            rolling = min(left, speed / roll)
+            mean = (speed - 0.5 * roll * rolling) * rolling / speed
+            moved_x += ball.vx * mean
+            moved_y += ball.vy * mean
+            keep = (speed - roll * rolling) / speed
+            ball.vx *= keep
+            ball.vy *= keep
+        ball.spin_x = ball.vx
+        ball.spin_y = ball.vy
+        if abs(ball.vx) < stop and hypot(ball.vx, ball.vy) < stop:
+            ball.vx = ball.vy = ball.spin_x = ball.spin_y = 0.0
+    ball.move_x = moved_x / dt
+    ball.move_y = moved_y / dt

@@ -4,25 +4,9 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.columns import (
-    BALL_R,
-    CENTRING,
-    CHIP_ANGLE,
-    CHIP_MAX,
-    CHIP_YIELD,
-    CORE,
-    FACE,
-    HALF_MOUTH,
-    KICK_DAMPING,
-    KICK_MAX,
-    PULL,
-    REACH,
-    RISE,
-    SENSOR,
-    SIDE,
-)
+from robobt.sim.records import Ball, Body, Flight, Parameters
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS
 
 _CLEAR = 2e-4
 """Gap that a ball needs to be free of the front that pushed it [m]."""
@@ -32,143 +16,135 @@ _GLUE_GAP = 2e-4
 
 
 @compiled_lean
-def in_mouth(ball: FloatArray, robot: FloatArray, p: FloatArray, depth: float) -> bool:
+def in_mouth(body: Body, robot: Body, p: Parameters, depth: float) -> bool:
     """Return whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
-    px, py = ball[0] - robot[0], ball[1] - robot[1]
-    reach = p[FACE] + p[BALL_R] + depth
-    if px * px + py * py > reach * reach + p[HALF_MOUTH] * p[HALF_MOUTH]:
+    px, py = body.x - robot.x, body.y - robot.y
+    reach = p.body.face + BALL_RADIUS + depth
+    if px * px + py * py > reach * reach + p.half_mouth * p.half_mouth:
         return False
-    c, s = cos(robot[2]), sin(robot[2])
+    c, s = cos(robot.heading), sin(robot.heading)
     ahead = c * px + s * py
     aside = c * py - s * px
-    return bool(0.0 < ahead <= reach and abs(aside) <= p[HALF_MOUTH])
+    return bool(0.0 < ahead <= reach and abs(aside) <= p.half_mouth)
 
 
 @compiled_lean
-def let_in(ball: FloatArray, velocity: FloatArray, robot: FloatArray, p: FloatArray, dt: float) -> None:
+def let_in(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None:
     """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
 
     A fast one would else go past the sensor and bounce off within one step.
     """
-    px, py = ball[0] - robot[0], ball[1] - robot[1]
-    c, s = cos(robot[2]), sin(robot[2])
-    way = c * px + s * py - p[FACE] - p[BALL_R] - 0.5 * p[SENSOR]
-    vx, vy = velocity[0] - robot[3] + robot[5] * py, velocity[1] - robot[4] - robot[5] * px
+    px, py = body.x - robot.x, body.y - robot.y
+    c, s = cos(robot.heading), sin(robot.heading)
+    way = c * px + s * py - p.body.face - BALL_RADIUS - 0.5 * p.body.sensor_depth
+    vx, vy = ball.vx - robot.vx + robot.omega * py, ball.vy - robot.vy - robot.omega * px
     closing = -(c * vx + s * vy)
     if way <= 0.0 or way >= closing * dt:
         return
     time = way / closing
     aside = c * py - s * px + (c * vy - s * vx) * time
-    if abs(aside) <= p[HALF_MOUTH]:
-        ball[0] += vx * time
-        ball[1] += vy * time
+    if abs(aside) <= p.half_mouth:
+        body.x += vx * time
+        body.y += vy * time
 
 
 @compiled_lean
-def keeps(ball: FloatArray, robot: FloatArray, p: FloatArray, held: bool) -> bool:
+def keeps(body: Body, robot: Body, p: Parameters, held: bool) -> bool:
     """Return whether grSim's dribbler holds the ball from now on, as it decides once a frame.
 
     It does not take a ball that has got into the front, which a robot runs into
     when it covers the whole of its reach between two frames.
     """
-    if not in_mouth(ball, robot, p, p[REACH]):
+    if not in_mouth(body, robot, p, p.dribbler.reach):
         return False
-    ahead = cos(robot[2]) * (ball[0] - robot[0]) + sin(robot[2]) * (ball[1] - robot[1])
-    return held or ahead >= p[FACE] + p[BALL_R] + _CLEAR
+    ahead = cos(robot.heading) * (body.x - robot.x) + sin(robot.heading) * (body.y - robot.y)
+    return held or ahead >= p.body.face + BALL_RADIUS + _CLEAR
 
 
 @compiled_lean
-def hold(
-    ball: FloatArray,
-    velocity: FloatArray,
-    robot: FloatArray,
-    p: FloatArray,
-    most: float,
-    dt: float,
-    pull: FloatArray,
-) -> None:
-    """Add the limited acceleration with which a dribbler draws the ball to its place."""
-    c, s = cos(robot[2]), sin(robot[2])
-    px, py = ball[0] - robot[0], ball[1] - robot[1]
+def hold(body: Body, ball: Ball, robot: Body, p: Parameters, most: float, dt: float) -> None:
+    """Add the limited acceleration with which a dribbler draws the ball to its place.
+
+    Args:
+        body: of the ball.
+        ball: whose pull is changed.
+        robot: its body.
+        p: parameters of the arena.
+        most: acceleration, negative for what the dribbler has driven [m/s^2].
+        dt: time step [s].
+    """
+    c, s = cos(robot.heading), sin(robot.heading)
+    px, py = body.x - robot.x, body.y - robot.y
     ahead = c * px + s * py
     aside = c * py - s * px
-    place = p[FACE] + p[BALL_R]
+    place = p.body.face + BALL_RADIUS
     # Velocity of the robot's point under the ball, in the robot's frame.
-    along = c * robot[3] + s * robot[4] - robot[5] * aside
-    across = c * robot[4] - s * robot[3] + robot[5] * ahead
-    ball_along = c * velocity[0] + s * velocity[1]
-    ball_across = c * velocity[1] - s * velocity[0]
+    along = c * robot.vx + s * robot.vy - robot.omega * aside
+    across = c * robot.vy - s * robot.vx + robot.omega * ahead
+    ball_along = c * ball.vx + s * ball.vy
+    ball_across = c * ball.vy - s * ball.vx
     # A ball carried on a circle needs the centripetal part on top.
-    want_along = (along + (place - ahead) / p[CENTRING] - ball_along) / dt
-    want_along -= robot[5] * robot[5] * ahead
-    want_across = (across - aside / p[CENTRING] - ball_across) / dt
-    limit_pull, limit_side = p[PULL], p[SIDE]
+    want_along = (along + (place - ahead) / p.dribbler.centring - ball_along) / dt
+    want_along -= robot.omega * robot.omega * ahead
+    want_across = (across - aside / p.dribbler.centring - ball_across) / dt
+    limit_pull, limit_side = p.dribbler.pull, p.dribbler.side
     if most >= 0.0:
         limit_pull = limit_side = most
     want_along = min(max(want_along, -limit_pull), 0.0)
     want_across = min(max(want_across, -limit_side), limit_side)
-    pull[0] += c * want_along - s * want_across
-    pull[1] += s * want_along + c * want_across
+    ball.pull_x += c * want_along - s * want_across
+    ball.pull_y += s * want_along + c * want_across
 
 
 @compiled_lean
-def carry(ball: FloatArray, robot: FloatArray, p: FloatArray, dt: float, move: FloatArray) -> None:
-    """Compute the velocity that keeps the ball where it sits in the mouth while the robot moves."""
-    c, s = cos(robot[2]), sin(robot[2])
-    px, py = ball[0] - robot[0], ball[1] - robot[1]
-    ahead = p[FACE] + p[BALL_R] + _GLUE_GAP
-    if p[CORE] > 0.0:
+def carry(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None:
+    """Compute the mean velocity that keeps the ball where it sits in the mouth while the robot moves."""
+    c, s = cos(robot.heading), sin(robot.heading)
+    px, py = body.x - robot.x, body.y - robot.y
+    ahead = p.body.face + BALL_RADIUS + _GLUE_GAP
+    if p.core > 0.0:
         ahead = max(ahead, c * px + s * py)
     aside = c * py - s * px
-    turned = robot[2] + robot[5] * dt
+    turned = robot.heading + robot.omega * dt
     c, s = cos(turned), sin(turned)
-    x = robot[0] + robot[3] * dt + c * ahead - s * aside
-    y = robot[1] + robot[4] * dt + s * ahead + c * aside
-    move[0] = (x - ball[0]) / dt
-    move[1] = (y - ball[1]) / dt
+    x = robot.x + robot.vx * dt + c * ahead - s * aside
+    y = robot.y + robot.vy * dt + s * ahead + c * aside
+    ball.move_x = (x - body.x) / dt
+    ball.move_y = (y - body.y) / dt
 
 
 @compiled_lean
-def kick(
-    velocity: FloatArray,
-    spin: FloatArray,
-    air: FloatArray,
-    robot: FloatArray,
-    speed: float,
-    angle: float,
-    p: FloatArray,
-) -> None:
+def kick(ball: Ball, air: Flight, robot: Body, speed: float, angle: float, p: Parameters) -> None:
     """Send the ball along the heading; its sideways velocity stays, its spin is lost.
 
     Args:
-        velocity: of the ball, changed [m/s].
-        spin: its rolling as a velocity, changed [m/s].
-        air: (FLIGHT,) its height, speed upwards and touch-downs, changed.
-        robot: the robot's row.
+        ball: changed.
+        air: its flight, changed.
+        robot: its body.
         speed: commanded [m/s].
         angle: commanded, from the ground; 0 is a flat kick, any other a chip [rad].
         p: parameters of the arena.
     """
-    air[:] = 0.0
-    most = p[KICK_MAX]
+    air.z = air.vz = air.hops = 0.0
+    most = p.kicker.max_speed
     if angle > 0.0:
-        most = p[CHIP_MAX]
-        if p[CHIP_ANGLE] > 0.0:
-            angle = p[CHIP_ANGLE]
-        speed *= p[CHIP_YIELD]
-        air[RISE] = speed * sin(angle)
+        most = p.kicker.max_chip_speed
+        if p.kicker_angle > 0.0:
+            angle = p.kicker_angle
+        speed *= p.kicker.chip_yield
+        air.vz = speed * sin(angle)
         speed *= cos(angle)
-    c, s = cos(robot[2]), sin(robot[2])
-    forward = c * velocity[0] + s * velocity[1]
-    sideways = c * velocity[1] - s * velocity[0]
-    forward = speed - p[KICK_DAMPING] * forward
+    c, s = cos(robot.heading), sin(robot.heading)
+    forward = c * ball.vx + s * ball.vy
+    sideways = c * ball.vy - s * ball.vx
+    forward = speed - p.kicker.damping * forward
     fast = hypot(forward, sideways)
     if angle > 0.0:
-        fast = hypot(fast, air[RISE])
+        fast = hypot(fast, air.vz)
     if fast > most:
         forward *= most / fast
         sideways *= most / fast
-        air[RISE] *= most / fast
-    velocity[0] = c * forward - s * sideways
-    velocity[1] = s * forward + c * sideways
-    spin[0] = spin[1] = 0.0
+        air.vz *= most / fast
+    ball.vx = c * forward - s * sideways
+    ball.vy = s * forward + c * sideways
+    ball.spin_x = ball.spin_y = 0.0

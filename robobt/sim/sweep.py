@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
-from robobt.sim.columns import BALL_R, FACE, HALF_OPENING, JAW, ROBOT_R, SOLID
+from robobt.sim.records import Arena, Parameters, Records, Solver, Wall
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
 @compiled_lean
@@ -37,20 +37,20 @@ def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tup
 
 
 @compiled_lean
-def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius: float) -> float:
+def _meets_box(x: float, y: float, dx: float, dy: float, box: Wall, radius: float) -> float:
     """Return when in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
     first = 1.0
-    t_in, t_out = _enters(x, dx, box[0] - radius, box[2] + radius, -1.0, 2.0)
-    t_in, t_out = _enters(y, dy, box[1] - radius, box[3] + radius, t_in, t_out)
+    t_in, t_out = _enters(x, dx, box.x0 - radius, box.x1 + radius, -1.0, 2.0)
+    t_in, t_out = _enters(y, dy, box.y0 - radius, box.y1 + radius, t_in, t_out)
     if not (t_in <= t_out and t_in < 1.0 and t_out > 0.0):
         return first
     for wide, high in ((radius, 0.0), (0.0, radius)):
-        t_in, t_out = _enters(x, dx, box[0] - wide, box[2] + wide, -1.0, 2.0)
-        t_in, t_out = _enters(y, dy, box[1] - high, box[3] + high, t_in, t_out)
+        t_in, t_out = _enters(x, dx, box.x0 - wide, box.x1 + wide, -1.0, 2.0)
+        t_in, t_out = _enters(y, dy, box.y0 - high, box.y1 + high, t_in, t_out)
         if 0.0 < t_in <= t_out and t_in < first:
             first = t_in
-    for corner_x in (box[0], box[2]):
-        for corner_y in (box[1], box[3]):
+    for corner_x in (box.x0, box.x1):
+        for corner_y in (box.y0, box.y1):
             t_in, t_out = _meets_disc(x - corner_x, y - corner_y, dx, dy, radius)
             if 0.0 < t_in <= t_out and t_in < first:
                 first = t_in
@@ -58,11 +58,11 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: FloatArray, radius
 
 
 @compiled_lean
-def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> float:
+def _meets_robot(x: float, y: float, dx: float, dy: float, p: Parameters) -> float:
     """Return when in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
-    radius, round_, face, inner = p[BALL_R], p[ROBOT_R], p[JAW], p[HALF_OPENING]
-    if p[SOLID] > 0.0:
-        t_in, t_out = _meets_disc(x, y, dx, dy, p[SOLID] + radius)
+    radius, round_, face, inner = BALL_RADIUS, ROBOT_RADIUS, p.front, p.half_opening
+    if p.solid > 0.0:
+        t_in, t_out = _meets_disc(x, y, dx, dy, p.solid + radius)
         return t_in if 0.0 < t_in <= t_out and t_in < 1.0 else 1.0
     half = sqrt(round_ * round_ - face * face)
     first = 1.0
@@ -70,9 +70,9 @@ def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> flo
         t = (x - face - radius) / -dx
         if t < first and inner <= abs(y + t * dy) <= half:
             first = t
-    if inner > 0.0 and dx < 0.0 and x > p[FACE] + radius:
+    if inner > 0.0 and dx < 0.0 and x > p.body.face + radius:
         # Between the jaws, the ball goes on to where the mouth lies back.
-        t = (x - p[FACE] - radius) / -dx
+        t = (x - p.body.face - radius) / -dx
         if t < first and abs(y + t * dy) <= inner:
             first = t
     t_in, t_out = _meets_disc(x, y, dx, dy, round_ + radius)
@@ -88,60 +88,47 @@ def _meets_robot(x: float, y: float, dx: float, dy: float, p: FloatArray) -> flo
 
 
 @compiled_lean
-def sweep(
-    rows: FloatArray,
-    first: int,
-    robots: int,
-    walls: FloatArray,
-    move: FloatArray,
-    p: FloatArray,
-    dt: float,
-    met: FloatArray,
-    clear_x: float,
-    clear_y: float,
-) -> float:
-    """Return the share of the step after which a fast ball first meets a robot or a wall, 1 if none.
+def sweep(arena: Arena, solver: Solver, dt: float) -> tuple[float, float, float]:
+    """Return after which share of the step a fast ball meets a robot or a wall, and how fast that moves.
 
-    ``met`` (2,) takes the velocity of what it meets [m/s]; ``clear_x`` and ``clear_y`` are how far from the
-    field's centre the nearest wall is [m].
-
-    At 6.5 m/s and 5 ms the ball moves 33 mm a step, more than its radius and
+    The share is 1 if it meets none. At 6.5 m/s and 5 ms the ball moves 33 mm a step, more than its radius and
     than the goal's walls are thick: a solver that looks only at where the ball
     ends up would let it through.
     """
-    ball = rows[first + robots]
-    radius = p[BALL_R]
-    share = 1.0
-    for i in range(robots):
-        row = rows[first + i]
-        px, py = ball[0] - row[0], ball[1] - row[1]
-        dx, dy = (move[0] - row[3]) * dt, (move[1] - row[4]) * dt
-        reach = p[ROBOT_R] + radius + abs(dx) + abs(dy)
+    body, ball = arena.body, arena.ball
+    share, met_x, met_y = 1.0, 0.0, 0.0
+    for i in range(len(arena.robots)):
+        robot = arena.robots[i]
+        px, py = body.x - robot.x, body.y - robot.y
+        dx, dy = (ball.move_x - robot.vx) * dt, (ball.move_y - robot.vy) * dt
+        reach = ROBOT_RADIUS + BALL_RADIUS + abs(dx) + abs(dy)
         if px * dx + py * dy >= 0.0 or px * px + py * py > reach * reach:
             continue
-        c, s = cos(row[2]), sin(row[2])
-        when = _meets_robot(c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, p)
+        c, s = cos(robot.heading), sin(robot.heading)
+        when = _meets_robot(
+            c * px + s * py, c * py - s * px, c * dx + s * dy, c * dy - s * dx, arena.parameters
+        )
         if when < share:
-            share = when
-            met[0], met[1] = row[3], row[4]
-    x, y = ball[0], ball[1]
-    dx, dy = move[0] * dt, move[1] * dt
-    if max(abs(x), abs(x + dx)) + radius < clear_x and max(abs(y), abs(y + dy)) + radius < clear_y:
-        return share
-    for k in range(walls.shape[0]):
-        when = _meets_box(x, y, dx, dy, walls[k], radius)
+            share, met_x, met_y = when, robot.vx, robot.vy
+    x, y = body.x, body.y
+    dx, dy = ball.move_x * dt, ball.move_y * dt
+    far_x, far_y = max(abs(x), abs(x + dx)) + BALL_RADIUS, max(abs(y), abs(y + dy)) + BALL_RADIUS
+    if far_x < solver.clear_x and far_y < solver.clear_y:
+        return share, met_x, met_y
+    for k in range(len(arena.walls)):
+        when = _meets_box(x, y, dx, dy, arena.walls[k], BALL_RADIUS)
         if when < share:
-            share = when
-            met[0] = met[1] = 0.0
-    return share
+            share, met_x, met_y = when, 0.0, 0.0
+    return share, met_x, met_y
 
 
 @compiled_lean
-def in_a_wall(x: float, y: float, walls: FloatArray, radius: float) -> bool:
-    """Return whether a disc reaches into one of the boxes."""
-    for k in range(walls.shape[0]):
-        beside = max(walls[k, 0] - x, x - walls[k, 2], 0.0)
-        above = max(walls[k, 1] - y, y - walls[k, 3], 0.0)
-        if beside * beside + above * above < radius * radius:
+def in_a_wall(x: float, y: float, walls: Records[Wall]) -> bool:
+    """Return whether a ball reaches into one of the boxes."""
+    for k in range(len(walls)):
+        wall = walls[k]
+        beside = max(wall.x0 - x, x - wall.x1, 0.0)
+        above = max(wall.y0 - y, y - wall.y1, 0.0)
+        if beside * beside + above * above < BALL_RADIUS * BALL_RADIUS:
             return True
     return False

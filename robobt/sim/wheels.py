@@ -19,148 +19,143 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.columns import (
-    CENTRE,
-    COMMAND_RADIUS,
-    FORWARD_UP,
-    FRAME,
-    GAIN,
-    GYRO,
-    INERTIA,
-    INNER,
-    LOAD_AHEAD,
-    LOAD_ASIDE,
-    LOAD_LAG,
-    LOAD_REST,
-    MASS,
-    MAX_SPEED,
-    MAX_TURN,
-    MOTOR,
-    MU_AXIAL,
-    MU_TANGENT,
-    OMEGA,
-    OUTER,
-    RIM_MASS,
-    TURN_RATE,
-    VX,
-    VY,
-    WHEEL_COS,
-    WHEEL_SIN,
-)
+from robobt.sim.records import Body, Command, Limits, Records, Rim, Robot, Wheels
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
 
-# Columns of a robot's state: speeds of the rims, where they are to go, what comes after
-# the next frame, the acceleration that the loads follow, time to the next frame, impulses,
-# whether the dribbler holds the ball, and where in the robot's frame.
-_RIM, _TARGET, _NEXT, _LEAN, _CLOCK, _IMPULSE, HELD, AHEAD, ASIDE = 0, 4, 8, 12, 14, 15, 27, 28, 29
-WHEEL_STATE = 30
+_WHEELS = 4
+
+_INNER, _OUTER = _EDGES = (0, 1)
+"""Of a rim."""
 
 _SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""
 
 
 @compiled_lean
-def _plan(row: FloatArray, command: FloatArray, p: FloatArray, w: FloatArray, state: FloatArray) -> None:
+def _plan(robot: Body, command: Command, limits: Limits, w: Wheels, rims: Records[Rim]) -> None:
     """Turn the command into the wheel speeds after the next, from how fast the robot is now."""
-    vx, vy, turn = command[VX], command[VY], command[OMEGA]
+    vx, vy, turn = command.vx, command.vy, command.omega
     speed = hypot(vx, vy)
-    if speed > p[MAX_SPEED]:
-        vx *= p[MAX_SPEED] / speed
-        vy *= p[MAX_SPEED] / speed
-        speed = p[MAX_SPEED]
-    turn = min(max(turn, -p[MAX_TURN]), p[MAX_TURN])
-    now = hypot(row[3], row[4])
+    if speed > limits.max_speed:
+        vx *= limits.max_speed / speed
+        vy *= limits.max_speed / speed
+        speed = limits.max_speed
+    turn = min(max(turn, -limits.max_turn), limits.max_turn)
+    now = hypot(robot.vx, robot.vy)
     # The speeds come into force a frame late: the change is that of two frames.
-    most = min(w[GAIN], p[FORWARD_UP]) * 2.0 * w[FRAME]
+    most = min(w.acceleration, limits.acceleration) * 2.0 * w.frame
     if abs(speed - now) > most:
         reach = now + copysign(most, speed - now)
         if speed > 0.0:
             vx *= reach / speed
             vy *= reach / speed
         else:
-            c, s = cos(row[2]), sin(row[2])
-            vx = (c * row[3] + s * row[4]) * reach / now
-            vy = (c * row[4] - s * row[3]) * reach / now
-    most = p[TURN_RATE] * 2.0 * w[FRAME]
-    turn = row[5] + min(max(turn - row[5], -most), most)
-    for i in range(4):
-        state[_NEXT + i] = w[COMMAND_RADIUS] * turn - vx * w[WHEEL_SIN + i] + vy * w[WHEEL_COS + i]
+            c, s = cos(robot.heading), sin(robot.heading)
+            vx = (c * robot.vx + s * robot.vy) * reach / now
+            vy = (c * robot.vy - s * robot.vx) * reach / now
+    most = limits.turn_acceleration * 2.0 * w.frame
+    turn = robot.omega + min(max(turn - robot.omega, -most), most)
+    for i in range(_WHEELS):
+        rims[i].next = w.command_radius * turn - vx * w.each[i].sin + vy * w.each[i].cos
 
 
 @compiled_lean
-def drive_wheels(
-    row: FloatArray, command: FloatArray, p: FloatArray, w: FloatArray, state: FloatArray, dt: float
-) -> bool:
-    """Let the wheels turn for ``dt`` and change the robot's velocity accordingly; say whether a frame began.
+def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept: Robot, dt: float) -> bool:
+    """Let the wheels turn for ``dt`` and change the robot's velocity accordingly.
 
     Args:
-        row: of the robot.
+        robot: its body, changed.
         command: its command.
-        p: its parameters.
+        limits: what it can do.
         w: the parameters of its wheels.
-        state: of its wheels, (WHEEL_STATE,), kept between calls.
+        kept: what is kept of it between calls, changed.
         dt: time step [s].
 
     Returns:
         whether a frame of grSim began.
     """
-    begins = bool(state[_CLOCK] <= 1e-9)
+    rims = kept.rims
+    begins = bool(kept.clock <= 1e-9)
     if begins:
-        state[_CLOCK] += w[FRAME]
-        for i in range(4):
-            state[_TARGET + i] = state[_NEXT + i]
-        _plan(row, command, p, w, state)
-    state[_CLOCK] -= dt
-    c, s = cos(row[2]), sin(row[2])
-    ahead = c * row[3] + s * row[4]
-    aside = c * row[4] - s * row[3]
-    turn = row[5]
+        kept.clock += w.frame
+        for i in range(_WHEELS):
+            rims[i].target = rims[i].next
+        _plan(robot, command, limits, w, rims)
+    kept.clock -= dt
+    c, s = cos(robot.heading), sin(robot.heading)
+    ahead = c * robot.vx + s * robot.vy
+    aside = c * robot.vy - s * robot.vx
+    turn = robot.omega
     # From the centre of the robot to its centre of mass, about which it turns.
-    centre = w[CENTRE]
-    aside += turn * centre
+    aside += turn * w.centre
     start_ahead, start_aside = ahead, aside
-    body, spin, rim = 1.0 / w[MASS], 1.0 / w[INERTIA], 1.0 / w[RIM_MASS]
-    motor = w[MOTOR] * dt
+    ahead, aside, turn = _push(ahead, aside, turn, w, kept, dt)
+    motor, rim = w.motor * dt, 1.0 / w.rim_mass
+    for i in range(_WHEELS):
+        wheel = rims[i]
+        force = wheel.along[_INNER] + wheel.along[_OUTER]
+        needed = (wheel.target - wheel.speed) * w.rim_mass + force
+        if abs(needed) > motor:
+            wheel.speed += (copysign(motor, needed) - force) * rim
+        else:
+            wheel.speed = wheel.target
+    share = min(dt / w.load_lag, 1.0)
+    kept.lean_ahead += share * ((ahead - start_ahead) / dt - kept.lean_ahead)
+    kept.lean_aside += share * ((aside - start_aside) / dt - kept.lean_aside)
+    aside -= turn * w.centre
+    robot.vx = c * ahead - s * aside
+    robot.vy = s * ahead + c * aside
+    robot.omega = turn
+    return begins
+
+
+@compiled_lean
+def _push(
+    ahead: float, aside: float, turn: float, w: Wheels, kept: Robot, dt: float
+) -> tuple[float, float, float]:
+    """Return a robot's velocity, in its own frame, after its wheels have pushed it for ``dt``."""
+    rims, centre = kept.rims, w.centre
+    body, spin, rim = 1.0 / w.mass, 1.0 / w.inertia, 1.0 / w.rim_mass
+    motor = w.motor * dt
     # A spinning wheel resists being turned about the vertical, and leans on the ground instead.
-    lean_ahead, lean_aside = state[_LEAN], state[_LEAN + 1]
-    for i in range(4):
-        lean_ahead -= w[GYRO] * turn * state[_RIM + i] * w[WHEEL_COS + i]
-        lean_aside -= w[GYRO] * turn * state[_RIM + i] * w[WHEEL_SIN + i]
+    lean_ahead, lean_aside = kept.lean_ahead, kept.lean_aside
+    for i in range(_WHEELS):
+        lean_ahead -= w.gyro * turn * rims[i].speed * w.each[i].cos
+        lean_aside -= w.gyro * turn * rims[i].speed * w.each[i].sin
     # Impulses of the last step, within what the loads allow now.
-    for i in range(4):
-        load = w[LOAD_REST + i] - w[LOAD_AHEAD + i] * lean_ahead - w[LOAD_ASIDE + i] * lean_aside
-        load = max(load, 0.0) * dt
-        grip, drag = 0.5 * w[MU_TANGENT] * load, w[MU_AXIAL] * load
-        for k in range(2):
-            state[_IMPULSE + 3 * i + k] = min(max(state[_IMPULSE + 3 * i + k], -grip), grip)
-        state[_IMPULSE + 3 * i + 2] = min(max(state[_IMPULSE + 3 * i + 2], -drag), drag)
-        push = state[_IMPULSE + 3 * i] + state[_IMPULSE + 3 * i + 1]
-        across = state[_IMPULSE + 3 * i + 2]
-        ahead += (-push * w[WHEEL_SIN + i] + across * w[WHEEL_COS + i]) * body
-        aside += (push * w[WHEEL_COS + i] + across * w[WHEEL_SIN + i]) * body
-        turn += (state[_IMPULSE + 3 * i] * w[INNER] + state[_IMPULSE + 3 * i + 1] * w[OUTER]) * spin
-        turn -= centre * (push * w[WHEEL_COS + i] + across * w[WHEEL_SIN + i]) * spin
+    for i in range(_WHEELS):
+        it, wheel = w.each[i], rims[i]
+        load = max(it.load_rest - it.load_ahead * lean_ahead - it.load_aside * lean_aside, 0.0) * dt
+        grip, drag = 0.5 * w.tangent_friction * load, w.axial_friction * load
+        for k in _EDGES:
+            wheel.along[k] = min(max(wheel.along[k], -grip), grip)
+        wheel.across = min(max(wheel.across, -drag), drag)
+        push = wheel.along[_INNER] + wheel.along[_OUTER]
+        across = wheel.across
+        ahead += (-push * it.sin + across * it.cos) * body
+        aside += (push * it.cos + across * it.sin) * body
+        turn += (wheel.along[_INNER] * w.inner_edge + wheel.along[_OUTER] * w.outer_edge) * spin
+        turn -= centre * (push * it.cos + across * it.sin) * spin
     for _ in range(_SWEEPS):
-        for i in range(4):
-            load = w[LOAD_REST + i] - w[LOAD_AHEAD + i] * lean_ahead - w[LOAD_ASIDE + i] * lean_aside
-            load = max(load, 0.0) * dt
-            grip, drag = 0.5 * w[MU_TANGENT] * load, w[MU_AXIAL] * load
-            tx, ty = -w[WHEEL_SIN + i], w[WHEEL_COS + i]
-            inner, outer = state[_IMPULSE + 3 * i], state[_IMPULSE + 3 * i + 1]
+        for i in range(_WHEELS):
+            it, wheel = w.each[i], rims[i]
+            load = max(it.load_rest - it.load_ahead * lean_ahead - it.load_aside * lean_aside, 0.0) * dt
+            grip, drag = 0.5 * w.tangent_friction * load, w.axial_friction * load
+            tx, ty = -it.sin, it.cos
             # The motor gives what its wheel needs to have the speed wanted, within its torque.
-            needed = (state[_TARGET + i] - state[_RIM + i]) * w[RIM_MASS] + inner + outer
-            speed, free = state[_TARGET + i], 0.0
+            inner, outer = wheel.along[_INNER], wheel.along[_OUTER]
+            needed = (wheel.target - wheel.speed) * w.rim_mass + inner + outer
+            speed, free = wheel.target, 0.0
             if abs(needed) > motor:
-                speed = state[_RIM + i] + (copysign(motor, needed) - inner - outer) * rim
+                speed = wheel.speed + (copysign(motor, needed) - inner - outer) * rim
                 free = rim
-            for k in range(2):
-                arm = (w[INNER] if k == 0 else w[OUTER]) - centre * ty
+            for k in _EDGES:
+                arm = (w.inner_edge if k == _INNER else w.outer_edge) - centre * ty
                 slip = speed - (tx * ahead + ty * aside + arm * turn)
-                old = state[_IMPULSE + 3 * i + k]
+                old = wheel.along[k]
                 impulse = old + slip / (body + arm * arm * spin + free)
                 impulse = min(max(impulse, -grip), grip)
-                state[_IMPULSE + 3 * i + k] = impulse
+                wheel.along[k] = impulse
                 change = impulse - old
                 ahead += change * tx * body
                 aside += change * ty * body
@@ -168,24 +163,10 @@ def drive_wheels(
                 speed -= change * free
             arm = centre * tx
             slip = -(ty * ahead - tx * aside + arm * turn)
-            old = state[_IMPULSE + 3 * i + 2]
+            old = wheel.across
             impulse = min(max(old + slip / (body + arm * arm * spin), -drag), drag)
-            state[_IMPULSE + 3 * i + 2] = impulse
+            wheel.across = impulse
             ahead += (impulse - old) * ty * body
             aside -= (impulse - old) * tx * body
             turn += (impulse - old) * arm * spin
-    for i in range(4):
-        force = state[_IMPULSE + 3 * i] + state[_IMPULSE + 3 * i + 1]
-        needed = (state[_TARGET + i] - state[_RIM + i]) * w[RIM_MASS] + force
-        if abs(needed) > motor:
-            state[_RIM + i] += (copysign(motor, needed) - force) * rim
-        else:
-            state[_RIM + i] = state[_TARGET + i]
-    share = min(dt / w[LOAD_LAG], 1.0)
-    state[_LEAN] += share * ((ahead - start_ahead) / dt - state[_LEAN])
-    state[_LEAN + 1] += share * ((aside - start_aside) / dt - state[_LEAN + 1])
-    aside -= turn * centre
-    row[3] = c * ahead - s * aside
-    row[4] = s * ahead + c * aside
-    row[5] = turn
-    return begins
+    return ahead, aside, turn

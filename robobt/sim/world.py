@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import COMMAND, KICK
+from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import FieldGeometry
@@ -55,7 +55,7 @@ class SimWorld(World):
         self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
         self._lossy = any((realism.missing_ball, realism.missing_robot))
         self._arenas = self._make_arenas()
-        self._commands = np.zeros((1, len(self._ids), COMMAND))
+        self._commands = np.zeros((1, len(self._ids), size(COMMAND)))
         self._rng = np.random.default_rng(0)
         self._ticks = 0
         self.kicks: list[RobotId] = []
@@ -134,7 +134,7 @@ class SimWorld(World):
             rows[:] = np.array(sent).reshape(rows.shape)
         elif lost.size:
             # A lost command is not sent twice: the robot drives on but does not kick again.
-            rows[lost, KICK] = 0.0
+            rows.view(COMMAND)["kick_speed"][lost] = 0.0
             rows[~lost] = np.array(sent)[~lost]
         self._arenas.step(self._commands)
         self._ticks += 1
@@ -242,7 +242,7 @@ class SimWorld(World):
         )
 
 
-_NOTHING = (0.0,) * COMMAND
+_NOTHING = (0.0,) * size(COMMAND)
 
 
 def command_row(command: RobotCommand) -> tuple[float, ...]:

@@ -53,6 +53,9 @@ def _parts(function: object, seen: set[int]) -> Iterator[str]:
             yield f"{name}={value.tolist()!r}"
         elif isinstance(value, _CONSTANTS):
             yield f"{name}={_told(value)}"
+        elif isinstance(value, type):
+            # A named tuple's fields are read by their places.
+            yield f"{name}={getattr(value, '_fields', ())}"
         elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
             yield from _parts(value, seen)
 

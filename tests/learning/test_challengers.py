@@ -12,7 +12,7 @@ from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.opponents.challengers import Challengers
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import ON_CONTACT
+from robobt.sim.records import COMMAND
 from robobt.skills.plan import Task
 from robobt.world.geometry import FloatArray
 
@@ -48,7 +48,7 @@ class Beside:
         self._decide(arenas, commands)
         differ = np.abs(commands - self._commands)
         # When a kicker that has nothing to do would fire.
-        differ[..., ON_CONTACT] *= commands[..., 3] > 0.0
+        differ.view(COMMAND)["on_contact"] *= commands.view(COMMAND)["kick_speed"] > 0.0
         for arena, players in enumerate(self.task._played._players):
             for index, player in players.items():
                 tip = player.runner.root.tip()

@@ -86,11 +86,9 @@ def test_the_same_commands_give_the_same_states_bit_for_bit() -> None:
 
 
 def test_the_parameters_of_one_arena_can_differ() -> None:
-    from robobt.sim import columns
-
     arenas = Arenas(DIVISION_B, [None], preset("default"), 0.025, 2)
     arenas.place(np.zeros((2, 1, 3)), np.array([[1.0, 1, 2, 0], [1.0, 1, 2, 0]]))
-    arenas.arena_parameters[1, columns.ROLL] *= 3
+    arenas.arena_parameters["ball"]["roll_deceleration"][1] *= 3
     for _ in range(20):
         arenas.step(np.zeros((2, 1, 6)))
     assert arenas.balls[1, 2] < arenas.balls[0, 2]

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.sim import SimWorld, preset
-from robobt.sim.columns import INERTIA, MASS, wheel_row
 from robobt.sim.hinge import take_hold, tie
-from robobt.sim.wheels import WHEEL_STATE
+from robobt.sim.parameters import wheel_parameters
+from robobt.sim.records import BODY, ROBOT
 from robobt.world import DIVISION_B, BallState, Placement, RobotCommand, RobotState
 from robobt.world.command import KickTrigger
 from tests.sim.rig import IT, ME
@@ -97,21 +97,22 @@ def test_whoever_lets_go_leaves_the_ball_to_the_other() -> None:
 def test_a_tie_conserves_momentum_and_stops_the_parting(
     one: list[float], other: list[float], x: float, y: float
 ) -> None:
-    rows, wheels, w = np.array([one, other]), np.zeros((2, WHEEL_STATE)), wheel_row(preset("grsim").wheels)
-    ball = np.array([x, y, 0.0, 0.0, 0.0, 0.0])
-    for row, state in zip(rows, wheels, strict=True):
-        take_hold(ball, row, state)
+    rows, kept = np.array([one, other]), np.zeros(2, ROBOT)
+    bodies, w = rows.view(BODY)[:, 0], wheel_parameters(preset("grsim").wheels)[()]
+    ball = np.array((x, y, 0.0, 0.0, 0.0, 0.0), BODY)[()]
+    for body, hinge in zip(bodies, kept["hinge"], strict=True):
+        take_hold(ball, body, hinge)
 
     def momentum() -> np.ndarray:
-        linear = w[MASS] * rows[:, 3:5].sum(axis=0)
-        orbit = w[MASS] * (rows[:, 0] * rows[:, 4] - rows[:, 1] * rows[:, 3]) + w[INERTIA] * rows[:, 5]
+        linear = w["mass"] * rows[:, 3:5].sum(axis=0)
+        orbit = w["mass"] * (rows[:, 0] * rows[:, 4] - rows[:, 1] * rows[:, 3]) + w["inertia"] * rows[:, 5]
         return np.array([*linear, orbit.sum()])
 
     def energy() -> float:
-        return float((w[MASS] * rows[:, 3:5] ** 2).sum() + (w[INERTIA] * rows[:, 5] ** 2).sum())
+        return float((w["mass"] * rows[:, 3:5] ** 2).sum() + (w["inertia"] * rows[:, 5] ** 2).sum())
 
     before, had = momentum(), energy()
-    tie(rows, 0, 0, wheels, w, 1 / 300)
+    tie(bodies, kept, 0, w, 1 / 300)
     assert momentum() == pytest.approx(before, abs=1e-9)
     assert energy() <= had + 1e-9
     arms = np.array([x, y]) - rows[:, :2]

@@ -12,7 +12,7 @@ import numpy as np
 
 from robobt.league.wire.commands import BallTeleport, Teleport, clamp_command
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import ANGLE, COMMAND, KICK
+from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
@@ -74,7 +74,7 @@ class ServedField:
         given = limits or {}
         self._limits = [given.get(robot, self.settings.limits) for robot in self._ids]
         self._present = np.zeros(len(self._ids), dtype=np.bool_)
-        self._commands = np.zeros((1, len(self._ids), COMMAND))
+        self._commands = np.zeros((1, len(self._ids), size(COMMAND)))
         self._last_command = np.full(len(self._ids), -np.inf)
         self._rng = np.random.default_rng(seed)
         self._ticks = 0
@@ -131,9 +131,10 @@ class ServedField:
         self._ticks += 1
         fired = self._arenas.kicked[0]
         self.kicked = [self._ids[i] for i in fired.nonzero()[0]]
-        self.chipped = [self._ids[i] for i in (fired & (self._commands[0, :, ANGLE] > 0.0)).nonzero()[0]]
+        commands = self._commands.view(COMMAND)[0, :, 0]
+        self.chipped = [self._ids[i] for i in (fired & (commands["kick_angle"] > 0.0)).nonzero()[0]]
         # A kick fires once; the next one takes another command.
-        self._commands[0, fired, KICK] = 0.0
+        commands["kick_speed"][fired] = 0.0
 
     def teleport(self, robot: Teleport) -> str | None:
         """Put a robot somewhere, take it off the field or bring it back; say why if it cannot be done."""

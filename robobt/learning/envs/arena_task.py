@@ -17,7 +17,7 @@ from robobt.learning.envs.starts import START_COLUMNS, StartPool
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import COMMAND
+from robobt.sim.records import COMMAND, size
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
@@ -188,7 +188,7 @@ class ArenaTask(ABC):
         rows = given.reshape(len(filled), self.action.size)
         if not fill_commands(rows, self._scaling, *self._kind, kick, filled):
             raise ValueError("an action is not finite")
-        self._commands[:, self.learners] = filled.reshape(self.n, each, COMMAND)
+        self._commands[:, self.learners] = filled.reshape(self.n, each, size(COMMAND))
         rewards = np.zeros(self.n)
         ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
         last = self.settings.decide_every - 1
@@ -231,8 +231,8 @@ class ArenaTask(ABC):
         self._pool = StartPool(self.sample, self._start_rngs, len(self.start_columns))
         self._perception = Perception(settings, self.observe, self.observation_size, robots, self._noise_rngs)
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
-        self._commands = np.zeros((n, robots, COMMAND))
-        self._filled = np.zeros((n * len(self.learners), COMMAND))
+        self._commands = np.zeros((n, robots, size(COMMAND)))
+        self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)

@@ -8,10 +8,10 @@ import numpy as np
 
 from robobt.learning.envs.settings import RandomisationSettings, Span, TaskSettings
 from robobt.learning.envs.task import FloatArray, IntArray
-from robobt.sim import columns as sim
 from robobt.sim.arenas import Arenas
+from robobt.sim.records import COMMAND, size
 
-_ACCELERATIONS = (sim.FORWARD_UP, sim.FORWARD_DOWN, sim.SIDE_UP, sim.SIDE_DOWN, sim.TURN_RATE)
+_ACCELERATIONS = ("acceleration", "braking", "lateral_acceleration", "lateral_braking", "turn_acceleration")
 
 
 class Randomiser:
@@ -36,12 +36,12 @@ class Randomiser:
         self._rngs = rngs
         self._arena_parameters = arenas.arena_parameters.copy()
         self._robot_parameters = arenas.robot_parameters.copy()
-        self._grip = arenas.wheel_parameters[:, sim.MU_TANGENT].copy()
+        self._grip = arenas.wheel_parameters["tangent_friction"].copy()
         self._mass = settings.simulator.body.mass
         longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
         self._delay: IntArray = np.zeros(n, dtype=np.int64)
         # Whole periods of delay wait here; the rest is the arenas' own switch.
-        self._waiting = np.zeros((longest + 2, *arenas.contact.shape, sim.COMMAND))
+        self._waiting = np.zeros((longest + 2, *arenas.contact.shape, size(COMMAND)))
         self._newest = 0
         self._all = np.arange(n)
 
@@ -58,16 +58,16 @@ class Randomiser:
         dribbler = _within(ranges.dribbler, drawn[4])
         delay = _within(ranges.control_delay, drawn[5])
         self.top_speed[which] = _within(ranges.top_speed, drawn[6])
-        for column in (sim.SLIDE, sim.ROLL):
-            arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * friction
-        for column in (sim.PULL, sim.SIDE):
-            arenas.arena_parameters[which, column] = self._arena_parameters[which, column] * dribbler
-        for column in _ACCELERATIONS:
-            own = self._robot_parameters[which, 0, column]
-            arenas.robot_parameters[which, 0, column] = own * self.acceleration[which]
-        fastest = self._robot_parameters[which, 0, sim.MAX_SPEED]
-        arenas.robot_parameters[which, 0, sim.MAX_SPEED] = fastest * self.top_speed[which]
-        arenas.wheel_parameters[which, sim.MU_TANGENT] = self._grip[which] * self.acceleration[which]
+        own, now = self._arena_parameters, arenas.arena_parameters
+        for name in ("slide_deceleration", "roll_deceleration"):
+            now["ball"][name][which] = own["ball"][name][which] * friction
+        for name in ("pull", "side"):
+            now["dribbler"][name][which] = own["dribbler"][name][which] * dribbler
+        own, now = self._robot_parameters[:, 0], arenas.robot_parameters[:, 0]
+        for name in _ACCELERATIONS:
+            now[name][which] = own[name][which] * self.acceleration[which]
+        now["max_speed"][which] = own["max_speed"][which] * self.top_speed[which]
+        arenas.wheel_parameters["tangent_friction"][which] = self._grip[which] * self.acceleration[which]
         if ranges.mass != (1.0, 1.0):
             for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):
                 arenas.weigh(arena, self._mass * factor)
@@ -78,7 +78,7 @@ class Randomiser:
             self._waiting[:, which] = 0.0
 
     def delayed(self, commands: FloatArray) -> FloatArray:
-        """Return the commands that reach the robots in this period, (n, R, COMMAND)."""
+        """Return the commands that reach the robots in this period, (n, R, size(COMMAND))."""
         if self._ranges.control_delay == (0.0, 0.0):
             return commands
         self._newest = (self._newest + 1) % len(self._waiting)

@@ -15,46 +15,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
 from robobt.sim.bodies import SLOP, Box, disc_material, material_of, moment_of_inertia, outlines
-from robobt.sim.contacts.touching import (
-    ALLOWED,
-    BACK,
+from robobt.sim.contacts.touching import Shapes, find
+from robobt.sim.records import (
     BIAS,
-    ITERATIONS,
-    JB,
-    JN,
-    JT,
-    MU,
-    NM,
-    NX,
-    NY,
-    PERSISTENCE,
-    PUSH,
-    R1X,
-    R1Y,
-    R2X,
-    R2Y,
-    TM,
-    WARM,
-    find,
+    MASSES,
+    MEMORY,
+    SOLVER,
+    Bias,
+    Body,
+    Contact,
+    IntArray,
+    Masses,
+    Memory,
+    Moving,
+    Records,
+    Solver,
+    filled,
+    size,
 )
 from robobt.sim.settings import SimSettings
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
 
 _SETTLED = 1e-12
 """After a pass over the contacts that changed no impulse by more than this there is no other [N s]."""
-
-# Columns of the inverse masses of an arena's bodies.
-_ROBOT, _ROBOT_TURN, _BALL = range(3)
-
-# Columns of what is remembered of a pair: impulses along and across the normal, and when they last touched.
-_ALONG, _ACROSS, _WHEN = range(3)
 
 _LONG_AGO = -1e9
 
@@ -63,19 +52,18 @@ class Contacts:
     """What the solver knows of ``n`` arenas with ``robots`` each.
 
     Attributes:
-        numbers: of the solver and the discs.
-        walls: (W, 2) restitution and friction of the boxes.
-        edges: (E, 4) from and to x and y, of all parts of a hull, in the robot's frame [m].
-        parts: (P, 5) of a hull.
-        inverse: (n, 3) inverse masses and moments of inertia of robots and ball.
-        bias: (n, R + 1, 3) velocities that undo overlaps in the next step [m/s, rad/s].
-        memory: (n, pairs, 3) what is remembered of each two bodies, or parts of them, that may touch.
-        clock: (n,) steps so far.
+        solver: numbers of the :class:`~robobt.sim.records.Solver`.
+        walls: (W, size(WALL)).
+        edges: (E, size(EDGE)) of all parts of a hull.
+        parts: (P, size(PART)) of a hull.
+        masses: (n, size(MASSES)) of the arenas' bodies.
+        bias: (n, R + 1, size(BIAS)) of bodies, for the next step.
+        memory: (n, pairs, size(MEMORY)) of pairs that may touch.
     """
 
     def __init__(self, settings: SimSettings, robots: int, walls: Sequence[tuple[Box, str]], n: int) -> None:
         materials = material_of(settings.contact)
-        self.walls = np.array([materials[kind] for _, kind in walls])
+        self.walls = np.array([(*box, *materials[kind]) for box, kind in walls])
         hull = outlines(settings)
         edges: list[tuple[float, float, float, float]] = []
         parts = []
@@ -86,187 +74,172 @@ class Contacts:
             parts.append((begin, len(edges), part.rounding, *part.material))
         self.edges = np.array(edges)
         self.parts = np.array(parts, dtype=np.float64)
-        reach = max(sqrt(x * x + y * y) + part.rounding for part in hull for x, y in part.corners)
         space = pymunk.Space()
-        # No wall is nearer to the centre of the field than this, along either axis.
-        beside = min(abs(y) for (x0, y0, x1, y1), _ in walls if x0 < 0.0 < x1 for y in (y0, y1))
-        ahead = min(abs(x) for (x0, _, x1, _), _ in walls if not x0 < 0.0 < x1 for x in (x0, x1))
-        self.numbers = np.array(
-            [
-                space.iterations,
-                space.collision_bias,
-                SLOP,
-                space.collision_persistence,
-                *disc_material(settings.contact),
-                ahead,
-                beside,
-                reach,
-            ]
+        bounce, friction = disc_material(settings.contact)
+        solver = filled(
+            SOLVER,
+            space,
+            bias=space.collision_bias,
+            allowed=SLOP,
+            persistence=space.collision_persistence,
+            bounce=bounce,
+            friction=friction,
+            # No wall is nearer to the centre of the field than this, along either axis.
+            clear_x=min(abs(x) for (x0, _, x1, _), _ in walls if not x0 < 0.0 < x1 for x in (x0, x1)),
+            clear_y=min(abs(y) for (x0, y0, x1, y1), _ in walls if x0 < 0.0 < x1 for y in (y0, y1)),
+            reach=max(sqrt(x * x + y * y) + part.rounding for part in hull for x, y in part.corners),
         )
-        mass = settings.body.mass
-        row = 1.0 / mass, 1.0 / moment_of_inertia(mass), 1.0 / settings.ball.mass
-        self.inverse = np.tile(np.array(row), (n, 1))
-        self.bias = np.zeros((n, robots + 1, 3))
+        self.solver = solver.reshape(1).view(np.float64)
+        self.masses = np.zeros((n, size(MASSES)))
+        self.masses.view(MASSES)["ball"] = 1.0 / settings.ball.mass
+        self.weigh(slice(None), settings.body.mass)
+        self.bias = np.zeros((n, robots + 1, size(BIAS)))
         pairs = (robots + 1) * len(walls) + robots * (robots + len(hull))
-        self.memory = np.zeros((n, pairs, 3))
-        self.memory[..., _WHEN] = _LONG_AGO
-        self.clock: NDArray[np.int64] = np.zeros(n, dtype=np.int64)
+        self.memory = np.zeros((n, pairs, size(MEMORY)))
+        self.forget(slice(None))
 
-    def forget(self, arenas: NDArray[np.int64] | int) -> None:
+    def forget(self, arenas: IntArray | int | slice) -> None:
         """Forget what touched in these arenas: bodies have been put elsewhere."""
         self.bias[arenas] = 0.0
-        self.memory[arenas, :, _WHEN] = _LONG_AGO
+        self.memory.view(MEMORY)["when"][arenas] = _LONG_AGO
 
-    def weigh(self, arena: int, mass: float) -> None:
-        """Give the robots of one arena another mass [kg]."""
-        self.inverse[arena, :_BALL] = 1.0 / mass, 1.0 / moment_of_inertia(mass)
+    def weigh(self, arenas: int | slice, mass: float) -> None:
+        """Give the robots of arenas another mass [kg]."""
+        masses = self.masses.view(MASSES)
+        masses["robot"][arenas] = 1.0 / mass
+        masses["robot_turn"][arenas] = 1.0 / moment_of_inertia(mass)
+
+
+class Solving(NamedTuple):
+    """What the solver works with in one arena.
+
+    Attributes:
+        masses: of its bodies.
+        bias: (R + 1,) of bodies, changed.
+        memory: (pairs,) changed.
+        contacts: (pairs,) scratch.
+        moving: (R + 2,) scratch.
+    """
+
+    masses: Masses
+    bias: Records[Bias]
+    memory: Records[Memory]
+    contacts: Records[Contact]
+    moving: Records[Moving]
 
 
 @compiled_lean
-def collide(
-    rows: FloatArray,
-    boxes: FloatArray,
-    numbers: FloatArray,
-    walls: FloatArray,
-    edges: FloatArray,
-    parts: FloatArray,
-    inverse: FloatArray,
-    bias: FloatArray,
-    memory: FloatArray,
-    clock: int,
-    contacts: FloatArray,
-    who: NDArray[np.int64],
-    speeds: FloatArray,
-    dt: float,
-) -> None:
+def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> None:
     """Move an arena's bodies for one step and let them push each other off.
 
     Args:
-        rows: (R + 1, 6) of robots and ball, changed.
-        boxes: (W, 4) walls [m].
-        numbers: of :class:`Contacts`, as are those that follow, of the arena.
-        walls: (W, 2).
-        edges: (E, 4).
-        parts: (P, 5).
-        inverse: (3,).
-        bias: (R + 1, 3), changed.
-        memory: (pairs, 3), changed.
-        clock: which step of the arena's it is.
-        contacts: (pairs, CONTACT) scratch.
-        who: (pairs, 3) scratch.
-        speeds: (R + 2, 8) scratch.
+        bodies: (R + 1,) robots and ball, changed.
+        shapes: what they can touch.
+        it: what belongs to the arena.
         dt: time step [s].
     """
-    robots = len(rows) - 1
-    for i in range(robots + 1):
-        for k in range(3):
-            rows[i, k] += (rows[i, 3 + k] + bias[i, k]) * dt
-            bias[i, k] = 0.0
-    count = find(rows, boxes, numbers, walls, edges, parts, contacts, who)
+    it.masses.clock += 1
+    for i in range(len(bodies)):
+        body, bias = bodies[i], it.bias[i]
+        body.x += (body.vx + bias.vx) * dt
+        body.y += (body.vy + bias.vy) * dt
+        body.heading += (body.omega + bias.omega) * dt
+        bias.vx = bias.vy = bias.omega = 0.0
+    count = find(bodies, shapes, it.contacts)
     if count > 0:
-        _prepare(rows, numbers, inverse, memory, clock, contacts, who, speeds, count, dt)
-        _solve(numbers, contacts, who, speeds, count)
-        for i in range(robots + 1):
-            for k in range(3):
-                rows[i, 3 + k] = speeds[i, k]
-                bias[i, k] = speeds[i, 3 + k]
+        _prepare(bodies, shapes.solver, it, count, dt)
+        _solve(shapes.solver, it.contacts, it.moving, count)
+        for i in range(len(bodies)):
+            body, bias, moving = bodies[i], it.bias[i], it.moving[i]
+            body.vx, body.vy, body.omega = moving.vx, moving.vy, moving.omega
+            bias.vx, bias.vy, bias.omega = moving.bias_vx, moving.bias_vy, moving.bias_omega
         for j in range(count):
-            seen = memory[who[j, 2]]
-            seen[_ALONG], seen[_ACROSS] = contacts[j, JN], contacts[j, JT]
-            seen[_WHEN] = clock
+            contact = it.contacts[j]
+            seen = it.memory[contact.pair]
+            seen.along, seen.across = contact.normal, contact.tangent
+            seen.when = it.masses.clock
 
 
 @compiled_lean
-def _prepare(
-    rows: FloatArray,
-    numbers: FloatArray,
-    inverse: FloatArray,
-    memory: FloatArray,
-    clock: int,
-    contacts: FloatArray,
-    who: NDArray[np.int64],
-    speeds: FloatArray,
-    count: int,
-    dt: float,
-) -> None:
+def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt: float) -> None:
     """Compute what the contacts ask for, and apply again the impulses of the last step."""
-    robots = len(rows) - 1
+    robots = len(bodies) - 1
     for i in range(robots + 2):
-        for k in range(3):
-            speeds[i, k] = rows[i, 3 + k] if i <= robots else 0.0
-            speeds[i, 3 + k] = 0.0
-        speeds[i, 6] = inverse[_BALL] if i == robots else inverse[_ROBOT] if i < robots else 0.0
-        speeds[i, 7] = inverse[_ROBOT_TURN] if i < robots else 0.0
-    undone = (1.0 - numbers[BIAS] ** dt) / dt
+        moving = it.moving[i]
+        moving.vx = moving.vy = moving.omega = 0.0
+        if i <= robots:
+            moving.vx, moving.vy, moving.omega = bodies[i].vx, bodies[i].vy, bodies[i].omega
+        moving.bias_vx = moving.bias_vy = moving.bias_omega = 0.0
+        moving.mass = it.masses.ball if i == robots else it.masses.robot if i < robots else 0.0
+        moving.inertia = it.masses.robot_turn if i < robots else 0.0
+    undone = (1.0 - solver.bias**dt) / dt
     for j in range(count):
-        row = contacts[j]
-        a, b = speeds[who[j, 0]], speeds[who[j, 1]]
-        nx, ny = row[NX], row[NY]
-        arm1, arm2 = row[R1X] * ny - row[R1Y] * nx, row[R2X] * ny - row[R2Y] * nx
-        row[NM] = 1.0 / (a[6] + b[6] + a[7] * arm1 * arm1 + b[7] * arm2 * arm2)
-        arm1, arm2 = row[R1X] * nx + row[R1Y] * ny, row[R2X] * nx + row[R2Y] * ny
-        row[TM] = 1.0 / (a[6] + b[6] + a[7] * arm1 * arm1 + b[7] * arm2 * arm2)
-        vx = b[0] - b[2] * row[R2Y] - a[0] + a[2] * row[R1Y]
-        vy = b[1] + b[2] * row[R2X] - a[1] - a[2] * row[R1X]
-        row[BACK] *= vx * nx + vy * ny
-        row[PUSH] = -undone * min(row[PUSH] + numbers[ALLOWED], 0.0)
-        row[JB] = row[JN] = row[JT] = row[WARM] = 0.0
-        seen = memory[who[j, 2]]
-        if clock - seen[_WHEN] <= numbers[PERSISTENCE]:
-            row[JN], row[JT] = seen[_ALONG], seen[_ACROSS]
-            row[WARM] = 1.0 if clock - seen[_WHEN] == 1.0 else 0.0
+        row = it.contacts[j]
+        a, b = it.moving[row.one], it.moving[row.other]
+        nx, ny = row.nx, row.ny
+        arm1, arm2 = row.r1x * ny - row.r1y * nx, row.r2x * ny - row.r2y * nx
+        row.normal_mass = 1.0 / (a.mass + b.mass + a.inertia * arm1 * arm1 + b.inertia * arm2 * arm2)
+        arm1, arm2 = row.r1x * nx + row.r1y * ny, row.r2x * nx + row.r2y * ny
+        row.tangent_mass = 1.0 / (a.mass + b.mass + a.inertia * arm1 * arm1 + b.inertia * arm2 * arm2)
+        vx = b.vx - b.omega * row.r2y - a.vx + a.omega * row.r1y
+        vy = b.vy + b.omega * row.r2x - a.vy - a.omega * row.r1x
+        row.back *= vx * nx + vy * ny
+        row.push = -undone * min(row.push + solver.allowed, 0.0)
+        row.lift = row.normal = row.tangent = row.warm = 0.0
+        seen = it.memory[row.pair]
+        if it.masses.clock - seen.when <= solver.persistence:
+            row.normal, row.tangent = seen.along, seen.across
+            row.warm = 1.0 if it.masses.clock - seen.when == 1.0 else 0.0
     for j in range(count):
-        if contacts[j, WARM] > 0.0:
-            row = contacts[j]
-            _push(speeds[who[j, 0]], speeds[who[j, 1]], row, row[JN], row[JT])
+        row = it.contacts[j]
+        if row.warm > 0.0:
+            _push(it.moving[row.one], it.moving[row.other], row, row.normal, row.tangent)
 
 
 @compiled_lean
-def _push(a: FloatArray, b: FloatArray, row: FloatArray, along: float, across: float) -> None:
+def _push(a: Moving, b: Moving, row: Contact, along: float, across: float) -> None:
     """Apply an impulse to both bodies of a contact."""
-    jx, jy = row[NX] * along - row[NY] * across, row[NY] * along + row[NX] * across
-    a[0] -= jx * a[6]
-    a[1] -= jy * a[6]
-    a[2] -= a[7] * (row[R1X] * jy - row[R1Y] * jx)
-    b[0] += jx * b[6]
-    b[1] += jy * b[6]
-    b[2] += b[7] * (row[R2X] * jy - row[R2Y] * jx)
+    jx, jy = row.nx * along - row.ny * across, row.ny * along + row.nx * across
+    a.vx -= jx * a.mass
+    a.vy -= jy * a.mass
+    a.omega -= a.inertia * (row.r1x * jy - row.r1y * jx)
+    b.vx += jx * b.mass
+    b.vy += jy * b.mass
+    b.omega += b.inertia * (row.r2x * jy - row.r2y * jx)
 
 
 @compiled_lean
-def _solve(
-    numbers: FloatArray, contacts: FloatArray, who: NDArray[np.int64], speeds: FloatArray, count: int
-) -> None:
+def _solve(solver: Solver, contacts: Records[Contact], moving: Records[Moving], count: int) -> None:
     """Improve the impulses, contact by contact, until they agree."""
-    for _ in range(int(numbers[ITERATIONS])):
+    for _ in range(int(solver.iterations)):
         most = 0.0
         for j in range(count):
             row = contacts[j]
-            a, b = speeds[who[j, 0]], speeds[who[j, 1]]
-            nx, ny = row[NX], row[NY]
-            vx = b[0] - b[2] * row[R2Y] - a[0] + a[2] * row[R1Y]
-            vy = b[1] + b[2] * row[R2X] - a[1] - a[2] * row[R1X]
-            press = max(row[JN] - (row[BACK] + vx * nx + vy * ny) * row[NM], 0.0)
-            limit = row[MU] * press
-            rub = min(max(row[JT] - (vy * nx - vx * ny) * row[TM], -limit), limit)
-            along, across = press - row[JN], rub - row[JT]
-            row[JN], row[JT] = press, rub
+            a, b = moving[row.one], moving[row.other]
+            nx, ny = row.nx, row.ny
+            vx = b.vx - b.omega * row.r2y - a.vx + a.omega * row.r1y
+            vy = b.vy + b.omega * row.r2x - a.vy - a.omega * row.r1x
+            press = max(row.normal - (row.back + vx * nx + vy * ny) * row.normal_mass, 0.0)
+            limit = row.friction * press
+            rub = min(max(row.tangent - (vy * nx - vx * ny) * row.tangent_mass, -limit), limit)
+            along, across = press - row.normal, rub - row.tangent
+            row.normal, row.tangent = press, rub
             _push(a, b, row, along, across)
             most = max(most, abs(along), abs(across))
             # Overlaps are undone by velocities of their own, which last for a step.
-            vx = b[3] - b[5] * row[R2Y] - a[3] + a[5] * row[R1Y]
-            vy = b[4] + b[5] * row[R2X] - a[4] - a[5] * row[R1X]
-            lift = max(row[JB] + (row[PUSH] - vx * nx - vy * ny) * row[NM], 0.0)
-            along = lift - row[JB]
-            row[JB] = lift
+            vx = b.bias_vx - b.bias_omega * row.r2y - a.bias_vx + a.bias_omega * row.r1y
+            vy = b.bias_vy + b.bias_omega * row.r2x - a.bias_vy - a.bias_omega * row.r1x
+            lift = max(row.lift + (row.push - vx * nx - vy * ny) * row.normal_mass, 0.0)
+            along = lift - row.lift
+            row.lift = lift
             if along != 0.0:
                 jx, jy = nx * along, ny * along
-                a[3] -= jx * a[6]
-                a[4] -= jy * a[6]
-                a[5] -= a[7] * (row[R1X] * jy - row[R1Y] * jx)
-                b[3] += jx * b[6]
-                b[4] += jy * b[6]
-                b[5] += b[7] * (row[R2X] * jy - row[R2Y] * jx)
+                a.bias_vx -= jx * a.mass
+                a.bias_vy -= jy * a.mass
+                a.bias_omega -= a.inertia * (row.r1x * jy - row.r1y * jx)
+                b.bias_vx += jx * b.mass
+                b.bias_vy += jy * b.mass
+                b.bias_omega += b.inertia * (row.r2x * jy - row.r2y * jx)
                 most = max(most, abs(along))
         if most < _SETTLED:
             return

@@ -3,124 +3,139 @@
 from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
+from typing import NamedTuple
 
-from numpy import int64
-from numpy.typing import NDArray
-
+from robobt.sim.records import Body, Contact, Edge, Part, Records, Solver, Wall
 from robobt.world.compiled import compiled_lean
-from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-# Columns of the numbers of the solver: passes, bias, overlap that is allowed, for how many steps a contact is
-# remembered, restitution and friction of two robots, how far from the centre of the field the nearest wall
-# is along either axis, and how far a hull reaches.
-ITERATIONS, BIAS, ALLOWED, PERSISTENCE, BOUNCE, RUB, CLEAR_X, CLEAR_Y, REACH = range(9)
 
-# Columns of a part of a hull: its edges, the radius of its rounded corners, restitution and friction.
-FIRST, LAST, ROUNDING, PART_BOUNCE, PART_RUB = range(5)
+class Shapes(NamedTuple):
+    """What bodies can touch, the same in all arenas.
 
-# Columns of a contact: normal, its place seen from either body, mass along and across the normal, the
-# velocities that overlap and bounce ask for, friction, the impulses so far, and whether those are of the
-# last step.
-# Where a contact is found, its gap and restitution stand where those velocities will.
-NX, NY, R1X, R1Y, R2X, R2Y, NM, TM, PUSH, BACK, MU, JN, JT, JB, WARM = range(15)
-CONTACT = 15
+    Attributes:
+        walls: (W,) relative to an arena's centre.
+        edges: (E,) of all parts of a hull.
+        parts: (P,) of a hull.
+        solver: its numbers.
+    """
+
+    walls: Records[Wall]
+    edges: Records[Edge]
+    parts: Records[Part]
+    solver: Solver
 
 
 @compiled_lean
-def find(
-    rows: FloatArray,
-    boxes: FloatArray,
-    numbers: FloatArray,
-    walls: FloatArray,
-    edges: FloatArray,
-    parts: FloatArray,
-    contacts: FloatArray,
-    who: NDArray[int64],
-) -> int:
+def find(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
     """Fill in the contacts there are; return how many.
 
     Args:
-        rows: (R + 1, 6) of robots and ball.
-        boxes: (W, 4) walls [m].
-        numbers: of :class:`~robobt.sim.contacts.solver.Contacts`, as are those that follow.
-        walls: (W, 2).
-        edges: (E, 4).
-        parts: (P, 5).
-        contacts: (pairs, CONTACT) to be filled.
-        who: (pairs, 3) to be filled: the two bodies, R + 1 for the walls, and the index of their pair.
+        bodies: (R + 1,) robots and ball.
+        shapes: what they can touch.
+        contacts: (pairs,) to be filled; their bodies are R + 1 for the walls.
     """
-    robots, count = len(rows) - 1, 0
-    static = robots + 1
-    discs = (robots + 1) * len(boxes)
-    hulls = discs + robots * robots
+    count = _find_walls(bodies, shapes, contacts)
+    discs = len(bodies) * len(shapes.walls)
+    count = _find_robots(bodies, shapes.solver, contacts, count, discs)
+    robots = len(bodies) - 1
+    return _find_ball(bodies, shapes, contacts, count, discs + robots * robots)
+
+
+@compiled_lean
+def _find_walls(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
+    """Fill in the contacts of bodies and walls; return how many."""
+    solver, walls = shapes.solver, shapes.walls
+    robots, count = len(bodies) - 1, 0
     for i in range(robots + 1):
-        x, y = rows[i, 0], rows[i, 1]
+        x, y = bodies[i].x, bodies[i].y
         radius = BALL_RADIUS if i == robots else ROBOT_RADIUS
-        if abs(x) + radius < numbers[CLEAR_X] and abs(y) + radius < numbers[CLEAR_Y]:
+        if abs(x) + radius < solver.clear_x and abs(y) + radius < solver.clear_y:
             continue
-        bounce = 1.0 if i == robots else sqrt(numbers[BOUNCE])
-        rub = 1.0 if i == robots else sqrt(numbers[RUB])
-        for w in range(len(boxes)):
-            nx, ny, gap = _to_box(x, y, boxes[w])
+        bounce = 1.0 if i == robots else sqrt(solver.bounce)
+        friction = 1.0 if i == robots else sqrt(solver.friction)
+        for w in range(len(walls)):
+            wall = walls[w]
+            nx, ny, gap = _to_box(x, y, wall)
             if gap <= radius:
-                row = contacts[count]
-                row[NX], row[NY] = nx, ny
-                row[R1X], row[R1Y] = radius * nx, radius * ny
-                row[R2X] = row[R2Y] = 0.0  # which moves nothing: a wall stands still
-                row[BACK], row[MU], row[PUSH] = bounce * walls[w, 0], rub * walls[w, 1], gap - radius
-                who[count, 0], who[count, 1], who[count, 2] = i, static, i * len(boxes) + w
-                count += 1
-    for i in range(robots):
-        for j in range(i + 1, robots):
-            x, y = rows[j, 0] - rows[i, 0], rows[j, 1] - rows[i, 1]
-            square = x * x + y * y
-            if square < 4.0 * ROBOT_RADIUS * ROBOT_RADIUS:
-                away = sqrt(square)
-                nx, ny = (x / away, y / away) if away > 0.0 else (1.0, 0.0)
-                row = contacts[count]
-                row[NX], row[NY] = nx, ny
-                row[R1X], row[R1Y] = ROBOT_RADIUS * nx, ROBOT_RADIUS * ny
-                row[R2X], row[R2Y] = -ROBOT_RADIUS * nx, -ROBOT_RADIUS * ny
-                row[BACK], row[MU] = numbers[BOUNCE], numbers[RUB]
-                row[PUSH] = away - 2.0 * ROBOT_RADIUS
-                who[count, 0], who[count, 1], who[count, 2] = i, j, discs + i * robots + j
-                count += 1
-    near = numbers[REACH] + BALL_RADIUS
-    for i in range(robots):
-        x, y = rows[robots, 0] - rows[i, 0], rows[robots, 1] - rows[i, 1]
-        if x * x + y * y > near * near:
-            continue
-        c, s = cos(rows[i, 2]), sin(rows[i, 2])
-        ahead, aside = c * x + s * y, c * y - s * x
-        for k in range(len(parts)):
-            part = parts[k]
-            hx, hy, gap = _to_outline(ahead, aside, edges, int(part[FIRST]), int(part[LAST]))
-            gap -= part[ROUNDING]
-            if gap <= BALL_RADIUS:
-                nx, ny = c * hx - s * hy, s * hx + c * hy
-                row = contacts[count]
-                row[NX], row[NY] = nx, ny
-                row[R1X], row[R1Y] = BALL_RADIUS * nx, BALL_RADIUS * ny
-                row[R2X], row[R2Y] = x + gap * nx, y + gap * ny
-                row[BACK], row[MU] = part[PART_BOUNCE], part[PART_RUB]
-                row[PUSH] = gap - BALL_RADIUS
-                who[count, 0], who[count, 1], who[count, 2] = robots, i, hulls + i * len(parts) + k
+                it = contacts[count]
+                it.nx, it.ny = nx, ny
+                it.r1x, it.r1y = radius * nx, radius * ny
+                it.r2x = it.r2y = 0.0  # which moves nothing: a wall stands still
+                it.back, it.friction = bounce * wall.bounce, friction * wall.friction
+                it.push = gap - radius
+                it.one, it.other, it.pair = i, robots + 1, i * len(walls) + w
                 count += 1
     return count
 
 
 @compiled_lean
-def _to_box(x: float, y: float, box: FloatArray) -> tuple[float, float, float]:
+def _find_robots(
+    bodies: Records[Body], solver: Solver, contacts: Records[Contact], count: int, first: int
+) -> int:
+    """Fill in the contacts of robots with each other after ``count`` others; return how many there are."""
+    robots = len(bodies) - 1
+    for i in range(robots):
+        for j in range(i + 1, robots):
+            x, y = bodies[j].x - bodies[i].x, bodies[j].y - bodies[i].y
+            square = x * x + y * y
+            if square < 4.0 * ROBOT_RADIUS * ROBOT_RADIUS:
+                away = sqrt(square)
+                nx, ny = (x / away, y / away) if away > 0.0 else (1.0, 0.0)
+                it = contacts[count]
+                it.nx, it.ny = nx, ny
+                it.r1x, it.r1y = ROBOT_RADIUS * nx, ROBOT_RADIUS * ny
+                it.r2x, it.r2y = -ROBOT_RADIUS * nx, -ROBOT_RADIUS * ny
+                it.back, it.friction = solver.bounce, solver.friction
+                it.push = away - 2.0 * ROBOT_RADIUS
+                it.one, it.other, it.pair = i, j, first + i * robots + j
+                count += 1
+    return count
+
+
+@compiled_lean
+def _find_ball(
+    bodies: Records[Body], shapes: Shapes, contacts: Records[Contact], count: int, first: int
+) -> int:
+    """Fill in the contacts of the ball and hulls after ``count`` others; return how many there are."""
+    parts, robots = shapes.parts, len(bodies) - 1
+    near = shapes.solver.reach + BALL_RADIUS
+    ball = bodies[robots]
+    for i in range(robots):
+        robot = bodies[i]
+        x, y = ball.x - robot.x, ball.y - robot.y
+        if x * x + y * y > near * near:
+            continue
+        c, s = cos(robot.heading), sin(robot.heading)
+        ahead, aside = c * x + s * y, c * y - s * x
+        for k in range(len(parts)):
+            part = parts[k]
+            hx, hy, gap = _to_outline(ahead, aside, shapes.edges, part)
+            gap -= part.rounding
+            if gap <= BALL_RADIUS:
+                nx, ny = c * hx - s * hy, s * hx + c * hy
+                it = contacts[count]
+                it.nx, it.ny = nx, ny
+                it.r1x, it.r1y = BALL_RADIUS * nx, BALL_RADIUS * ny
+                it.r2x, it.r2y = x + gap * nx, y + gap * ny
+                it.back, it.friction = part.bounce, part.friction
+                it.push = gap - BALL_RADIUS
+                it.one, it.other, it.pair = robots, i, first + i * len(parts) + k
+                count += 1
+    return count
+
+
+@compiled_lean
+def _to_box(x: float, y: float, box: Wall) -> tuple[float, float, float]:
     """Return the direction from a point to the nearest one of a box, and how far it is.
 
     Inside the box that is the direction away from the nearest side, and minus the depth.
     """
-    px, py = min(max(x, box[0]), box[2]) - x, min(max(y, box[1]), box[3]) - y
+    px, py = min(max(x, box.x0), box.x1) - x, min(max(y, box.y0), box.y1) - y
     if px != 0.0 or py != 0.0:
         away = sqrt(px * px + py * py)
         return px / away, py / away, away
-    left, right, below, above = box[0] - x, x - box[2], box[1] - y, y - box[3]
+    left, right, below, above = box.x0 - x, x - box.x1, box.y0 - y, y - box.y1
     most = max(left, right, below, above)
     if most == left:
         return 1.0, 0.0, most
@@ -132,14 +147,15 @@ def _to_box(x: float, y: float, box: FloatArray) -> tuple[float, float, float]:
 
 
 @compiled_lean
-def _to_outline(x: float, y: float, edges: FloatArray, first: int, last: int) -> tuple[float, float, float]:
+def _to_outline(x: float, y: float, edges: Records[Edge], part: Part) -> tuple[float, float, float]:
     """Return the same for a convex outline, which may have no more than one corner."""
+    first, last = int(part.first), int(part.last)
     inside = last > first + 1
     best, bx, by, ex, ey = inf, 0.0, 0.0, 0.0, 0.0
     for k in range(first, last):
         edge = edges[k]
-        dx, dy = edge[2] - edge[0], edge[3] - edge[1]
-        px, py = x - edge[0], y - edge[1]
+        dx, dy = edge.x1 - edge.x0, edge.y1 - edge.y0
+        px, py = x - edge.x0, y - edge.y0
         length = dx * dx + dy * dy
         share = min(max((px * dx + py * dy) / length, 0.0), 1.0) if length > 0.0 else 0.0
         qx, qy = share * dx - px, share * dy - py

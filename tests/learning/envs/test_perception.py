@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import GoToBallSettings, GoToBallTask, ShootSettings, ShootTask
-from robobt.sim import columns as sim
 
 N = 400
 SAME = np.tile([0.0, 0, 0, 0, 0, 0, 2.0, 0, 0, 0], (N, 1))
@@ -104,25 +103,28 @@ def test_parameters_are_drawn_evenly_from_their_ranges_for_each_episode() -> Non
     made = task(randomisation=ranges)
     plain = task()
     own, drawn = plain.arenas.arena_parameters, made.arenas.arena_parameters
-    for columns, name in (((sim.SLIDE, sim.ROLL), "friction"), ((sim.PULL, sim.SIDE), "dribbler")):
+    for part, names, name in (
+        ("ball", ("slide_deceleration", "roll_deceleration"), "friction"),
+        ("dribbler", ("pull", "side"), "dribbler"),
+    ):
         low, high = ranges[name]
-        for column in columns:
-            factor = drawn[:, column] / own[:, column]
+        for each in names:
+            factor = drawn[part][each] / own[part][each]
             assert low <= factor.min() < low + 0.1 * (high - low)
             assert high - 0.1 * (high - low) < factor.max() <= high
-    assert (drawn[:, sim.FACE] == own[:, sim.FACE]).all()
-    factor = made.arenas.robot_parameters[:, 0] / plain.arenas.robot_parameters[:, 0]
-    assert 0.8 <= factor[:, sim.FORWARD_UP].min() < 0.84
-    assert (factor[:, sim.MAX_SPEED] == 1.0).all()
-    before = drawn[:, sim.ROLL].copy()
+    assert (drawn["body"]["face"] == own["body"]["face"]).all()
+    limits, usual = made.arenas.robot_parameters[:, 0], plain.arenas.robot_parameters[:, 0]
+    assert 0.8 <= (limits["acceleration"] / usual["acceleration"]).min() < 0.84
+    assert (limits["max_speed"] == usual["max_speed"]).all()
+    before = drawn["ball"]["roll_deceleration"].copy()
     made.restart()
-    assert (made.arenas.arena_parameters[:, sim.ROLL] != before).all()
+    assert (made.arenas.arena_parameters["ball"]["roll_deceleration"] != before).all()
 
 
 @pytest.mark.integration
 def test_acceleration_changes_how_fast_robots_get_and_their_optimum() -> None:
     made = task(randomisation={"acceleration": (0.5, 1.5)})
-    factor = made.arenas.robot_parameters[:, 0, sim.FORWARD_UP] / 3.0
+    factor = made.arenas.robot_parameters["acceleration"][:, 0] / 3.0
     for _ in range(4):
         made.step(AHEAD)
     np.testing.assert_allclose(made.arenas.robots[:, 0, 3], 0.12 * 3.0 * factor, rtol=1e-9)

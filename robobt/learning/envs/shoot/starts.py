@@ -11,7 +11,7 @@ from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import DRIBBLE
+from robobt.sim.records import COMMAND, size
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
@@ -80,8 +80,8 @@ def _held_ball(settings: ShootSettings) -> tuple[FloatArray, FloatArray]:
     ahead = simulator.body.face + BALL_RADIUS + _GAP
     balls = np.column_stack((np.full(len(points), ahead), points, np.zeros((len(points), 2))))
     arenas.place(np.zeros((len(points), 1, 3)), balls)
-    commands = np.zeros((len(points), 1, 6))
-    commands[..., DRIBBLE] = float(settings.action.dribbler)
+    commands = np.zeros((len(points), 1, size(COMMAND)))
+    commands.view(COMMAND)["dribbler"] = float(settings.action.dribbler)
     for _ in range(settings.starts.warm_up):
         arenas.step(commands)
     return arenas.balls[:, 0].copy(), arenas.balls[:, 1].copy()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from robobt.learning.envs.soccer.judge import KEPT, LAST, TAKEN_X, TAKEN_Y
 from robobt.learning.envs.task import FloatArray
-from robobt.sim.columns import KICK
+from robobt.sim.records import COMMAND
 from robobt.skills.ball.let_go import FASTER
 from robobt.skills.conditions.carried_far import LETTING_GO
 from robobt.world.compiled import compiled
@@ -37,7 +37,7 @@ def let_go(
         robots: (n, R, 6) states.
         balls: (n, 4) states.
         minds: (n, MIND) as of :func:`~robobt.learning.envs.soccer.judge.judge`.
-        commands: (n, R, COMMAND); changed.
+        commands: (n, R, size(COMMAND)); changed.
     """
     for i in range(len(balls)):
         mind, ball = minds[i], balls[i]
@@ -53,4 +53,6 @@ def let_go(
                 commands[i, index] = 0.0
                 side = 1.0 if index < blue else -1.0
                 if side * ball[0] > 0.0 or side * c > 0.0:
-                    commands[i, index, KICK] = max(0.0, c * ball[2] + s * ball[3]) + FASTER
+                    commands.view(COMMAND)[i, index, 0].kick_speed = (
+                        max(0.0, c * ball[2] + s * ball[3]) + FASTER
+                    )

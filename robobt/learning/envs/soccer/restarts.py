@@ -30,7 +30,7 @@ from robobt.match.referee.rules.base import AGAIN
 from robobt.match.referee.rules.restart_distances import POINT_TOLERANCE
 from robobt.match.referee.verdicts import resumption_after
 from robobt.sim.arenas import Arenas
-from robobt.sim.columns import Z
+from robobt.sim.records import FLIGHT
 from robobt.world.compiled import compilable, compiled
 from robobt.world.division import division_of
 from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand, Restart, Team
@@ -219,7 +219,10 @@ def _watch(
                 row[TAKER] = -1.0
                 continue
             me = robots[i, taker]
-            hull = against_hull(ball[0] - me[0], ball[1] - me[1], me[2]) and flight[i, Z] < ROBOT_HEIGHT
+            hull = (
+                against_hull(ball[0] - me[0], ball[1] - me[1], me[2])
+                and flight.view(FLIGHT)[i, 0].z < ROBOT_HEIGHT
+            )
             if hull or contact[i, taker]:
                 fouls[i], stops[i] = 1.0 if taker < blue else -1.0, TWICE
     return any_moved

@@ -1,0 +1,66 @@
+"""The parameters of arenas and robots, as records from settings."""
+
+from __future__ import annotations
+
+from math import radians
+
+import numpy as np
+
+from robobt.sim.bodies import SOFT
+from robobt.sim.records import LIMITS, PARAMETERS, WHEELS, RecordArray, filled
+from robobt.sim.robot_settings import WheelSettings
+from robobt.sim.settings import SimSettings
+from robobt.world.ball_model import GRAVITY
+from robobt.world.limits import RobotLimits
+
+
+def arena_parameters(settings: SimSettings) -> RecordArray:
+    """Return an arena's :class:`~robobt.sim.records.Parameters`."""
+    dribbler, jaws, shell = settings.dribbler, settings.body.jaws, settings.shell
+    share = settings.ball.switch_share
+    return filled(
+        PARAMETERS,
+        settings,
+        # So that a ball without spin rolls at switch_share of its speed.
+        spin_gain=share / (1.0 - share),
+        half_mouth=settings.body.mouth_width / 2,
+        glue=dribbler.kind == "glue",
+        roller=dribbler.roller_speed if dribbler.kind == "roller" else 0.0,
+        kicker_angle=radians(settings.kicker.chip_angle or 0.0),
+        front=settings.body.face if jaws is None else jaws.front,
+        half_opening=0.0 if jaws is None else jaws.opening / 2,
+        rounding=0.0 if jaws is None else jaws.rounding,
+        core=0.0 if shell is None else shell.core,
+        solid=0.0 if shell is None else shell.core - SOFT,
+        half_wheel=0.0 if shell is None else shell.wheel_width / 2,
+        softness=0.0 if shell is None else shell.softness,
+    )
+
+
+def wheel_parameters(wheels: WheelSettings | None) -> RecordArray:
+    """Return an arena's :class:`~robobt.sim.records.Wheels`."""
+    if wheels is None:
+        return np.zeros((), WHEELS)
+    angles = np.radians(wheels.angles)
+    cos, sin = np.cos(angles), np.sin(angles)
+    x, y = wheels.outer_edge * cos, wheels.outer_edge * sin
+    # Equal springs under a rigid body: the loads lie on a plane over the wheels' places.
+    places = np.array([np.ones(4), x, y])
+    rest, ahead, aside = np.linalg.solve(places @ places.T, np.eye(3)).T @ places
+    weight = wheels.mass * GRAVITY
+    loads = weight * rest + weight * wheels.centre * ahead
+    moved = wheels.mass * wheels.height
+    return filled(
+        WHEELS,
+        wheels,
+        # A cylinder that rolls resists as if half its mass were at the rim.
+        rim_mass=wheels.wheel_mass / 2,
+        motor=wheels.torque / wheels.radius,
+        gyro=wheels.wheel_mass / 2 * wheels.radius / (wheels.mass * wheels.height),
+        each=list(zip(cos, sin, loads, moved * ahead, moved * aside, strict=True)),
+    )
+
+
+def robot_limits(limits: RobotLimits) -> RecordArray:
+    """Return a robot's :class:`~robobt.sim.records.Limits`."""
+    return filled(LIMITS, limits)

@@ -1,0 +1,510 @@
+"""What compiled code calls the numbers of the simulator's arrays.
+
+The arrays themselves hold plain numbers: numba takes twice as long to look at the type of a record array
+when Python calls it. ``numbers.view(BODY)[..., 0]`` sees the last axis as records, in numpy as in compiled
+code, and shares the memory. A class here tells readers and mypy what a record's fields are; :func:`record`
+makes numpy's type of it.
+"""
+
+from __future__ import annotations
+
+from typing import (
+    Annotated,
+    Any,
+    NamedTuple,
+    Protocol,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+    overload,
+)
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from robobt.sim.robot_settings import BodySettings, DribblerSettings, KickerSettings
+from robobt.sim.settings import BallSettings, ContactSettings
+from robobt.world.compiled import numbers_dtype, numbers_of
+from robobt.world.geometry import FloatArray
+
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+RecordArray = NDArray[np.void]
+Record = TypeVar("Record", covariant=True)
+
+
+class Records(Protocol[Record]):
+    """An array of records."""
+
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, index: int) -> Record: ...
+    @overload
+    def __getitem__(self, index: slice) -> Records[Record]: ...
+
+
+_NUMBERS: dict[type, np.dtype[Any]] = {float: np.dtype(np.float64), int: np.dtype(np.int64)}
+
+
+def record(fields: type) -> np.dtype[np.void]:
+    """Return the type of records with a class's fields: floats, integers, records, or several of those."""
+    hints = get_type_hints(fields, include_extras=True)
+    return np.dtype([(name, _kind(hint)) for name, hint in hints.items()], align=True)
+
+
+def _kind(hint: type) -> np.dtype[Any]:
+    if get_origin(hint) is Annotated:
+        several, count = get_args(hint)
+        return np.dtype((_kind(*get_args(several)), (count,)))
+    if hint in (float, int):
+        return _NUMBERS[hint]
+    return numbers_dtype(hint) if issubclass(hint, BaseModel) else record(hint)
+
+
+def size(kind: np.dtype[np.void]) -> int:
+    """Return how many numbers an array of floats has for a record."""
+    return kind.itemsize // np.dtype(np.float64).itemsize
+
+
+def filled(kind: np.dtype[np.void], source: object, **others: object) -> RecordArray:
+    """Return a record: each field from ``others``, or from what ``source`` calls the same."""
+    fields: RecordArray = np.zeros((), kind)
+    for name in kind.names or ():
+        value = others[name] if name in others else getattr(source, name)
+        fields[name] = tuple(numbers_of(value)) if isinstance(value, BaseModel) else value
+    return fields
+
+
+class Command:
+    """What a robot is told, as :class:`robobt.world.RobotCommand` [m/s, rad/s, rad]; flags are 0 or 1."""
+
+    vx: float
+    vy: float
+    omega: float
+    kick_speed: float
+    on_contact: float
+    dribbler: float
+    kick_angle: float
+
+
+class Body:
+    """A robot, or the ball along the ground [m, rad, m/s, rad/s]."""
+
+    x: float
+    y: float
+    heading: float
+    vx: float
+    vy: float
+    omega: float
+
+
+class Flight:
+    """A ball's height above where it lies, how fast it rises, its touch-downs since the kick [m, m/s]."""
+
+    z: float
+    vz: float
+    hops: float
+
+
+class SeenBall:
+    """A ball as arenas report it [m, m/s]."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+
+
+class Ball:
+    """How a ball moves, and what dribblers and kickers do with it in a step.
+
+    Velocity, spin as the velocity at which it would roll, turning about the vertical [m/s, rad/s]; mean
+    velocity in the step [m/s], the dribblers' pull [m/s^2]; the robot that carries it and the last that
+    kicked it in the step, -1 for none; whether any dribbler holds it, and whether several carry it.
+    """
+
+    vx: float
+    vy: float
+    spin_x: float
+    spin_y: float
+    twist: float
+    move_x: float
+    move_y: float
+    pull_x: float
+    pull_y: float
+    carrier: int
+    kicker: int
+    held: int
+    shared: int
+
+
+class Limits:
+    """What a robot can do, as :class:`robobt.world.limits.RobotLimits`."""
+
+    max_speed: float
+    acceleration: float
+    braking: float
+    lateral_acceleration: float
+    lateral_braking: float
+    max_turn: float
+    turn_acceleration: float
+
+
+class Rim:
+    """A wheel's state: speed, where it is to go, what comes after the next frame [m/s], impulses [N s].
+
+    They are those of the last step: along the inner and the outer edge of the rim, and across it.
+    """
+
+    speed: float
+    target: float
+    next: float
+    along: Annotated[list[float], 2]
+    across: float
+
+
+class Hinge:
+    """Whether a robot's dribbler holds the ball (0 or 1), and where in the robot's frame [m]."""
+
+    held: float
+    ahead: float
+    aside: float
+
+
+class Robot:
+    """What is kept of a robot between steps, beside its body.
+
+    ``cooldown`` until its kicker is ready [s]; of a robot with wheels the acceleration that the loads follow
+    [m/s^2] and the time to the next frame [s].
+    """
+
+    limits: Limits
+    cooldown: float
+    lean_ahead: float
+    lean_aside: float
+    clock: float
+    hinge: Hinge
+    rims: Annotated[Records[Rim], 4]
+
+
+class Wheel:
+    """Where a wheel is, and the load on it [N] at rest and by acceleration ahead and aside [kg]."""
+
+    cos: float
+    sin: float
+    load_rest: float
+    load_ahead: float
+    load_aside: float
+
+
+class Wheels:
+    """Parameters of a robot's wheels, as :class:`~robobt.sim.robot_settings.WheelSettings`.
+
+    A mass of 0 means that it has none. ``rim_mass`` is what a wheel adds to the inertia along its rim [kg],
+    ``motor`` the most its motor pushes with [N], ``gyro`` how much it resists being turned.
+    """
+
+    mass: float
+    inertia: float
+    inner_edge: float
+    outer_edge: float
+    command_radius: float
+    tangent_friction: float
+    axial_friction: float
+    acceleration: float
+    frame: float
+    load_lag: float
+    centre: float
+    rim_mass: float
+    motor: float
+    gyro: float
+    each: Annotated[Records[Wheel], 4]
+
+
+class Parameters:
+    """Parameters of an arena: settings, and what follows from them.
+
+    ``spin_gain`` is the spin that a sliding ball gains per speed lost; ``glue`` whether the dribbler is one
+    (0 or 1); ``roller`` how fast its roller's surface moves, 0 for another dribbler [m/s]; ``kicker_angle``
+    that of every chip, 0 for the one commanded [rad]. ``front`` is the foremost of the body, ``half_opening``
+    and ``rounding`` of its jaws [m]. ``core`` and the others are 0 for robots without a shell [m].
+    """
+
+    ball: BallSettings
+    body: BodySettings
+    dribbler: DribblerSettings
+    kicker: KickerSettings
+    contact: ContactSettings
+    spin_gain: float
+    half_mouth: float
+    glue: float
+    roller: float
+    kicker_angle: float
+    front: float
+    half_opening: float
+    rounding: float
+    core: float
+    solid: float
+    half_wheel: float
+    softness: float
+
+
+class ArenaState:
+    """What is kept of an arena; a command is in force from the sub-step ``switch`` on."""
+
+    switch: int
+    ball: Ball
+    parameters: Parameters
+    wheels: Wheels
+
+
+class Wall:
+    """A box, its restitution and friction."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+    bounce: float
+    friction: float
+
+
+class Edge:
+    """An edge of a hull, from one point to another in the robot's frame [m]."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+
+class Part:
+    """A part of a hull: its edges, the radius of its rounded corners [m], restitution and friction."""
+
+    first: float
+    last: float
+    rounding: float
+    bounce: float
+    friction: float
+
+
+class Solver:
+    """The solver's numbers.
+
+    Passes, bias, overlap that is allowed [m], steps for which a contact is remembered, restitution and
+    friction of two robots, how far from the centre of the field the nearest wall is along either axis, and
+    how far a hull reaches [m].
+    """
+
+    iterations: float
+    bias: float
+    allowed: float
+    persistence: float
+    bounce: float
+    friction: float
+    clear_x: float
+    clear_y: float
+    reach: float
+
+
+class Masses:
+    """Inverse masses and moment of inertia of an arena's bodies [1/kg, 1/(kg m^2)], and its steps so far."""
+
+    robot: float
+    robot_turn: float
+    ball: float
+    clock: int
+
+
+class Bias:
+    """A velocity that lasts for a step and undoes overlap [m/s, rad/s]."""
+
+    vx: float
+    vy: float
+    omega: float
+
+
+class Memory:
+    """What is remembered of a pair: impulses along and across the normal [N s], and its last contact."""
+
+    along: float
+    across: float
+    when: float
+
+
+class Contact:
+    """A contact of two bodies, and the index of their pair.
+
+    Normal, its place seen from either body, mass along and across the normal, the velocities that overlap and
+    bounce ask for, friction, the impulses so far, and whether those are of the last step. Where a contact is
+    found, its gap and restitution stand where those velocities will.
+    """
+
+    nx: float
+    ny: float
+    r1x: float
+    r1y: float
+    r2x: float
+    r2y: float
+    normal_mass: float
+    tangent_mass: float
+    push: float
+    back: float
+    friction: float
+    normal: float
+    tangent: float
+    lift: float
+    warm: float
+    one: int
+    other: int
+    pair: int
+
+
+class Moving:
+    """A body while contacts are solved: velocity, the one that undoes overlap, inverse mass and inertia."""
+
+    vx: float
+    vy: float
+    omega: float
+    bias_vx: float
+    bias_vy: float
+    bias_omega: float
+    mass: float
+    inertia: float
+
+
+class Rub:
+    """A ball's contact with a robot's roller or jaw, for the length of a step.
+
+    Whether there is one, its normal towards the ball, the robot's velocity there, the least speed of parting,
+    friction, how fast the surface moves down, impulses per mass of the ball.
+    """
+
+    near: float
+    nx: float
+    ny: float
+    vx: float
+    vy: float
+    part: float
+    friction: float
+    down: float
+    press: float
+    aside: float
+    lift: float
+
+
+class Front:
+    """A robot's roller and two jaws, and whether the roller turns (0 or 1)."""
+
+    driven: float
+    rubs: Annotated[Records[Rub], 3]
+
+
+COMMAND = record(Command)
+BODY = record(Body)
+FLIGHT = record(Flight)
+SEEN_BALL = record(SeenBall)
+LIMITS = record(Limits)
+ROBOT = record(Robot)
+WHEELS = record(Wheels)
+PARAMETERS = record(Parameters)
+ARENA = record(ArenaState)
+WALL = record(Wall)
+EDGE = record(Edge)
+PART = record(Part)
+SOLVER = record(Solver)
+MASSES = record(Masses)
+BIAS = record(Bias)
+MEMORY = record(Memory)
+CONTACT = record(Contact)
+MOVING = record(Moving)
+FRONT = record(Front)
+
+
+class ArenaArrays(NamedTuple):
+    """The arrays of ``n`` arenas with R robots each, as numbers.
+
+    They are passed as a plain tuple, which numba looks at in half the time.
+
+    Attributes:
+        states: (n, size(ARENA)) kept between calls.
+        kept: (n, R, size(ROBOT)) of robots, kept between calls.
+        bodies: (n * stride, size(BODY)) robots and ball of an arena, then those of the next.
+        robots: (n, R, size(BODY)) out.
+        balls: (n, size(SEEN_BALL)) out.
+        flight: (n, size(FLIGHT)) kept between calls.
+        contact: (n, R) out: ball in the mouth.
+        kicked: (n, R) out: kicks fired in this period.
+        touch: (n,) last robot to touch the ball, -1 before the first.
+        history: (sub_steps or 0, n, R + 1, size(BODY)) out: bodies after every sub-step; a ball's has its
+            height and the rate of that where a robot's has the heading and its rate.
+        walls: of :class:`~robobt.sim.contacts.solver.Contacts`, as are those up to ``memory``.
+        edges: of a hull.
+        parts: of a hull.
+        solver: its numbers.
+        masses: of the arenas' bodies.
+        bias: of bodies.
+        memory: of pairs.
+        fronts: (R, size(FRONT)) scratch.
+        contacts: (pairs, size(CONTACT)) scratch.
+        moving: (R + 2, size(MOVING)) scratch.
+        calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`, as are those that follow.
+        handles: none if no pymunk is to be called, and the solver takes its place.
+        places: of the bodies.
+        cursors: of the batches.
+    """
+
+    states: FloatArray
+    kept: FloatArray
+    bodies: FloatArray
+    robots: FloatArray
+    balls: FloatArray
+    flight: FloatArray
+    contact: BoolArray
+    kicked: BoolArray
+    touch: IntArray
+    history: FloatArray
+    walls: FloatArray
+    edges: FloatArray
+    parts: FloatArray
+    solver: FloatArray
+    masses: FloatArray
+    bias: FloatArray
+    memory: FloatArray
+    fronts: FloatArray
+    contacts: FloatArray
+    moving: FloatArray
+    calls: NDArray[np.uint64]
+    handles: NDArray[np.uint64]
+    places: NDArray[np.uint64]
+    cursors: NDArray[np.int32]
+
+
+class Arena(NamedTuple):
+    """One arena as the kernels see it.
+
+    Attributes:
+        robots: (R,) bodies.
+        body: of the ball.
+        ball: how it moves.
+        air: its flight.
+        parameters: of the arena.
+        wheels: of its robots.
+        kept: (R,) what else is kept of the robots.
+        kicked: (R,) which of them kicked in this period.
+        fronts: (R,) scratch.
+        walls: (W,) relative to the arena's centre.
+    """
+
+    robots: Records[Body]
+    body: Body
+    ball: Ball
+    air: Flight
+    parameters: Parameters
+    wheels: Wheels
+    kept: Records[Robot]
+    kicked: BoolArray
+    fronts: Records[Front]
+    walls: Records[Wall]
