@@ -28,6 +28,9 @@ from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.agents.settings import AgentSettings
 
+_NORM_EVERY = 16
+"""Of so many updates one has its gradients' norms logged: they cost as much as a layer does."""
+
 
 class DDPG(Learner):
     """Actor, critic, their targets and their optimisers.
@@ -104,8 +107,11 @@ class DDPG(Learner):
                 rows = rows * batch.weights
                 errors += weight * self._squared_error(estimate, target)
             loss = loss + weight * rows.mean()
-        self._critic_adam.step(torch.autograd.grad(loss, self._critic_adam.weights))
-        self.critic_loss += loss.detach()
+        gradients = torch.autograd.grad(loss, self._critic_adam.weights)
+        self._critic_adam.step(gradients)
+        self.diagnostics.add(critic_loss=loss.detach())
+        if self.updates % _NORM_EVERY == 0:
+            self.diagnostics.add(critic_grad_norm=torch.nn.utils.get_total_norm(gradients))
         return errors
 
     @torch.no_grad()
@@ -158,8 +164,11 @@ class DDPG(Learner):
             gradient = gradient * (self.settings.dqda_clipping / squared.sqrt()).clamp(max=1.0)[:, None]
         # Adam minimises; the value is to be maximised.
         weights = self._actor_adam.weights
-        self._actor_adam.step(torch.autograd.grad(action, weights, -gradient / len(gradient)))
-        self.value += value.detach().mean() * self.settings.policy_delay
+        gradients = torch.autograd.grad(action, weights, -gradient / len(gradient))
+        self._actor_adam.step(gradients)
+        self.diagnostics.add(q_mean=value.detach().mean())
+        if self.updates % _NORM_EVERY == 0:
+            self.diagnostics.add(actor_grad_norm=torch.nn.utils.get_total_norm(gradients))
         return squared
 
     def _modules(self) -> tuple[tuple[str, torch.nn.Module], ...]:

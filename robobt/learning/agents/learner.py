@@ -6,17 +6,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 from torch import nn
 
+from robobt.learning.agents.diagnostics import Diagnostics
 from robobt.learning.agents.optimiser import Adam, restore_state, state_of
 
 
 class Learner(ABC):
     """An actor and a critic with their optimisers.
 
-    ``critic_loss`` and ``value`` are sums over the ``updates`` since :meth:`reset_sums`.
+    Attributes:
+        updates: number of updates so far.
+        diagnostics: losses, gradient norms and so on of the updates since they were last logged.
     """
 
     _actor_adam: Adam
@@ -24,7 +26,7 @@ class Learner(ABC):
 
     def __init__(self) -> None:
         self.updates = 0
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
+        self.diagnostics = Diagnostics()
 
     @abstractmethod
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
@@ -35,18 +37,9 @@ class Learner(ABC):
         for optimiser in (self._actor_adam, self._critic_adam):
             optimiser.set_learning_rate(fraction)
 
-    def reset_sums(self) -> None:
-        """Set :attr:`critic_loss` and :attr:`value` to zero."""
-        self.critic_loss, self.value = torch.zeros(()), torch.zeros(())
-
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Return weights, optimisers and counters as arrays by name."""
-        sums = np.array([float(self.critic_loss), float(self.value)])
-        return {
-            "updates": np.array([self.updates]),
-            "sums": sums,
-            **state_of(self._modules(), self._optimisers()),
-        }
+        """Return weights, optimisers and the number of updates as arrays by name."""
+        return {"updates": np.array([self.updates]), **state_of(self._modules(), self._optimisers())}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
         """Take over another learner's :meth:`state`.
@@ -56,8 +49,6 @@ class Learner(ABC):
             RuntimeError: the same.
         """
         self.updates = int(state["updates"].tolist()[0])
-        loss, value = state["sums"].tolist()
-        self.critic_loss, self.value = torch.tensor(loss), torch.tensor(value)
         restore_state(state, self._modules(), self._optimisers())
 
     def _optimisers(self) -> tuple[tuple[str, Adam], ...]:

@@ -23,12 +23,17 @@ class Adam:
             weight.grad = torch.zeros_like(weight)
         self._gradients = [weight.grad for weight in weights if weight.grad is not None]
 
-    def step(self, gradients: Sequence[Tensor], max_grad_norm: float | None = None) -> None:
-        """Take a step along gradients, clipped together to ``max_grad_norm``."""
+    def step(self, gradients: Sequence[Tensor]) -> None:
+        """Take a step along gradients."""
         torch._foreach_copy_(self._gradients, list(gradients))
-        if max_grad_norm is not None:
-            torch.nn.utils.clip_grad_norm_(self.weights, max_grad_norm)
         self.adam.step()
+
+    def clipped_step(self, gradients: Sequence[Tensor], max_grad_norm: float) -> Tensor:
+        """Take a step along gradients clipped to ``max_grad_norm``; return their norm before clipping."""
+        torch._foreach_copy_(self._gradients, list(gradients))
+        norm = torch.nn.utils.clip_grad_norm_(self.weights, max_grad_norm)
+        self.adam.step()
+        return norm
 
     def set_learning_rate(self, fraction: float) -> None:
         """Set the learning rate to ``fraction`` of the initial one."""

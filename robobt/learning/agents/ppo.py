@@ -163,7 +163,10 @@ class PPO(Learner):
             self._gamma = 1.0 - 1.0 / ((1.0 - share) / (1.0 - first) + share / (1.0 - last))
 
     def update(self, rollout: Rollout, rng: np.random.Generator, value_alone: bool = False) -> None:
-        """Learn from a rollout by (3) and (4), or by (4) alone while a policy that was given is valued."""
+        """Learn from a rollout by (3) and (4), or with ``value_alone`` by (4) only.
+
+        Diagnostics are those of the last epoch, in which the policy is farthest from the one that acted.
+        """
         settings = self.settings
         advantage = advantages(rollout, self._gamma, settings.gae_lambda)
         target = advantage + rollout.value
@@ -171,35 +174,58 @@ class PPO(Learner):
             torch.from_numpy(array.reshape(-1, *array.shape[2:]).astype(np.float32))
             for array in (rollout.observation, rollout.action, rollout.log_probability, advantage, target)
         )
-        for _ in range(settings.num_epochs):
+        for epoch in range(settings.num_epochs):
+            last = epoch == settings.num_epochs - 1
             order = torch.from_numpy(rng.permutation(len(action)))
             for rows in torch.split(order, settings.minibatch_size):
                 if not value_alone:
-                    self._improve(observation[rows], action[rows], log_probability[rows], advantage_[rows])
-                self._fit(observation[rows], target_[rows])
+                    old, gain = log_probability[rows], advantage_[rows]
+                    self._update_policy(observation[rows], action[rows], old, gain, last)
+                self._update_value(observation[rows], target_[rows], last)
                 self.updates += 1
+        spread = target.var()
+        if spread > 0.0:
+            explained = 1.0 - (target - rollout.value).var() / spread
+            self.diagnostics.add(explained_variance=torch.tensor(explained))
 
-    def _improve(self, seen: Tensor, action: Tensor, old: Tensor, advantage: Tensor) -> None:
-        """Take a step of (3), with a bonus for entropy."""
+    def _update_policy(
+        self, seen: Tensor, action: Tensor, old: Tensor, advantage: Tensor, report: bool = False
+    ) -> None:
+        """Take a step of (3), with a bonus for entropy; with ``report`` add to the diagnostics."""
         settings = self.settings
         output = self._decided(seen)
         log_probability, entropy = self._weigh(output, action)
         advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
-        ratio = (log_probability - old).exp()
+        log_ratio = log_probability - old
+        ratio = log_ratio.exp()
         clipped = ratio.clamp(1.0 - settings.clip_coef, 1.0 + settings.clip_coef)
         gain = torch.minimum(ratio * advantage, clipped * advantage).mean()
-        loss = -gain - settings.ent_coef * entropy.mean()
+        mean_entropy = entropy.mean()
+        loss = -gain - settings.ent_coef * mean_entropy
         weights = self._actor_adam.weights
-        self._actor_adam.step(torch.autograd.grad(loss, weights), settings.max_grad_norm)
+        norm = self._actor_adam.clipped_step(torch.autograd.grad(loss, weights), settings.max_grad_norm)
+        if not report:
+            return
+        with torch.no_grad():
+            change = ratio - 1.0
+            self.diagnostics.add(
+                policy_loss=-gain.detach(),
+                entropy=mean_entropy.detach(),
+                approx_kl=(change - log_ratio).mean(),
+                clip_fraction=(change.abs() > settings.clip_coef).float().mean(),
+                policy_grad_norm=norm,
+            )
 
-    def _fit(self, seen: Tensor, target: Tensor) -> None:
-        """Take a step of (4)."""
+    def _update_value(self, seen: Tensor, target: Tensor, report: bool = False) -> None:
+        """Take a step of (4); with ``report`` add to the diagnostics."""
         value = self._valued(seen)
         loss = (value - target).square().mean()
         weights = self._critic_adam.weights
-        self._critic_adam.step(torch.autograd.grad(0.5 * loss, weights), self.settings.max_grad_norm)
-        self.critic_loss += loss.detach()
-        self.value += value.detach().mean()
+        gradients = torch.autograd.grad(0.5 * loss, weights)
+        norm = self._critic_adam.clipped_step(gradients, self.settings.max_grad_norm)
+        if report:
+            mean = value.detach().mean()
+            self.diagnostics.add(value_loss=loss.detach(), value_mean=mean, value_grad_norm=norm)
 
     def _decided(self, seen: Tensor) -> Tensor:
         """Return the means of normal entries and log-odds of the others, (m, action)."""

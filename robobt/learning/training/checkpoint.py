@@ -31,7 +31,7 @@ class RunState(TypedDict):
 
     steps: int
     rng: Mapping[str, Any]
-    validations: list[dict[str, int | float | None]]
+    validations: list[dict[str, Any]]
     clock: dict[str, float]
     robobt: str
 

@@ -13,7 +13,7 @@ class RunClock:
     def __init__(self) -> None:
         self._cpu, self._wall = time.process_time(), time.monotonic()
         self._earlier_cpu_s = self._earlier_wall_s = 0.0
-        self._evaluation_here_s = 0.0
+        self._evaluation_here_s = self._evaluation_wall_s = 0.0
         self.evaluation_s = 0.0
 
     @property
@@ -31,11 +31,17 @@ class RunClock:
         """Wall time in all [s]."""
         return self._earlier_wall_s + self.here_s
 
+    @property
+    def learning_here_s(self) -> float:
+        """Wall time in this process without evaluations [s]."""
+        return self.here_s - self._evaluation_wall_s
+
     @contextmanager
     def evaluating(self) -> Iterator[None]:
-        """Count the CPU time of the block as an evaluation's."""
-        begun = time.process_time()
+        """Count the time of the block as an evaluation's."""
+        begun, since = time.process_time(), time.monotonic()
         yield
+        self._evaluation_wall_s += time.monotonic() - since
         spent = time.process_time() - begun
         self._evaluation_here_s += spent
         self.evaluation_s += spent

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 from typing import TypedDict
@@ -29,7 +29,9 @@ class Validation:
         cpu_s: CPU time spent on collecting and learning.
         evaluation_cpu_s: CPU time spent on evaluations.
         wall_s: time passed, that of interrupted processes included.
-        critic_loss, value: means since the last evaluation; None without updates.
+        steps_per_second: environment steps by wall time since the last evaluation, evaluations not counted.
+        losses: means since the last evaluation of what the learner reports (losses, gradient norms,
+            approximate KL and so on, by name); None for a figure that is not finite, {} without updates.
     """
 
     steps: int
@@ -41,8 +43,8 @@ class Validation:
     cpu_s: float
     evaluation_cpu_s: float
     wall_s: float
-    critic_loss: float | None
-    value: float | None
+    steps_per_second: float
+    losses: dict[str, float | None] = field(default_factory=dict)
 
     def score(self, enough: float = 1.0) -> tuple[float, float]:
         """What policies are ranked by: successes up to ``enough``, then speed. Never by the return."""

@@ -7,11 +7,11 @@ from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
-from torch import Tensor
 
 from robobt import __version__
 from robobt.config.commit import source_commit
 from robobt.config.errors import RobobtError
+from robobt.learning.agents.diagnostics import Diagnostics
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.training.checkpoint import Arrays, RunState, digest_of
 from robobt.learning.training.clock import RunClock
@@ -32,17 +32,13 @@ class Agent(Protocol):
 
     actor: Actor
     updates: int
-    critic_loss: Tensor
-    value: Tensor
+    diagnostics: Diagnostics
 
     def state(self) -> Arrays:
         """Return all that it goes on from, as arrays by name."""
 
     def restore(self, state: Arrays) -> None:
         """Take over another agent's :meth:`state`."""
-
-    def reset_sums(self) -> None:
-        """Set ``critic_loss`` and ``value``, sums over the updates, to zero."""
 
 
 class Run(ABC):
@@ -72,6 +68,7 @@ class Run(ABC):
         self._selection = Selection(settings.evaluation)
         self._reporter = Reporter(settings, on_progress, clock, self._selection)
         self._saved_at = time.monotonic()
+        self._paced_from = 0, 0.0
 
     @abstractmethod
     def _advance(self) -> None:
@@ -106,6 +103,7 @@ class Run(ABC):
             self._restore(*stored)
         self._rebuild()
         self._reporter.begin(self._steps)
+        self._paced_from = self._steps, self._clock.learning_here_s
         while self._steps < self._settings.steps and not self._selection.is_good_enough():
             before = self._steps
             self._advance()
@@ -130,8 +128,11 @@ class Run(ABC):
         actor = self._evaluated
         with self._clock.evaluating():
             figures = self._problem.evaluate(policy_of(actor), "validation", self._settings.evaluation.starts)
-        latest = self._selection.latest
-        updates = self._agent.updates - (latest.updates if latest else 0)
+        losses = self._agent.diagnostics.means()
+        self._agent.diagnostics.clear()
+        steps, seconds = self._paced_from
+        self._paced_from = self._steps, self._clock.learning_here_s
+        pace = (self._steps - steps) / max(self._paced_from[1] - seconds, 1e-9)
         validation = Validation(
             steps=self._steps,
             updates=self._agent.updates,
@@ -142,14 +143,12 @@ class Run(ABC):
             cpu_s=round(self._clock.cpu_s, 3),
             evaluation_cpu_s=round(self._clock.evaluation_s, 3),
             wall_s=round(self._clock.wall_s, 3),
-            critic_loss=float(self._agent.critic_loss) / updates if updates else None,
-            value=float(self._agent.value) / updates if updates else None,
+            steps_per_second=round(pace, 1),
+            losses={name: value if np.isfinite(value) else None for name, value in losses.items()},
         )
-        self._agent.reset_sums()
-        if validation.critic_loss is not None and not np.isfinite(validation.critic_loss):
-            raise TrainError(
-                f"{self._folder.path}: the critic's loss is not finite after {self._steps} steps"
-            )
+        for name, value in validation.losses.items():
+            if value is None and name.endswith("_loss"):
+                raise TrainError(f"{self._folder.path}: {name} is not finite after {self._steps} steps")
         self._selection.add(validation, actor)
         self._folder.log(validation)
         self._reporter.report(self._steps, now=True)
@@ -175,7 +174,8 @@ class Run(ABC):
             "evaluation_cpu_s": round(self._clock.evaluation_s, 3),
             "wall_s": round(self._clock.wall_s, 3),
             "held_out": held_out_figures(held_out),
-            "weights": digest_of(self._agent.state()),
+            # Two sums are part of the hash since the first version, in which a state had them.
+            "weights": digest_of({**self._agent.state(), "sums": np.zeros(2)}),
         }
         result = TrainResult(settings, self._folder.path, actor, self._selection.validations, figures)
         self._folder.finish(result)
@@ -186,6 +186,7 @@ class Run(ABC):
         if time.monotonic() - self._saved_at < self._settings.checkpoint_seconds:
             return
         arrays: Arrays = {f"agent/{key}": array for key, array in self._agent.state().items()}
+        arrays |= {f"diagnostics/{key}": array for key, array in self._agent.diagnostics.state().items()}
         arrays |= self._kept()
         arrays |= {f"best/{key}": array for key, array in self._selection.weights.items()}
         self._folder.save(
@@ -202,6 +203,7 @@ class Run(ABC):
 
     def _restore(self, arrays: Arrays, state: RunState) -> None:
         self._agent.restore(part(arrays, "agent/"))
+        self._agent.diagnostics.restore(part(arrays, "diagnostics/"))
         self._selection.restore(state["validations"], part(arrays, "best/"))
         self._steps = state["steps"]
         self._rng.bit_generator.state = state["rng"]

@@ -3,13 +3,13 @@
 | file | what |
 | --- | --- |
 | ``settings.yaml`` | every setting of the run |
-| ``log.jsonl`` | a line an evaluation: :class:`~robobt.learning.training.results.Validation` |
+| ``log.jsonl`` | one line per evaluation: :class:`~robobt.learning.training.results.Validation` |
 | ``checkpoint``, ``checkpoint.previous`` | all that a resumed run needs; gone once the run has ended |
 | ``actor.pt`` | the best actor's weights, and how to build it |
 | ``result.json`` | held-out figures: :class:`~robobt.learning.training.results.Figures` |
 | ``curves.png`` | success and time over steps |
-| ``past/`` | the policy after so many steps each, where a run plays against its past selves or has stages |
-| ``tensorboard/`` | the log's figures as events |
+| ``past/`` | earlier policies by step, where a run plays against its past selves or has stages |
+| ``tensorboard/`` | the log's figures as events, by the tags of :func:`scalars_of` |
 """
 
 from __future__ import annotations
@@ -48,6 +48,19 @@ if TYPE_CHECKING:
 SETTINGS, LOG, CHECKPOINT = "settings.yaml", "log.jsonl", "checkpoint"
 ACTOR, RESULT, CURVES, EVENTS = "actor.pt", "result.json", "curves.png", "tensorboard"
 PAST = "past"
+
+_TAGS = {
+    "success": "eval/success_rate",
+    "mean_time": "eval/mean_time",
+    "time_ratio": "eval/time_ratio",
+    "mean_return": "eval/mean_return",
+    "steps_per_second": "charts/SPS",
+    "updates": "charts/updates",
+    "cpu_s": "charts/cpu_s",
+    "evaluation_cpu_s": "charts/evaluation_cpu_s",
+    "wall_s": "charts/wall_s",
+}
+"""TensorBoard's tags of the scalar fields of :class:`Validation`."""
 
 
 class RunFolderError(RobobtError, ValueError):
@@ -136,9 +149,8 @@ class RunFolder:
             self._log.write(json.dumps(asdict(validation), allow_nan=False) + "\n")
             self._log.flush()
         if self._events is not None:
-            for name, value in asdict(validation).items():
-                if value is not None and name != "steps":
-                    self._events.add_scalar(name, value, validation.steps)
+            for tag, value in scalars_of(validation).items():
+                self._events.add_scalar(tag, value, validation.steps)
             self._events.flush()
 
     def keep(self, actor: Actor, steps: int) -> None:
@@ -194,6 +206,14 @@ class RunFolder:
         """Return the log up to the checkpoint; a resumed run writes the lines after it again."""
         validations = [] if self.stored is None else self.stored[1]["validations"]
         return [json.dumps(line) + "\n" for line in validations]
+
+
+def scalars_of(validation: Validation) -> dict[str, float]:
+    """Return the figures of an evaluation by the tags that they have in TensorBoard."""
+    figures = asdict(validation)
+    found: dict[str, float | None] = {tag: figures[name] for name, tag in _TAGS.items()}
+    found |= {f"losses/{name}": value for name, value in validation.losses.items()}
+    return {tag: value for tag, value in found.items() if value is not None}
 
 
 def load_run(folder: str | Path) -> TrainResult:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Any
 
 import torch
 
@@ -57,12 +58,12 @@ class Selection:
         actor.load_state_dict({key: torch.from_numpy(value) for key, value in self.weights.items()})
         return actor.requires_grad_(False)
 
-    def state(self) -> list[dict[str, int | float | None]]:
+    def state(self) -> list[dict[str, Any]]:
         """Return the evaluations as plain data; a resumed run needs :attr:`weights` too."""
         return [asdict(validation) for validation in self.validations]
 
-    def restore(self, validations: Sequence[Mapping[str, float | None]], weights: Arrays) -> None:
+    def restore(self, validations: Sequence[Mapping[str, Any]], weights: Arrays) -> None:
         """Take over another selection's :meth:`state` and weights."""
-        self.validations = [Validation(**validation) for validation in validations]  # type: ignore[arg-type]
+        self.validations = [Validation(**validation) for validation in validations]
         self.best = max(self.validations, key=self._score, default=None)
         self.weights = weights

@@ -84,7 +84,7 @@ def test_a_first_step_follows_the_policy_gradient():
     action, log_probability, _ = it.act(seen, rng)
     advantage = rng.normal(size=64)
     tensors = [torch.from_numpy(x.astype(np.float32)) for x in (seen, action, log_probability, advantage)]
-    it._improve(*tensors)
+    it._update_policy(*tensors)
     weights = same._actor_adam.weights
     standard = (tensors[3] - tensors[3].mean()) / (tensors[3].std() + 1e-8)
     log_now, _ = same._weigh(same._decided(tensors[0]), tensors[1])
@@ -100,8 +100,39 @@ def test_what_has_moved_far_enough_is_not_moved_on():
     # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
     advantage = torch.tensor([1.0, -1.0] * 2)
     old = now.detach() - 0.5 * advantage
-    it._improve(seen, action, old, advantage)
+    it._update_policy(seen, action, old, advantage)
     assert all((weight.grad == 0.0).all() for weight in it._actor_adam.weights)
+
+
+def test_the_diagnostics_of_an_update_are_what_their_names_say():
+    it = agent(minibatch_size=64, num_epochs=1, ent_coef=0.0, max_grad_norm=1e-3)
+    rng = np.random.default_rng(4)
+    rollout = random_rollout(8, 8)
+    rollout.action[..., 1] = np.sign(rollout.action[..., 1])
+    seen, action = (
+        torch.from_numpy(x.reshape(64, 2).astype(np.float32)) for x in (rollout.observation, rollout.action)
+    )
+    with torch.no_grad():
+        now, entropy = it._weigh(it._decided(seen), action)
+        value = it._valued(seen)
+    shift = torch.linspace(-0.5, 0.5, 64)
+    rollout.log_probability[:] = (now - shift).reshape(8, 8).numpy()
+    advantage = advantages(rollout, it.settings.gamma, it.settings.gae_lambda)
+    target = advantage + rollout.value
+    it.update(rollout, rng)
+    found = it.diagnostics.means()
+    ratio = shift.exp()
+    standard = torch.from_numpy((advantage - advantage.mean()) / advantage.std(ddof=1)).reshape(-1)
+    gain = torch.minimum(ratio * standard, ratio.clamp(0.8, 1.2) * standard)
+    assert found["policy_loss"] == pytest.approx(-float(gain.mean()), abs=1e-5)
+    assert found["approx_kl"] == pytest.approx(float((ratio - 1.0 - shift).mean()), abs=1e-5)
+    assert found["clip_fraction"] == pytest.approx(float(((ratio - 1.0).abs() > 0.2).float().mean()))
+    assert found["entropy"] == pytest.approx(float(entropy.mean()), abs=1e-5)
+    assert found["value_loss"] == pytest.approx(((value.numpy() - target.reshape(-1)) ** 2).mean(), rel=1e-4)
+    assert found["explained_variance"] == pytest.approx(1.0 - advantage.var() / target.var())
+    # They are the norms before clipping.
+    assert found["policy_grad_norm"] > 1e-2
+    assert found["value_grad_norm"] > 1e-2
 
 
 def test_it_learns_what_pays_from_rollouts():
@@ -183,7 +214,7 @@ def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
 @pytest.mark.parametrize(("share", "horizon"), [(0.0, 10.0), (0.5, 30.0), (1.0, 50.0)])
 def test_it_looks_farther_ahead_the_longer_it_has_learned(monkeypatch, share, horizon):
     rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, gae_lambda=1.0), []
-    monkeypatch.setattr(patient, "_fit", lambda _, target: valued.extend(target.tolist()))
+    monkeypatch.setattr(patient, "_update_value", lambda _, target, report: valued.extend(target.tolist()))
     patient.look_ahead(share)
     patient.update(rollout, np.random.default_rng(0), value_alone=True)
     expected = advantages(rollout, 1.0 - 1.0 / horizon, 1.0) + rollout.value

@@ -28,7 +28,7 @@ SHORT = {
 
 
 def at(steps, success, time_ratio=None, mean_time=1.0):
-    return Validation(steps, 0, success, mean_time, time_ratio, 0.0, steps / 100, 0.0, 0.0, None, None)
+    return Validation(steps, 0, success, mean_time, time_ratio, 0.0, steps / 100, 0.0, 0.0, 0.0)
 
 
 def test_the_first_evaluation_at_the_bar_is_found():

@@ -74,7 +74,10 @@ def break_and_resume(settings, folder, moments):
 
 
 def without_clocks(validation):
-    return [replace(each, cpu_s=0.0, evaluation_cpu_s=0.0, wall_s=0.0) for each in validation]
+    return [
+        replace(each, cpu_s=0.0, evaluation_cpu_s=0.0, wall_s=0.0, steps_per_second=0.0)
+        for each in validation
+    ]
 
 
 def test_the_task_is_learned(tmp_path):
@@ -117,6 +120,43 @@ def test_the_log_of_a_resumed_run_has_every_evaluation_once(tmp_path):
     lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     assert [line["steps"] for line in lines] == [480, 960, 1440, 1920]
     assert [each.steps for each in broken.validations] == [480, 960, 1440, 1920]
+
+
+@pytest.mark.parametrize(
+    ("switches", "losses"),
+    [
+        ({}, {"critic_loss", "q_mean", "critic_grad_norm", "actor_grad_norm"}),
+        (
+            PPO,
+            {
+                "policy_loss",
+                "value_loss",
+                "value_mean",
+                "entropy",
+                "approx_kl",
+                "clip_fraction",
+                "explained_variance",
+                "policy_grad_norm",
+                "value_grad_norm",
+            },
+        ),
+    ],
+    ids=["ddpg", "ppo"],
+)
+def test_the_log_and_tensorboard_have_what_the_learner_reports(tmp_path, switches, losses):
+    event_accumulator = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator")
+    result = train(slide_settings(**switches, tensorboard=True), tmp_path, problem=SLIDE)
+    lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
+    assert [line["losses"] for line in lines] == [each.losses for each in result.validations]
+    events = event_accumulator.EventAccumulator(str(tmp_path / "tensorboard"))
+    events.Reload()
+    assert {f"losses/{name}" for name in losses} | {"charts/SPS", "eval/success_rate"} <= set(
+        events.Tags()["scalars"]
+    )
+    for name in losses:
+        told = [(event.step, event.value) for event in events.Scalars(f"losses/{name}")]
+        assert told == [(line["steps"], pytest.approx(line["losses"][name], rel=1e-6)) for line in lines]
+    assert all(line["steps_per_second"] > 0.0 for line in lines)
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_gives_others(tmp_path):
