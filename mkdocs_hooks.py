@@ -171,8 +171,11 @@ def observations() -> str:
     ]
     for spec in features.OBSERVATIONS.values():
         parts.append(f"## {spec.name}, version {spec.version}\n\n{_text(said.get(spec.name.upper(), ''))}\n")
-        parts.append("| index | entry | unit |\n| --- | --- | --- |")
-        parts += [f"| {place} | `{name}` | {unit} |" for place, (name, unit) in enumerate(spec.entries)]
+        parts.append("| index | entry | unit | range | scale |\n| --- | --- | --- | --- | --- |")
+        parts += [
+            f"| {place} | `{one.name}` | {one.unit} | {one.range} | {one.scale} |"
+            for place, one in enumerate(spec.entries)
+        ]
         parts.append("")
     parts.append("## Environments\n\nHow each is used: [training environments](../environments.md).\n")
     parts += [f"::: {kind.__module__}.{kind.__qualname__}\n" for kind in _environments(envs)]

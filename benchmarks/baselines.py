@@ -32,12 +32,12 @@ import robobt
 from robobt.config.commit import source_commit
 from robobt.config.extras import need
 from robobt.learning.agents.networks import one_thread, policy_of
-from robobt.learning.envs import TaskSettings, make_task
-from robobt.learning.envs.make import ENVIRONMENTS
+from robobt.learning.envs import TaskSettings, find_task, make_task
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import against
+from robobt.learning.tasks import environment_id
 from robobt.learning.training.clock import RunClock
-from robobt.learning.training.export_run import SKILLS, held_out
+from robobt.learning.training.export_run import held_out
 from robobt.learning.training.off_policy import OffPolicyRun
 from robobt.learning.training.on_policy import OnPolicyRun
 from robobt.learning.training.preset_files import merged, read_preset
@@ -120,7 +120,8 @@ def train_cell(task: str, algorithm: str, seed: int, given: argparse.Namespace) 
         What the line is to say: ``cpu_seconds`` is the budget, ``steps`` and ``cpu_s`` are what was spent,
         ``curve`` is explained at :class:`Curve`, ``held_out`` is as on the model's card.
     """
-    environment = ENVIRONMENTS[TASKS[task]]()
+    kind = find_task(TASKS[task])
+    environment = kind.Settings.default()
     judged = against(environment, "attack") if isinstance(environment, SoccerSettings) else environment
     problem = problem_of(environment, held_out=judged, validated=(judged,))
     curve = Curve(problem, given.cpu_seconds, given.parts, given.validation)
@@ -132,7 +133,7 @@ def train_cell(task: str, algorithm: str, seed: int, given: argparse.Namespace) 
     card = ModelCard(
         kind="policy",
         name=f"{TASKS[task]}_{algorithm}_{seed}",
-        skill=SKILLS.get(TASKS[task], "LearnedSkill"),
+        skill=kind.played_by,
         description=f"{task}, trained by {ALGORITHMS[algorithm]} for {given.cpu_seconds:g} CPU seconds.",
         observation=ObservationCard.of(make_task(environment, 1).observation),
         outputs=action_outputs(environment.action),
@@ -255,7 +256,7 @@ def train_sb3(
 
     from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
 
-    name = "ShootTowardsGoal-v0" if task == "Shoot" else f"{task}-v0"
+    name = f"{environment_id(TASKS[task])}-v0"
     how = {"vectorization_mode": "vector_entry_point", "settings": environment}
     rows = ArenasVecEnv(gymnasium.make_vec(name, ROWS[algorithm], **how))
     changes: dict[str, Any] = {}

@@ -41,7 +41,7 @@ class ObservationCard(Settings):
     @classmethod
     def of(cls, spec: ObservationSpec) -> ObservationCard:
         """Return the card of an observation as it is defined now."""
-        entries = tuple([f"{name} [{unit}]" for name, unit in spec.entries])
+        entries = tuple([f"{entry.name} [{entry.unit}]" for entry in spec.entries])
         return cls(name=spec.name, version=spec.version, size=spec.size, features=entries)
 
     @model_validator(mode="after")

@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.world.compiled import compilable, compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import ObservationSpec, kinematics, motion, observation_spec
+from robobt.world.observation import Entry, ObservationSpec, entries, kinematics, motion
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 SPEED = 1.5
@@ -29,19 +29,19 @@ LAG = 0.15
 FIRST_WAY = 6
 """Where they begin in an observation."""
 
-VECTORS = (0, 3)
-"""Where its vectors in the robot's frame begin: to the ball, and the robot's velocity."""
-
-GO_TO_BALL_AMONG_ROBOTS: ObservationSpec = observation_spec(
+GO_TO_BALL_AMONG_ROBOTS = ObservationSpec(
     "go_to_ball_among_robots",
     2,
-    **dict.fromkeys(("ball_x", "ball_y"), "m"),
-    ball_distance="m",
-    **dict.fromkeys(("vx", "vy"), "m/s"),
-    omega="rad/s",
-    **{f"free_{way * 360 // WAYS}": "s" for way in range(WAYS)},
-    **{f"slow_{way * 360 // SLOW_WAYS}": "s" for way in range(SLOW_WAYS)},
-    standing="s",
+    (
+        *entries("ball_x ball_y", "m", 1.0),
+        *entries("ball_distance", "m", "far", 3.0, signed=False),
+        *entries("vx vy", "m/s", "speed", "max_speed"),
+        *entries("omega", "rad/s", "turn", "max_turn"),
+        *(Entry(f"free_{way * 360 // WAYS}", "s", AHEAD, signed=False) for way in range(WAYS)),
+        *(Entry(f"slow_{way * 360 // SLOW_WAYS}", "s", AHEAD, signed=False) for way in range(SLOW_WAYS)),
+        Entry("standing", "s", AHEAD, signed=False),
+    ),
+    vectors=(0, 3),
 )
 """The ball, the robot's velocity, and for how long ways round about are free.
 

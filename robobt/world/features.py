@@ -20,39 +20,48 @@ from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.observation import ObservationSpec as ObservationSpec
-from robobt.world.observation import Row, kinematics, motion, observation_spec
+from robobt.world.observation import Row, entries, kinematics, motion
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
 from robobt.world.team_view import places_of, team_view
 
-SHOT = observation_spec(
-    "shot", 1, angle="rad", target_distance="m", opponent_distance="m", along="m", across="m"
+SHOT = ObservationSpec(
+    "shot", 1, (*entries("angle", "rad"), *entries("target_distance opponent_distance along across", "m"))
 )
 """Eq. 4: one opponent beside the line shooter -> target."""
 
-GO_TO_BALL = observation_spec(
-    "go_to_ball", 1, sin_ball="1", cos_ball="1", ball_distance="m", vx="m/s", vy="m/s", omega="rad/s"
+GO_TO_BALL = ObservationSpec(
+    "go_to_ball",
+    1,
+    (
+        *entries("sin_ball cos_ball", most=1.0),
+        *entries("ball_distance", "m", "far", 3.0, signed=False),
+        *entries("vx vy", "m/s", "speed", "max_speed"),
+        *entries("omega", "rad/s", "turn", "max_turn"),
+    ),
 )
 """The ball and the robot's velocity, in the robot's frame."""
 
-GO_TO_BALL_TO_SHOOT = observation_spec(
-    "go_to_ball_to_shoot",
-    1,
-    **dict(GO_TO_BALL.entries),
-    **dict.fromkeys(("sin_goal", "cos_goal"), "1"),
+GO_TO_BALL_TO_SHOOT = ObservationSpec(
+    "go_to_ball_to_shoot", 1, (*GO_TO_BALL.entries, *entries("sin_goal cos_goal", most=1.0))
 )
 """The same, and the direction from the ball to the middle of the attacked goal, in the robot's frame."""
 
-SHOOT = observation_spec(
+SHOOT = ObservationSpec(
     "shoot",
     1,
-    **dict.fromkeys(("ball_x", "ball_y"), "m"),
-    **dict.fromkeys(("ball_vx", "ball_vy"), "m/s"),
-    omega="rad/s",
-    goal_distance="m",
-    **dict.fromkeys(("sin_upper_post", "cos_upper_post", "sin_lower_post", "cos_lower_post"), "1"),
+    (
+        *entries("ball_x ball_y", "m", "far", 0.1),
+        *entries("ball_vx ball_vy", "m/s", "ball_speed", 1.0),
+        *entries("omega", "rad/s", "turn", "max_turn"),
+        *entries("goal_distance", "m", "far", 3.0, signed=False),
+        *entries("sin_upper_post cos_upper_post sin_lower_post cos_lower_post", most=1.0),
+    ),
 )
-"""The ball and the posts of the attacked goal, in the robot's frame."""
+"""The ball and the posts of the attacked goal, in the robot's frame.
+
+The scales are those of a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
+"""
 
 SCENE_OPPONENTS = 6
 """How many opponents a shot's scene has room for."""
@@ -60,21 +69,26 @@ SCENE_OPPONENTS = 6
 ABSENT = (-99.0, 99.0, 0.0, 0.0)
 """An empty place in a shot's scene: a robot far behind the shooter."""
 
-SHOT_SCENE = observation_spec(
+SHOT_SCENE = ObservationSpec(
     "shot_scene",
     1,
-    target_distance="m",
-    target_angle="rad",
-    target_offset="m",
-    turn="rad",
-    **dict.fromkeys(("shooter_v_along", "shooter_v_across"), "m/s"),
-    **dict.fromkeys(("ball_along", "ball_across"), "m"),
-    **dict.fromkeys(("ball_v_along", "ball_v_across"), "m/s"),
-    **{
-        f"opponent_{number}_{entry}": unit
-        for number in range(SCENE_OPPONENTS)
-        for entry, unit in (("along", "m"), ("across", "m"), ("v_along", "m/s"), ("v_across", "m/s"))
-    },
+    (
+        *entries("target_distance", "m"),
+        *entries("target_angle", "rad"),
+        *entries("target_offset", "m"),
+        *entries("turn", "rad"),
+        *entries("shooter_v_along shooter_v_across", "m/s"),
+        *entries("ball_along ball_across", "m"),
+        *entries("ball_v_along ball_v_across", "m/s"),
+        *(
+            entry
+            for k in range(SCENE_OPPONENTS)
+            for entry in (
+                *entries(f"opponent_{k}_along opponent_{k}_across", "m"),
+                *entries(f"opponent_{k}_v_along opponent_{k}_v_across", "m/s"),
+            )
+        ),
+    ),
 )
 """All that moves, seen along the line shooter -> target, and the shot's place on the field."""
 

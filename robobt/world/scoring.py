@@ -8,21 +8,36 @@ import numpy as np
 
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import Row, kinematics, motion, observation_spec
+from robobt.world.observation import ObservationSpec, Row, entries, kinematics, motion
 from robobt.world.state import Frame, RobotState
 
-SCORE_ON_GOALKEEPER = observation_spec(
+KICK_SPEED = 6.0
+"""The kick that is thought of [m/s]."""
+
+FAR_OFF = 1.0
+"""What misses the goal by as much misses it [m]."""
+
+SCORE_ON_GOALKEEPER = ObservationSpec(
     "score_on_goalkeeper",
     1,
-    **dict.fromkeys(("vx", "vy"), "m/s"),
-    omega="rad/s",
-    **dict.fromkeys(("ball_x", "ball_y"), "m"),
-    **dict.fromkeys(("ball_vx", "ball_vy"), "m/s"),
-    **dict.fromkeys(("sin_goal", "cos_goal"), "1"),
-    **dict.fromkeys(("upper_post_x", "upper_post_y", "lower_post_x", "lower_post_y"), "m"),
-    **dict.fromkeys(("keeper_x", "keeper_y"), "m"),
-    **dict.fromkeys(("keeper_vx", "keeper_vy"), "m/s"),
-    **dict.fromkeys(("aim", "keeper_aside"), "m"),
+    (
+        *entries("vx vy", "m/s", "speed", "max_speed"),
+        *entries("omega", "rad/s", "turn", "max_turn"),
+        # Beside the line of the heading, less counts than along it.
+        *entries("ball_x", "m", "far", 2.0),
+        *entries("ball_y", "m", "far", 1.5),
+        *entries("ball_vx ball_vy", "m/s", "ball_speed", 3.0),
+        *entries("sin_goal cos_goal", most=1.0),
+        *entries("upper_post_x", "m", "goal", 4.0),
+        *entries("upper_post_y", "m", "goal", 2.0),
+        *entries("lower_post_x", "m", "goal", 4.0),
+        *entries("lower_post_y", "m", "goal", 2.0),
+        *entries("keeper_x", "m", "far", 4.0),
+        *entries("keeper_y", "m", "far", 2.0),
+        *entries("keeper_vx keeper_vy", "m/s", "keeper_speed", 2.0),
+        *entries("aim", "m", FAR_OFF, 0.3),
+        *entries("keeper_aside", "m", FAR_OFF / 2, 0.2),
+    ),
 )
 """The robot's velocity, the ball, the attacked goal and its goalkeeper, in the robot's frame.
 
@@ -31,12 +46,6 @@ middle of the goal. ``aim`` is where a kick of :data:`KICK_SPEED` would cross th
 middle, at most :data:`FAR_OFF` either way; ``keeper_aside`` how far to the left of such a shot the goalkeeper
 is, at most half as much.
 """
-
-KICK_SPEED = 6.0
-"""The kick that is thought of [m/s]."""
-
-FAR_OFF = 1.0
-"""What misses the goal by as much misses it [m]."""
 
 
 @compiled

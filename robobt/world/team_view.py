@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robobt.world.compiled import compiled, compiled_lean
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import ObservationSpec, kinematics, motion, observation_spec
+from robobt.world.observation import ObservationSpec, entries, kinematics, motion
 from robobt.world.scoring import FAR_OFF, KICK_SPEED
 from robobt.world.state import Frame, RobotState
 
@@ -20,7 +20,26 @@ AWAY = 5.0
 BALL = 7
 """Index of the ball's place."""
 
-_OWN, _EACH = 19, 4
+_ITSELF = (
+    *entries("vx vy", "m/s", "speed", "max_speed"),
+    *entries("omega", "rad/s", "turn", "max_turn"),
+    *entries("x", "m", "far", 3.0),
+    *entries("y", "m", "far", 2.0),
+    *entries("cos_heading sin_heading", most=1.0),
+    *entries("ball_x", "m", "away", 2.0),
+    *entries("ball_y", "m", "away", 1.5),
+    *entries("ball_vx ball_vy", "m/s", "ball_speed", 3.0),
+    *(
+        entry
+        for place in ("left_post", "right_post", "own_goal")
+        for entry in (*entries(f"{place}_x", "m", "goal", 4.0), *entries(f"{place}_y", "m", "goal", 2.0))
+    ),
+    *entries("aim", "m", FAR_OFF, 0.3),
+    *entries("lane", "m", FAR_OFF / 2, 0.2),
+)
+"""What it sees of itself, the ball and both goals."""
+
+_OWN, _EACH = len(_ITSELF), 4
 _TOLD = ("", "_restarts", "_restarts_double_touch")
 """Ends of the name: whether it tells of no restarts, of whose ball it is, or also of who may not touch it."""
 
@@ -40,26 +59,20 @@ def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
     the own team's to play, -1 where it is the others', 0 in play; and ``barred``, 1 for who took the last
     restart and may not touch the ball before another robot has, else 0.
     """
-    units: dict[str, str] = {
-        **dict.fromkeys(("vx", "vy"), "m/s"),
-        "omega": "rad/s",
-        **dict.fromkeys(("x", "y"), "m"),
-        **dict.fromkeys(("cos_heading", "sin_heading"), "1"),
-        **dict.fromkeys(("ball_x", "ball_y"), "m"),
-        **dict.fromkeys(("ball_vx", "ball_vy"), "m/s"),
-        **dict.fromkeys(("left_post_x", "left_post_y", "right_post_x", "right_post_y"), "m"),
-        **dict.fromkeys(("own_goal_x", "own_goal_y", "aim", "lane"), "m"),
-    }
-    for who, places in (("mate", mates), ("opponent", opponents)):
-        for k in range(places):
-            units |= {
-                f"{who}_{k}_x": "m",
-                f"{who}_{k}_y": "m",
-                f"{who}_{k}_vx": "m/s",
-                f"{who}_{k}_vy": "m/s",
-            }
-    units |= dict.fromkeys(("restart", "barred")[:told], "1")
-    return observation_spec(f"team_view_{mates}_{opponents}{_TOLD[told]}", 1, **units)
+    others = [f"mate_{k}" for k in range(mates)] + [f"opponent_{k}" for k in range(opponents)]
+    vector = (
+        *_ITSELF,
+        *(
+            entry
+            for who in others
+            for entry in (
+                *entries(f"{who}_x {who}_y", "m", "away", 2.0),
+                *entries(f"{who}_vx {who}_vy", "m/s", "speed", "max_speed"),
+            )
+        ),
+        *entries(" ".join(("restart", "barred")[:told]), most=1.0),
+    )
+    return ObservationSpec(f"team_view_{mates}_{opponents}{_TOLD[told]}", 1, vector)
 
 
 def places_of(name: str) -> tuple[int, int, int] | None:

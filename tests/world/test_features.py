@@ -154,7 +154,7 @@ def test_a_row_has_as_many_entries_as_its_specification() -> None:
 
 def test_every_observation_names_its_entries_once() -> None:
     for spec in OBSERVATIONS.values():
-        names = [name for name, _ in spec.entries]
+        names = [entry.name for entry in spec.entries]
         assert len(set(names)) == spec.size
         assert spec.version >= 1
 
@@ -167,7 +167,7 @@ def scene_of(ball: list[float], opponents: list[tuple[float, ...]]) -> dict[str,
     """The scene of a shot straight to the left of the field's axis: along is +y, across is -x."""
     robots = np.array(opponents, dtype=float).reshape(1, -1, 6)
     row = shot_scene(np.array([SHOOTER]), np.array([ball]), np.array([[1.0, 4.0]]), robots)[0]
-    return {name: value for (name, _), value in zip(SHOT_SCENE.entries, row, strict=True)}
+    return {entry.name: value for entry, value in zip(SHOT_SCENE.entries, row, strict=True)}
 
 
 def test_the_scene_of_a_shot_is_seen_along_the_shot() -> None:
@@ -207,4 +207,4 @@ def test_a_team_view_is_found_by_its_name_with_what_it_tells_of_restarts(told: i
     spec = team_view(2, 3, told)
     assert find_observation(spec.name) == spec
     assert spec.size == team_view(2, 3).size + told
-    assert [name for name, _ in spec.entries][spec.size - told :] == ["restart", "barred"][:told]
+    assert [entry.name for entry in spec.entries][spec.size - told :] == ["restart", "barred"][:told]

@@ -14,6 +14,7 @@ from robobt.learning.envs.go_to_ball.settings import (
 )
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings as GoToBallSettings
 from robobt.learning.envs.go_to_ball.task import GoToBallTask as GoToBallTask
+from robobt.learning.envs.make import find_task as find_task
 from robobt.learning.envs.make import make_task as make_task
 from robobt.learning.envs.score_on_goalkeeper.env import ScoreOnGoalkeeperEnv as ScoreOnGoalkeeperEnv
 from robobt.learning.envs.score_on_goalkeeper.settings import (

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import ClassVar, Literal
 
 import numpy as np
+from gymnasium.spaces import Box
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.learning.envs.bounds import bounded
+from robobt.learning.envs.central import BALL, EACH, states_of
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
@@ -18,9 +22,16 @@ from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray,
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
+from robobt.skills.base import Skill
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
+
+Policy = Callable[[FloatArray], FloatArray]
+"""Observations (n, O) to actions (n, A)."""
+
+_TASKS: dict[type[TaskSettings], type[ArenaTask]] = {}
+"""The task that settings of each class belong to."""
 
 
 class ArenaTask(ABC):
@@ -34,6 +45,11 @@ class ArenaTask(ABC):
     the seed and its index, bit for bit, however many arenas there are beside it.
 
     Attributes:
+        name: under which it is registered.
+        Settings: of the task; a class of its own for each task, which a subclass that says none is given.
+        played_by: the skill that a model of it is for.
+        timed: which of an episode's times says how fast a success was.
+        central: whether a central critic can learn it.
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
         robots: in an arena.
@@ -43,16 +59,28 @@ class ArenaTask(ABC):
         ended: the episodes that the last step ended; None without any.
     """
 
+    name: ClassVar[str] = ""
+    Settings: ClassVar[type[TaskSettings]] = TaskSettings
+    played_by: ClassVar[str] = "LearnedSkill"
+    timed: ClassVar[Literal["time", "kick_time"]] = "time"
+    central: ClassVar[bool] = False
     observation: ObservationSpec
     robots: int = 1
     blue: int = 1
     learners: tuple[int, ...] = (0,)
     start_columns: tuple[str, ...] = START_COLUMNS
 
-    def __init__(self, settings: TaskSettings, n: int, seed: int | None) -> None:
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if cls.Settings in _TASKS:
+            about = {"__module__": cls.__module__, "__qualname__": f"{cls.__qualname__}.Settings"}
+            cls.Settings = type("Settings", (cls.Settings,), {**about, "__doc__": cls.Settings.__doc__})
+        _TASKS[cls.Settings] = cls
+
+    def __init__(self, settings: TaskSettings | None = None, n: int = 1, seed: int | None = None) -> None:
         if n < 1:
             raise ValueError(f"n must be at least 1, not {n}")
-        self.settings = settings
+        self.settings = settings = self.Settings.default() if settings is None else settings
         self.n = n
         self.action = settings.action
         self.observation_size = len(self.learners) * self.observation.size
@@ -65,6 +93,7 @@ class ArenaTask(ABC):
         self._seed: int | None = seed
         self._seeded = False
         self._all = np.arange(n)
+        self._rewards = np.zeros(n)
 
     @abstractmethod
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -95,6 +124,63 @@ class ArenaTask(ABC):
         """Take from the starts what a task needs besides robots and ball."""
 
     @property
+    def ranges(self) -> dict[str, float]:
+        """What the quantities that entries of the observation name as their ranges are at most."""
+        return {}
+
+    @property
+    def space(self) -> Box[np.float32]:
+        """What each learner can observe."""
+        return bounded(self.observation, self.ranges)
+
+    @property
+    def scale(self) -> tuple[float, ...]:
+        """Typical size of each entry of a learner's observation, in its unit."""
+        sizes = [one.scale for one in self.observation.entries]
+        return tuple([getattr(self.action, size) if isinstance(size, str) else size for size in sizes])
+
+    @property
+    def central_scale(self) -> tuple[float, ...]:
+        """Typical size of what a central critic sees besides; empty where there is none."""
+        return ()
+
+    def central_view(self) -> FloatArray:
+        """Return what a central critic sees of each learner's arena besides, (n, L, entries)."""
+        return np.zeros((self.n, len(self.learners), 0))
+
+    @property
+    def state_size(self) -> int:
+        """Length of an arena's :meth:`state`."""
+        return EACH * self.robots + BALL
+
+    def state(self) -> FloatArray:
+        """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
+
+        For each robot x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx, vy, in
+        field coordinates.
+        """
+        robots = states_of(self.arenas.robots).reshape(self.n, -1)
+        return np.concatenate((robots, self.arenas.balls), axis=1)
+
+    @property
+    def shares(self) -> FloatArray:
+        """What each learner earned in the last decision, (n, L); their mean is the arena's reward."""
+        return np.repeat(self._rewards[:, None], len(self.learners), axis=1)
+
+    @property
+    def reach(self) -> float | None:
+        """Distance at which the ball counts as reached, for pictures [m]; None for none."""
+        return None
+
+    def script(self) -> Policy | None:
+        """Return a policy written by hand over the observations that does the task; None: there is none."""
+        return None
+
+    def skill(self) -> Skill | None:
+        """Return a skill that does the task, for demonstrations; None: there is none."""
+        return None
+
+    @property
     def _robot_limits(self) -> list[RobotLimits | None]:
         """What each robot can do; None for the simulator's own."""
         return [self.settings.robot_limits]
@@ -110,7 +196,7 @@ class ArenaTask(ABC):
         ticks: FloatArray = self._progress["ticks"]
         return ticks
 
-    def jointly(self, policy: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
+    def jointly(self, policy: Policy) -> Policy:
         """Return ``policy``, which decides for each learner alone, as one for all of an arena."""
         each = len(self.learners)
         if each == 1:
@@ -199,6 +285,7 @@ class ArenaTask(ABC):
             if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
+        self._rewards = rewards
         terminated, truncated, success = ends
         self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
         return StepResult(final.copy(), rewards, terminated, truncated, final, success)
@@ -277,3 +364,8 @@ class ArenaTask(ABC):
         places = [*range(0, 6 * self.robots, 6), 6 * self.robots]
         if (np.abs(rows[:, places]) > most[0]).any() or (np.abs(rows[:, 1:][:, places]) > most[1]).any():
             raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")
+
+
+def task_of(settings: type[TaskSettings]) -> type[ArenaTask] | None:
+    """Return the task that settings of this class are for; None where no module of its has been imported."""
+    return next((_TASKS[one] for one in settings.__mro__ if one in _TASKS), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import hypot, sqrt
 
 import numpy as np
@@ -9,14 +10,16 @@ from gymnasium.spaces import Box
 
 from robobt.learning.envs.perception import CUT_OFF
 from robobt.learning.envs.settings import TaskSettings
+from robobt.world.observation import ObservationSpec
 
 BUMP = 0.5
 """What a collision may add to a speed for an instant [m/s]."""
 
 
-def bounded(high: list[float], distances: tuple[int, ...]) -> Box[np.float32]:
-    """Return the space of vectors up to ``high`` either way; the entries ``distances`` are not negative."""
-    low = [0.0 if i in distances else -value for i, value in enumerate(high)]
+def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float32]:
+    """Return the space of the vectors of ``spec``; ``ranges`` says how large its quantities are at most."""
+    high = [ranges[one.range] if isinstance(one.range, str) else one.range for one in spec.entries]
+    low = [-most if one.signed else 0.0 for one, most in zip(spec.entries, high, strict=True)]
     return Box(np.array(low, dtype=np.float32), np.array(high, dtype=np.float32), dtype=np.float32)
 
 

@@ -1,12 +1,11 @@
-"""The environments behind Gymnasium's interfaces, whatever the task."""
+"""Tasks behind Gymnasium's interfaces."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, Protocol
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -16,10 +15,12 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.config.errors import one_line, short_repr
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.make import find_task, learners_of, make_rows, make_task
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.settings import TaskSettings
-from robobt.learning.envs.task import BoolArray, FloatArray, StepResult
-from robobt.sim.arenas import Arenas
+from robobt.learning.envs.task import BoolArray, FloatArray
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point
@@ -36,86 +37,39 @@ _INFO = {"is_success": "success", "time": "time", "optimum": "optimum", "kick_ti
 """What the infos say of an episode that has ended, and where :class:`Episodes` has it."""
 
 
-class Stepped(Protocol):
-    """What the interfaces need: a :class:`~robobt.learning.envs.arena_task.ArenaTask`, or one like it."""
+def settings_for(
+    task: str, settings: TaskSettings | Mapping[str, object] | None, render_mode: str | None
+) -> TaskSettings:
+    """Return the settings of the task of that name; its defaults for None.
 
-    n: int
-    blue: int
-    action_size: int
-
-    @property
-    def settings(self) -> TaskSettings:
-        """Of the task."""
-
-    @property
-    def arenas(self) -> Arenas:
-        """The simulator."""
-
-    @property
-    def ended(self) -> Episodes | None:
-        """The episodes that the last step ended; None without any."""
-
-    def reset(self, seed: int | None = None) -> FloatArray:
-        """See :meth:`ArenaTask.reset`."""
-
-    def reset_to(self, starts: ArrayLike, seed: int | None = None) -> FloatArray:
-        """See :meth:`ArenaTask.reset_to`."""
-
-    def restart(self) -> FloatArray:
-        """See :meth:`ArenaTask.restart`."""
-
-    def step(self, actions: FloatArray) -> StepResult:
-        """See :meth:`ArenaTask.step`."""
-
-    def advance(self, actions: FloatArray) -> StepResult:
-        """See :meth:`ArenaTask.advance`."""
-
-
-def _nowhere(_: TaskSettings) -> None:
-    return None
-
-
-@dataclass(frozen=True)
-class EnvKind:
-    """What Gymnasium has to know of a task.
-
-    Attributes:
-        task: makes so many arenas with given settings; None for the task's defaults.
-        settings: their class.
-        space: the observations of an arena with such settings.
-        reach: distance at which the ball counts as reached, for pictures [m]; None for none.
+    Raises:
+        KeyError: there is no such task.
+        ValueError: there is no such render mode, or the settings are wrong.
     """
-
-    task: Callable[[Any, int], Stepped]
-    settings: type[TaskSettings]
-    space: Callable[[Any], Box[np.float32]]
-    reach: Callable[[Any], float | None] = _nowhere
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
+    kind = find_task(task).Settings
+    return kind.default() if settings is None else kind.model_validate(settings)
 
 
 class _OverArenas:
-    """What both interfaces do with the arenas of a task."""
+    """What both interfaces do with the arenas of a task.
 
-    kind: EnvKind
+    Attributes:
+        task_name: the task of a class that is for one alone.
+        task: its arenas.
+    """
 
-    def _set_up(
-        self, settings: TaskSettings | Mapping[str, object] | None, n: int, render_mode: str | None
-    ) -> Box[np.float32]:
-        """Make the arenas and return the space of one of them's observations."""
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
-        given = None if settings is None else self.kind.settings.model_validate(settings)
-        self.render_mode = render_mode
-        self.task = self.kind.task(given, n)
-        self._reach = self.kind.reach(self.task.settings)
-        self._begun = False
-        return self.kind.space(self.task.settings)
+    task_name: ClassVar[str] = ""
+    task: ArenaTask | PerRobot
+    _begun = False
 
     def _need_reset(self, what: str) -> None:
         need_reset(self._begun, what)
 
     def _picture(self, arena: int, *trails: Sequence[Point]) -> Picture:
         self._need_reset("render")
-        return picture_of(self.task, arena, self._reach, *trails)
+        return picture_of(self.task, arena, *trails)
 
 
 def need_reset(begun: bool, what: str, over: bool = False) -> None:
@@ -152,8 +106,8 @@ def _painter(field: FieldGeometry, face: float) -> Painter:
     return Painter(field, face)
 
 
-def picture_of(task: Stepped, arena: int, reach: float | None = None, *trails: Sequence[Point]) -> Picture:
-    """Return an arena as (height, width, 3) pixels; the rest is as for :meth:`Painter.paint`."""
+def picture_of(task: ArenaTask | PerRobot, arena: int, *trails: Sequence[Point]) -> Picture:
+    """Return an arena as (height, width, 3) pixels; ``trails`` are as for :meth:`Painter.paint`."""
     settings, arenas = task.settings, task.arenas
     x, y = arenas.balls[arena, :2].tolist()
     robots = [
@@ -161,18 +115,38 @@ def picture_of(task: Stepped, arena: int, reach: float | None = None, *trails: S
         for index, pose in enumerate(arenas.robots[arena, :, :3].tolist())
     ]
     painter = _painter(settings.field, settings.simulator.body.face)
-    return np.asarray(painter.paint(robots, (x, y), reach, *trails))
+    return np.asarray(painter.paint(robots, (x, y), task.reach, *trails))
 
 
-class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
-    """One arena behind Gymnasium's interface; arguments as in the environments themselves."""
+class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
+    """One arena of a task behind Gymnasium's interface.
+
+    Several learners are one agent that commands them all: their observations stand one after the other, and
+    so do their actions; the reward is their mean. There is an agent for each learner in
+    :class:`~robobt.learning.envs.soccer.parallel.SoccerParallelEnv`.
+
+    Args:
+        settings: the task's settings, or the mapping that makes them, as out of a YAML file.
+        render_mode: None or "rgb_array".
+        task: name of the task, where the class is not for one alone.
+
+    Raises:
+        KeyError: there is no such task.
+        ValueError: the settings are wrong.
+    """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 33}  # noqa: RUF012
 
     def __init__(
-        self, settings: TaskSettings | Mapping[str, object] | None = None, render_mode: str | None = None
+        self,
+        settings: TaskSettings | Mapping[str, object] | None = None,
+        render_mode: str | None = None,
+        task: str = "",
     ) -> None:
-        self.observation_space = self._set_up(settings, 1, render_mode)
+        self.task = make_task(settings_for(task or self.task_name, settings, render_mode), 1)
+        self.render_mode = render_mode
+        one, count = self.task.space, len(self.task.learners)
+        self.observation_space = Box(np.tile(one.low, count), np.tile(one.high, count), dtype=np.float32)
         self.action_space = _action_space(self.task)
         self._over = False
         self._robot_trail: deque[Point] = deque(maxlen=_TRAIL)
@@ -241,8 +215,22 @@ class SingleEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         self._ball_trail.append((float(arenas.balls[0, 0]), float(arenas.balls[0, 1])))
 
 
-class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
-    """Many arenas in one simulator behind Gymnasium's vector interface."""
+class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
+    """Many arenas in one simulator behind Gymnasium's vector interface.
+
+    Each learner is an environment of its own. An arena's learners stand one after the other, and their
+    episodes end together; each earns its own reward. The rest is as for :class:`TaskEnv`.
+
+    Args:
+        num_envs: learners of all arenas together, a multiple of an arena's learners.
+        settings: as for :class:`TaskEnv`.
+        render_mode: None or "rgb_array", a picture an arena.
+        task: as for :class:`TaskEnv`.
+
+    Raises:
+        KeyError: there is no such task.
+        ValueError: the settings are wrong, or there are not so many learners in whole arenas.
+    """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium declares it so
         "render_modes": ["rgb_array"],
@@ -255,8 +243,16 @@ class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         num_envs: int = 1,
         settings: TaskSettings | Mapping[str, object] | None = None,
         render_mode: str | None = None,
+        task: str = "",
     ) -> None:
-        self.single_observation_space = self._set_up(settings, num_envs, render_mode)
+        own = settings_for(task or self.task_name, settings, render_mode)
+        if num_envs % learners_of(own):
+            raise ValueError(
+                f"num_envs must be a multiple of the arena's {learners_of(own)} learners, not {num_envs}"
+            )
+        self.task = make_rows(own, num_envs)
+        self.render_mode = render_mode
+        self.single_observation_space = self.task.space
         self.single_action_space = _action_space(self.task)
         self.num_envs = num_envs
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -313,7 +309,7 @@ class ManyEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         return tuple(self._picture(arena) for arena in range(len(self.task.arenas.balls)))
 
 
-def _action_space(task: Stepped) -> Box[np.float32]:
+def _action_space(task: ArenaTask | PerRobot) -> Box[np.float32]:
     return Box(-1.0, 1.0, (task.action_size,), np.float32)
 
 

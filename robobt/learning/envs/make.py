@@ -1,62 +1,55 @@
-"""The tasks by name, and the arenas that belong to an environment's settings."""
+"""Tasks by their names, and the arenas that belong to a task's settings."""
 
 from __future__ import annotations
 
-import re
-
-from robobt.learning.envs.arena_task import ArenaTask
-from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings, GoToBallSettings
-from robobt.learning.envs.go_to_ball.task import GoToBallTask
-from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
-from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
+from robobt.learning.envs.arena_task import ArenaTask, task_of
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.settings import TaskSettings
-from robobt.learning.envs.shoot.settings import ShootSettings
-from robobt.learning.envs.shoot.task import ShootTask
-from robobt.learning.envs.soccer.per_robot import PerRobot
-from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.envs.soccer.suite import TASKS
-from robobt.learning.envs.soccer.task import SoccerTask
+from robobt.learning.tasks import TASKS, environment_id
 
-SEVERAL = {re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower(): model for name, model in TASKS.items()}
-"""Settings of the tasks of several robots by the names that training has for them."""
 
-ENVIRONMENTS: dict[str, type[TaskSettings]] = {
-    "go_to_ball": GoToBallSettings,
-    "shoot": ShootSettings,
-    "score_on_goalkeeper": ScoreOnGoalkeeperSettings,
-    "go_to_ball_among_robots": GoToBallAmongRobotsSettings,
-    **SEVERAL,
-}
-"""The settings of each task's environment."""
+def find_task(name: str) -> type[ArenaTask]:
+    """Return a task by the name it is registered under, or by Gymnasium's for it.
+
+    Raises:
+        KeyError: there is none; the message lists the names there are.
+    """
+    ids = {environment_id(known): known for known in TASKS}
+    found: type[ArenaTask] = TASKS[ids.get(name, name)]
+    return found
 
 
 def make_task(settings: TaskSettings, n: int) -> ArenaTask:
-    """Return ``n`` arenas of the environment with these ``settings``."""
-    if isinstance(settings, GoToBallSettings):
-        return GoToBallTask(settings, n)
-    if isinstance(settings, ShootSettings):
-        return ShootTask(settings, n)
-    if isinstance(settings, ScoreOnGoalkeeperSettings):
-        return ScoreOnGoalkeeperTask(settings, n)
-    if isinstance(settings, SoccerSettings):
-        return SoccerTask(settings, n)
-    raise TypeError(f"{type(settings).__name__} is no environment of a task")
+    """Return ``n`` arenas of the task with these ``settings``."""
+    return _task(settings)(settings, n)
 
 
 def make_rows(settings: TaskSettings, n: int, central: bool = False) -> ArenaTask | PerRobot:
-    """Return arenas of the environment with these ``settings`` that have ``n`` learners together, a row each.
+    """Return arenas of the task with these ``settings`` that have ``n`` learners together, a row each.
 
-    With ``central`` each row ends with what a central critic sees; of a task of several robots alone.
+    With ``central`` each row ends with what a central critic sees.
 
     Raises:
         ValueError: these are not the learners of whole arenas.
     """
-    task = make_task(settings, n // learners_of(settings))
-    if n % len(task.learners):
-        raise ValueError(f"{n} learners are not those of whole arenas, with {len(task.learners)} each")
-    return PerRobot(task, central) if isinstance(task, SoccerTask) else task
+    each = learners_of(settings)
+    if n % each:
+        raise ValueError(f"{n} learners are not those of whole arenas, with {each} each")
+    task = make_task(settings, n // each)
+    return PerRobot(task, central) if central or each > 1 else task
 
 
 def learners_of(settings: TaskSettings) -> int:
     """Return how many robots learn in an arena with these ``settings``."""
-    return len(settings.learners) if isinstance(settings, SoccerSettings) else 1
+    return len(settings.learners)
+
+
+def _task(settings: TaskSettings) -> type[ArenaTask]:
+    task = task_of(type(settings))
+    if task is None:
+        # Settings can be made without the module of their task.
+        [TASKS[name] for name in TASKS]
+        task = task_of(type(settings))
+    if task is None:
+        raise TypeError(f"{type(settings).__name__} are the settings of no task")
+    return task

@@ -53,6 +53,13 @@ def straight_drive(observation: FloatArray) -> FloatArray:
     return actions
 
 
+def drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
+    """Drive straight at the ball at full speed and turn to it, (n, 6) -> (n, 3)."""
+    actions = straight_drive(observation)
+    actions[:, 2] = np.clip(AIM_GAIN / max_turn * np.arctan2(observation[:, 0], observation[:, 1]), -1.0, 1.0)
+    return actions
+
+
 def straight_drive_among(observation: FloatArray) -> FloatArray:
     """Do the same among others, looking at none of them, (n, 31) -> (n, 3)."""
     return np.column_stack((observation[:, :2], np.zeros(len(observation))))

@@ -153,6 +153,21 @@ class TaskSettings(OrderedSettings):
             )
         return self
 
+    @classmethod
+    def default(cls) -> Self:
+        """Return what the task has where nothing else is said."""
+        return cls.model_validate({})
+
+    @property
+    def learners(self) -> tuple[int, ...]:
+        """Indices of the robots that learn."""
+        return (0,)
+
+    @property
+    def two_alike(self) -> bool:
+        """Whether two teams of equal size play, both with learners."""
+        return False
+
     @property
     def robot_limits(self) -> RobotLimits:
         """What the robot can do."""

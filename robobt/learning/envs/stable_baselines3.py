@@ -13,7 +13,7 @@ import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 from stable_baselines3.common.vec_env import VecEnv  # noqa: E402
 
-from robobt.learning.envs.gymnasium_base import Info, ManyEnv  # noqa: E402
+from robobt.learning.envs.gymnasium_base import Info, TaskVectorEnv  # noqa: E402
 
 _Indices = None | int | Iterable[int]
 
@@ -30,7 +30,7 @@ class ArenasVecEnv(VecEnv):
         envs: such an environment.
     """
 
-    def __init__(self, envs: ManyEnv) -> None:
+    def __init__(self, envs: TaskVectorEnv) -> None:
         self.envs = envs
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
         self._actions: NDArray[Any] = np.zeros(0)

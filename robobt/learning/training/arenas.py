@@ -7,9 +7,9 @@ from math import lcm
 
 from robobt.learning.envs import TaskSettings, VectorTask
 from robobt.learning.envs.make import learners_of, make_rows
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.several_worlds import SeveralWorlds
 from robobt.learning.envs.soccer.one_side import OneSide, Others
-from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import LEARNER, SoccerSettings
 from robobt.learning.envs.soccer.suite import against
 from robobt.learning.training.setting_groups import PoolSettings
@@ -43,8 +43,9 @@ def opposed_arenas(
         n: learners.
         central: whether what a central critic sees follows each observation.
     """
-    if not isinstance(environment, SoccerSettings) or not environment.two_alike:
+    if not environment.two_alike:
         return make_rows(environment, n, central)
+    assert isinstance(environment, SoccerSettings)
     each, blue = learners_of(environment), environment.blue.count(LEARNER)
     past, *opponents = opposed(environment, pool, n)
     itself = n - past - sum(opponents)

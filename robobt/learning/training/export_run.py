@@ -27,19 +27,6 @@ from robobt.statistics import mean_interval
 
 _Floats = NDArray[np.float64]
 
-SKILLS = {
-    "go_to_ball": "GoToBall",
-    "go_to_ball_among_robots": "GoToBall",
-    "shoot": "Shoot",
-    "score_on_goalkeeper": "Score",
-    "score_on_goalkeeper_and_defenders": "Score",
-    "score_on_goalkeeper_and_two_defenders": "Score",
-    "save": "Goalkeeper",
-    "duel": "Duel",
-    "duel_with_script": "Duel",
-}
-"""Skill of each task that has one of its own; of the others a model is for LearnedSkill."""
-
 
 def export_run(
     run: str | Path,
@@ -83,7 +70,8 @@ def export_run(
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
             policy_of(result.actor), "held_out", count
         )
-    skill, observation = SKILLS.get(settings.task, "LearnedSkill"), make_task(environment, 1).observation
+    task = make_task(environment, 1)
+    skill = task.played_by
     card = ModelCard(
         kind="policy",
         name=called,
@@ -93,7 +81,7 @@ def export_run(
             f"{settings.preset or 'of its own'!r}."
         ),
         algorithm=settings.algorithm,
-        observation=ObservationCard.of(observation),
+        observation=ObservationCard.of(task.observation),
         outputs=action_outputs(environment.action),
         action=environment.action,
         period=environment.period * environment.decide_every,

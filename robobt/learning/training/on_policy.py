@@ -132,4 +132,4 @@ class OnPolicyRun(Run):
 
 def _seen(settings: TrainSettings) -> list[str]:
     """Return the names of what the policy of such a run sees."""
-    return [name for name, _ in make_task(environment_of(settings), 1).observation.entries]
+    return [entry.name for entry in make_task(environment_of(settings), 1).observation.entries]

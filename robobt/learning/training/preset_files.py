@@ -8,7 +8,6 @@ from typing import Any
 
 from robobt.config.errors import ConfigError, unknown_name
 from robobt.config.yaml import read_yaml
-from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL
 
 _PRESETS = Path(__file__).parent / "presets"
 SWITCHES = _PRESETS / "switches.yaml"
@@ -25,8 +24,7 @@ def presets(task: str) -> list[str]:
 
 
 def _folders(task: str) -> tuple[Path, ...]:
-    shared = (_PRESETS / "several_robots",) if task in SEVERAL else ()
-    return (_PRESETS / task, *shared)
+    return (_PRESETS / task, _PRESETS / "several_robots")
 
 
 def read_preset(task: str, preset: str, seen: tuple[str, ...] = ()) -> tuple[dict[str, Any], str]:
@@ -40,8 +38,6 @@ def read_preset(task: str, preset: str, seen: tuple[str, ...] = ()) -> tuple[dic
     path = bundled or Path(preset)
     if bundled is None and path.suffix not in (".yaml", ".yml"):
         known = presets(task)
-        if not known:
-            raise SettingsError("", f"no task is called {task!r}; {unknown_name(task, ENVIRONMENTS)}")
         raise SettingsError("", f"no preset of {task} is called {preset!r}; {unknown_name(preset, known)}")
     data = read_yaml(path, SettingsError)
     base = data.pop("extends", None)

@@ -8,19 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from robobt.learning.envs import (
-    GoToBallSettings,
-    ScoreOnGoalkeeperSettings,
-    ShootSettings,
-    ShootTask,
-    TaskSettings,
-    VectorTask,
-    make_task,
-    run_starts,
-)
+from robobt.learning.envs import TaskSettings, VectorTask, make_task, run_starts
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.soccer.one_side import Others
-from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import arenas_of, opposed_arenas, shares_of
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.settings import (
@@ -30,10 +20,8 @@ from robobt.learning.training.settings import (
     stage_after,
     stages_of,
     validated_on,
-    vectors_of,
     worlds_of,
 )
-from robobt.world.avoiding import SLOW_WAYS, WAYS
 
 Split = Literal["validation", "held_out"]
 """Fixed starts of evaluations: those that choose the actor, or those that its figures come from."""
@@ -110,34 +98,7 @@ def problem_of(
         central: whether a central critic learns.
         validated: what validation's starts are shared among, if not ``worlds``.
     """
-    speed, turn = environment.action.max_speed, environment.action.max_turn
-    scale: tuple[float, ...]
-    smoothed: tuple[bool, ...]
-    state_scale: tuple[float, ...] = ()
-    if isinstance(environment, GoToBallSettings):
-        scale, smoothed = (1.0, 1.0, 3.0, speed, speed, turn), (True,) * 3
-        if environment.to_shoot:
-            scale += (1.0, 1.0)
-        if environment.others.count:
-            scale += (1.0,) * (WAYS + SLOW_WAYS + 1)
-    elif isinstance(environment, ShootSettings):
-        # What matters is a ball that is about to slip off the dribbler, by millimetres, at less than 1 m/s.
-        scale = (0.1, 0.1, 1.0, 1.0, turn, 3.0, 1.0, 1.0, 1.0, 1.0)
-        smoothed = (True, False)
-    elif isinstance(environment, ScoreOnGoalkeeperSettings):
-        # Beside the line of the heading, less counts than along it.
-        scale = (speed, speed, turn, 2.0, 1.5, 3.0, 3.0, 1.0, 1.0, *(4.0, 2.0) * 3, 2.0, 2.0, 0.3, 0.2)
-        smoothed = (True, True, True, False)
-    elif isinstance(environment, SoccerSettings):
-        own = (speed, speed, turn, 3.0, 2.0, 1.0, 1.0, 2.0, 1.5, 3.0, 3.0, *(4.0, 2.0) * 3, 0.3, 0.2)
-        told = (1.0,) * environment.rules.told
-        scale = (*own, *(2.0, 2.0, speed, speed) * sum(environment.places), *told)
-        smoothed = (True, True, True, False)
-        if central:
-            each = (3.0, 2.0, 1.0, 1.0, speed, speed, turn)
-            state_scale = (*each * sum(environment.sides), 3.0, 2.0, 3.0, 3.0)
-    else:
-        raise TypeError(f"{type(environment).__name__} is no environment of a task")
+    task = make_task(environment, 1)
     trained = tuple(worlds) or (environment,)
     where: dict[Split, Sequence[TaskSettings]] = {
         "validation": tuple(validated) or trained,
@@ -146,10 +107,10 @@ def problem_of(
     return Problem(
         lambda n: arenas_of(trained, n, central),
         lambda policy, split, starts: _evaluate(where[split], policy, split, starts),
-        scale,
-        smoothed,
-        state_scale,
-        vectors=vectors_of(environment),
+        task.scale,
+        tuple([entry != "kick" for entry in task.action.entries]),
+        task.central_scale if central else (),
+        vectors=task.observation.vectors,
     )
 
 
@@ -171,5 +132,6 @@ def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, star
         task = make_task(world, min(_ARENAS, share))
         parts.append(run_starts(task, task.jointly(policy), task.sample_starts(seed, share), seed))
     episodes = Episodes.joined(parts)
-    timed = episodes.kick_time if isinstance(task, ShootTask) else episodes.time
-    return Evaluation(episodes.success, timed, episodes.optimum, episodes.total_reward)
+    return Evaluation(
+        episodes.success, getattr(episodes, task.timed), episodes.optimum, episodes.total_reward
+    )

@@ -7,11 +7,10 @@ from typing import Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings, first_problem
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
-from robobt.learning.envs import GoToBallSettings, TaskSettings
-from robobt.learning.envs.make import ENVIRONMENTS, SEVERAL, learners_of, make_rows
+from robobt.learning.envs import TaskSettings, find_task, make_task
+from robobt.learning.envs.make import learners_of, make_rows
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import opposed
 from robobt.learning.training.preset_files import SettingsError as SettingsError
@@ -23,7 +22,6 @@ from robobt.learning.training.setting_groups import (
     ReplaySettings,
     StageSettings,
 )
-from robobt.world.avoiding import VECTORS
 
 _M = TypeVar("_M", bound=BaseModel)
 
@@ -131,6 +129,7 @@ def load_settings(
     Raises:
         SettingsError: no such preset, or something wrong in the file or the changes.
     """
+    _model(task, "")
     data, source = read_preset(task, preset)
     data = {"task": task, **data, "preset": preset}
     for name, value in (changes or {}).items():
@@ -138,14 +137,12 @@ def load_settings(
     if changes:
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
-    if settings.task not in ENVIRONMENTS:
-        problem = f"there is no {settings.task!r}; {unknown_name(settings.task, ENVIRONMENTS)}"
-        raise SettingsError(source, problem, "task")
     environment = environment_of(settings, source)
-    if settings.central and settings.task not in SEVERAL:
-        problem = f"a central critic is for tasks of several robots, such as {next(iter(SEVERAL))}"
+    arenas = make_task(environment, 1)
+    if settings.central and not arenas.central:
+        problem = "a central critic is for tasks of several robots, such as soccer"
         raise SettingsError(source, problem, "ppo.critic")
-    if settings.ppo.frame == "ball" and not vectors_of(environment):
+    if settings.ppo.frame == "ball" and not arenas.observation.vectors:
         raise SettingsError(source, "the ball's frame is for go_to_ball_among_robots", "ppo.frame")
     for index, stage in enumerate(stages_of(settings, source)):
         place = f"environment with stages[{index}]" if settings.stages else "environment"
@@ -172,13 +169,14 @@ def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
 
 def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
     """Return the environment's settings."""
-    return _validated(ENVIRONMENTS[settings.task], settings.environment, source, "environment")
+    return _validated(_model(settings.task, source), settings.environment, source, "environment")
 
 
-def vectors_of(environment: TaskSettings) -> tuple[int, ...]:
-    """Return where an observation's vectors begin, that to the ball first; none where that is not told."""
-    among = isinstance(environment, GoToBallSettings) and environment.others.count > 0
-    return VECTORS if among else ()
+def _model(task: str, source: str) -> type[TaskSettings]:
+    try:
+        return find_task(task).Settings
+    except KeyError as error:
+        raise SettingsError(source, str(error.args[0]), "task") from error
 
 
 def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSettings:
@@ -186,7 +184,7 @@ def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSetti
     data = merged(settings.environment, settings.evaluation.environment)
     data = merged(data, settings.evaluation.held_out_environment)
     return _validated(
-        ENVIRONMENTS[settings.task], data, source, "environment with evaluation.held_out_environment"
+        _model(settings.task, source), data, source, "environment with evaluation.held_out_environment"
     )
 
 
@@ -244,7 +242,7 @@ def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) ->
     """Raise unless the pool of a stage, if there is one, can play in the run's ``environment``."""
     if not any(stage.pool.shares):
         return
-    if not isinstance(environment, SoccerSettings) or not environment.two_alike:
+    if not environment.two_alike:
         raise SettingsError(source, "is for tasks whose two teams are of equal size and learn", "pool")
     if stage.worlds:
         raise SettingsError(source, "there is none with several worlds", "pool")
@@ -260,7 +258,7 @@ def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) ->
 
 def worlds_of(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
     """Return the settings of each world that the run trains in; without others, of the environment."""
-    model, data = ENVIRONMENTS[settings.task], settings.environment
+    model, data = _model(settings.task, source), settings.environment
     return tuple(
         _validated(model, merged(data, changes), source, f"environment with worlds[{index}]")
         for index, changes in enumerate(settings.worlds or ({},))

@@ -12,27 +12,14 @@ from typing import Protocol
 import numpy as np
 
 from robobt.config.errors import RobobtError
-from robobt.learning.envs import ArenaTask, GoToBallSettings, GoToBallTask, ShootTask
-from robobt.learning.envs.scripted import (
-    AIM_GAIN,
-    drive_to_shoot,
-    freest_way,
-    straight_drive,
-    turn_and_kick,
-)
+from robobt.learning.envs import ArenaTask
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.models.actions import ActionScaling
-from robobt.skills import GoToBall, KickToTarget
-from robobt.skills.base import Skill
 from robobt.skills.store import Store
 from robobt.tree.runner import TreeRunner
-from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, Frame, RobotState
-
-_CAREFUL = 0.9
-"""Share of what the dribbler can hold that a script turns with."""
 
 
 class TeacherError(RobobtError, ValueError):
@@ -62,9 +49,8 @@ class _Script:
 class SkillTeacher:
     """A hand-written skill in every arena, ticked on the true state of the field."""
 
-    def __init__(self, task: ArenaTask, make: Callable[[], Skill]) -> None:
+    def __init__(self, task: ArenaTask) -> None:
         self._task = task
-        self._make = make
         # The tasks know no defence areas, and a skill would keep out of the opponents'.
         self._field = task.settings.field.model_copy(update={"defense_depth": 0.0, "defense_width": 0.0})
         self._limits = _within(task.settings.robot_limits, task.action)
@@ -79,7 +65,9 @@ class SkillTeacher:
             if arena in self._runners:
                 self._runners[arena][0].shutdown()
             store = Store(frame, frame.own[0])
-            self._runners[arena] = (TreeRunner(self._make(), store, on_error="raise"), store)
+            made = self._task.skill()
+            assert made is not None
+            self._runners[arena] = (TreeRunner(made, store, on_error="raise"), store)
 
     def act(self, observation: FloatArray) -> FloatArray:
         """See :class:`Teacher`."""
@@ -121,40 +109,30 @@ def playing(task: ArenaTask, teacher: Teacher) -> Callable[[FloatArray], FloatAr
 
 
 def script(task: ArenaTask) -> Teacher:
-    """Return the script that does this task."""
-    if isinstance(task, ShootTask):
-        dribbler = task.settings.simulator.dribbler
-        kind, simulator = dribbler.kind, task.settings.simulator
-        held = dribbler.pull if kind == "force" else simulator.limits.hold_acceleration
-        pull = np.inf if kind == "glue" else _CAREFUL * held
-        return _Script(lambda observation: turn_and_kick(observation, task.action, pull))
-    if isinstance(task.settings, GoToBallSettings) and task.settings.to_shoot:
-        return _Script(lambda observation: drive_to_shoot(observation, task.action.max_turn))
-    if task.observation is GO_TO_BALL_AMONG_ROBOTS:
-        return _Script(freest_way)
-    _refuse_opponents(task)
-    return _Script(lambda observation: _drive_and_face(observation, task.action.max_turn))
+    """Return the script that does this task.
 
-
-def _drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
-    """Drive straight at the ball at full speed and turn to it."""
-    actions = straight_drive(observation)
-    actions[:, 2] = np.clip(AIM_GAIN / max_turn * np.arctan2(observation[:, 0], observation[:, 1]), -1.0, 1.0)
-    return actions
+    Raises:
+        TeacherError: there is none.
+    """
+    found = task.script()
+    if found is None:
+        raise _nobody(task)
+    return _Script(found)
 
 
 def skill(task: ArenaTask) -> Teacher:
-    """Return the skill that does this task: GoToBall, or KickToTarget at the middle of the goal."""
-    if isinstance(task, GoToBallTask):
-        return SkillTeacher(task, lambda: GoToBall(goalkeeper=True))
-    _refuse_opponents(task)
-    goal, speed = task.settings.field.their_goal, task.action.kick_speed
-    return SkillTeacher(task, lambda: KickToTarget(target=goal, kick_speed=speed))
+    """Return the skill that does this task.
+
+    Raises:
+        TeacherError: there is none.
+    """
+    if task.skill() is None:
+        raise _nobody(task)
+    return SkillTeacher(task)
 
 
-def _refuse_opponents(task: ArenaTask) -> None:
-    if task.robots > 1:
-        raise TeacherError(f"nobody demonstrates {task.observation.name}: teachers know no opponents")
+def _nobody(task: ArenaTask) -> TeacherError:
+    return TeacherError(f"nobody demonstrates {task.observation.name}: it has no script and no skill")
 
 
 TEACHERS: dict[str, Callable[[ArenaTask], Teacher]] = {"skill": skill, "script": script}

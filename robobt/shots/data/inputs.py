@@ -43,7 +43,7 @@ def asked_inputs(table: pa.Table) -> FloatArray:
     moves with it.
     """
     scenes = shot_inputs(table)
-    index = {name: i for i, (name, _) in enumerate(SHOT_SCENE.entries)}
+    index = {entry.name: i for i, entry in enumerate(SHOT_SCENE.entries)}
     along, across = scenes[:, index["shooter_v_along"]], scenes[:, index["shooter_v_across"]]
     for name, otherwise in (
         ("target_offset", 0.0),
@@ -77,7 +77,7 @@ def _from_field(table: pa.Table, count: int) -> FloatArray:
 
 def _from_shot_frame(table: pa.Table) -> FloatArray:
     scenes = np.full((len(table), SHOT_SCENE.size), np.nan)
-    names = [name for name, _ in SHOT_SCENE.entries]
+    names = [entry.name for entry in SHOT_SCENE.entries]
     for entry, name in (
         ("target_distance", "distance_to_goal"),
         ("target_angle", "angle_to_goal"),

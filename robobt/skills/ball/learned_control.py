@@ -144,8 +144,8 @@ class LearnedControl:
     def _draw(self, sketch: Sketch, observed: FloatArray, action: list[float]) -> None:
         spec = find_observation(self.card.observation.name)
         assert spec is not None
-        for (name, _), value in zip(spec.entries, observed.tolist(), strict=True):
-            sketch.number(OBSERVATION, name, value)
+        for entry, value in zip(spec.entries, observed.tolist(), strict=True):
+            sketch.number(OBSERVATION, entry.name, value)
         for place, value in enumerate(action):
             sketch.number(OBSERVATION, f"action {place}", value)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robobt.learning.envs.soccer.env import learner_space
+from robobt.learning.envs import make_task
 from robobt.learning.envs.soccer.judge import TWICE
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings, SoccerStarts
 from robobt.learning.envs.soccer.suite import SUITE, instead, scripted
@@ -213,7 +213,7 @@ def test_what_happens_in_an_arena_still_depends_on_its_seed_alone() -> None:
     starts, changes = {"ball_speed": (3.0, 5.0)}, {"velocities": "finite_difference", "latency": 1}
     settings = SUITE["Small3v3"].model_validate({"rules": rules, "starts": starts, **changes})
     one, many = (SoccerTask(settings, n, seed=4) for n in (1, 6))
-    space = learner_space(settings)
+    space = make_task(settings, 1).space
     one.reset()
     many.reset()
     rng, restarts = np.random.default_rng(2), 0
@@ -285,7 +285,7 @@ def test_a_skill_is_told_of_restarts_what_learners_are_told(tmp_path: Path, doub
             leaf.store.draw.take()
             leaf.tick(view)
             drawn = {name: value for _, _, value, name in leaf.store.draw.take()}
-            names = [name for name, _ in made.observation.entries]
+            names = [entry.name for entry in made.observation.entries]
             if drawn:
                 assert [drawn[name] for name in names[-told:]] == mine[-told:].tolist()
             heard.add(tuple(mine[-told:]))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import run_starts
-from robobt.learning.envs.soccer.central import central_view
-from robobt.learning.envs.soccer.per_robot import PerRobot
+from robobt.learning.envs.central import central_view
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.soccer.suite import SUITE, instead, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
@@ -113,7 +113,7 @@ def test_mates_and_opponents_are_seen_nearest_first_with_their_velocities() -> N
     robots = np.array([[at(0, 0, np.pi / 2), at(2, 0), at(0, 1), at(-1, 0), at(-3, 0)]])
     robots[0, 2, 3:5] = 0.5, 0.0
     seen = made.observe(robots, np.zeros((1, 4))).reshape(5, -1)[0]
-    names = dict(zip([name for name, _ in made.observation.entries], seen, strict=True))
+    names = dict(zip([entry.name for entry in made.observation.entries], seen, strict=True))
     assert [names["mate_0_x"], names["mate_0_y"]] == pytest.approx([1, 0])
     assert [names["mate_0_vx"], names["mate_0_vy"]] == pytest.approx([0, -0.5])
     assert [names["mate_1_x"], names["mate_1_y"]] == pytest.approx([0, -2])
@@ -121,7 +121,7 @@ def test_mates_and_opponents_are_seen_nearest_first_with_their_velocities() -> N
     assert [names["opponent_1_x"], names["opponent_1_y"]] == pytest.approx([0, 3])
     # Yellow has one mate and three opponents: a place is left.
     left = made.observe(robots, np.zeros((1, 4))).reshape(5, -1)[3]
-    names = dict(zip([name for name, _ in made.observation.entries], left, strict=True))
+    names = dict(zip([entry.name for entry in made.observation.entries], left, strict=True))
     assert names["mate_1_x"] == -5.0
     assert names["opponent_2_x"] == pytest.approx(3.0)
 

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-import robobt.learning
-from robobt.learning.envs.soccer.env import SoccerEnv
-from robobt.learning.envs.soccer.suite import SUITE, TASKS
+from robobt.learning.envs.gymnasium_base import TaskEnv
+from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
+
+TASKS = {"Soccer": SoccerSettings, **SUITE}
 
 RESTARTS = {
     "rules": {"restarts": True, "double_touch": True, "held_by": None},
@@ -29,11 +31,10 @@ def many(name: str, num_envs: int, **more: Any) -> Any:
 
 
 def test_every_task_of_the_suite_has_its_id() -> None:
-    assert set(robobt.learning.TEAMS) == set(TASKS)
     for name in TASKS:
         assert f"robobt/{name}-v0" in gymnasium.registry
-    with pytest.raises(ValueError, match="there are Soccer, ScoreOnGoalkeeperAndDefenders"):
-        SoccerEnv("Chess")
+    with pytest.raises(KeyError, match="no task is called 'Chess'; there are go_to_ball, shoot"):
+        TaskEnv(task="Chess")
 
 
 @pytest.mark.integration

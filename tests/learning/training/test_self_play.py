@@ -11,9 +11,10 @@ import torch
 
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.agents.past_selves import PastSelves
+from robobt.learning.envs import ArenaTask
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.several_worlds import SeveralWorlds
 from robobt.learning.envs.soccer.one_side import OneSide
-from robobt.learning.envs.soccer.per_robot import PerRobot
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.arenas import opposed, opposed_arenas
@@ -164,9 +165,9 @@ def test_a_stage_begins_after_its_share_of_the_steps() -> None:
     later = problem_for(settings).later
     assert later is not None
     tasks = [later(steps, lambda seen: seen) for steps in (0, 900)]
-    assert isinstance(tasks[0], PerRobot)
+    assert isinstance(tasks[0], ArenaTask)
     assert isinstance(tasks[1], SeveralWorlds)
-    assert (tasks[0].each, tasks[0].n, tasks[1].n) == (1, 192, 192)
+    assert (len(tasks[0].learners), tasks[0].n, tasks[1].n) == (1, 192, 192)
     assert isinstance(tasks[1].parts[0], PerRobot)
     assert tasks[1].parts[0].each == 2
 

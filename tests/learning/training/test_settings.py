@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from robobt.config.yaml import parse_marked, write_yaml
+from robobt.learning import TASKS
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.training.compare import variants
 from robobt.learning.training.preset_files import assign, presets
@@ -14,14 +15,13 @@ from robobt.learning.training.setting_groups import (
     ReplaySettings,
 )
 from robobt.learning.training.settings import (
-    ENVIRONMENTS,
     SettingsError,
     TrainSettings,
     environment_of,
     load_settings,
 )
 
-ALL = [(task, preset) for task in ENVIRONMENTS for preset in presets(task)]
+ALL = [(task, preset) for task in TASKS for preset in presets(task)]
 
 
 @pytest.mark.parametrize(("task", "preset"), ALL)
@@ -29,14 +29,14 @@ def test_every_shipped_preset_is_valid(task, preset):
     settings = load_settings(task, preset)
     assert settings.task == task
     assert settings.preset == preset
-    assert isinstance(environment_of(settings), ENVIRONMENTS[task])
+    assert isinstance(environment_of(settings), TASKS[task].Settings)
 
 
 PAPERS = ("go_to_ball", "shoot")
 """The paper's two tasks."""
 
 
-@pytest.mark.parametrize("task", ENVIRONMENTS)
+@pytest.mark.parametrize("task", TASKS)
 def test_every_task_has_a_fast_preset(task):
     assert "fast" in presets(task)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import run_starts
-from robobt.learning.envs.soccer.per_robot import PerRobot
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.export_run import export_run

@@ -106,7 +106,7 @@ def seen(*opponents: RobotState, keeper: int | None = None) -> dict[str, float]:
     me = RobotState(0, 1.0, 1.0, np.pi / 2, 0.5, 0.0, 1.0)
     game = GameState(yellow=TeamStatus(keeper=keeper))
     now = Frame(0.0, DIVISION_B, BallState(2.0, 1.0, 0.0, 3.0), (me,), opponents, Team.BLUE, game=game)
-    names = [name for name, _ in SCORE_ON_GOALKEEPER.entries]
+    names = [entry.name for entry in SCORE_ON_GOALKEEPER.entries]
     return dict(zip(names, score_on_goalkeeper_of(now, me).tolist(), strict=True))
 
 

@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-from robobt.learning.envs.go_to_ball.env import go_to_ball_space, reach_of
-from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings
-from robobt.learning.envs.go_to_ball.task import GoToBallTask
-from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
+from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 
 
-def _task(settings: GoToBallAmongRobotsSettings | None, n: int) -> GoToBallTask:
-    return GoToBallTask(GoToBallAmongRobotsSettings() if settings is None else settings, n)
-
-
-_KIND = EnvKind(_task, GoToBallAmongRobotsSettings, go_to_ball_space, reach_of)
-
-
-class GoToBallAmongRobotsEnv(SingleEnv):
+class GoToBallAmongRobotsEnv(TaskEnv):
     """Go-To-Ball among robots: drive to the ball and touch nobody.
 
     :class:`~robobt.learning.envs.GoToBallEnv` with five other robots. What is given here are the defaults of
@@ -67,10 +57,10 @@ class GoToBallAmongRobotsEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """  # noqa: E501 - a table's row is a line
 
-    kind = _KIND
+    task_name = "go_to_ball_among_robots"
 
 
-class GoToBallAmongRobotsVectorEnv(ManyEnv):
+class GoToBallAmongRobotsVectorEnv(TaskVectorEnv):
     """Many arenas of :class:`GoToBallAmongRobotsEnv`, which says what is observed, rewarded and ended."""
 
-    kind = _KIND
+    task_name = "go_to_ball_among_robots"

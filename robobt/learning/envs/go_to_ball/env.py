@@ -2,47 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from gymnasium.spaces import Box
-
-from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
-from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
-from robobt.learning.envs.go_to_ball.task import GoToBallTask
-from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
-from robobt.world.avoiding import AHEAD, SLOW_WAYS, WAYS
-from robobt.world.state import ROBOT_RADIUS
+from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 
 
-def go_to_ball_space(settings: GoToBallSettings) -> Box[np.float32]:
-    """Return bounds that follow from walls, limits and noise."""
-    limits, starts = settings.robot_limits, settings.starts
-    fastest = limits.max_speed * settings.randomisation.top_speed[1]
-    speed = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
-    speed += max(0.0, starts.ball_speed[1])
-    turn = max(
-        min(limits.max_turn, settings.action.max_turn), abs(starts.robot_turn[0]), abs(starts.robot_turn[1])
-    )
-    # Sliding along a wall turns a robot, at most until it rolls along it.
-    turn += speed / ROBOT_RADIUS
-    seen = seen_speed(settings, speed, settings.noise.robot_position)
-    high = [1.0, 1.0, farthest(settings), seen, seen, seen_turn(settings, turn)]
-    if settings.to_shoot:
-        high += [1.0, 1.0]
-    if settings.others.count:
-        ways = [AHEAD] * (WAYS + SLOW_WAYS + 1)
-        return bounded([*high, *ways], distances=(2, *range(len(high), len(high) + len(ways))))
-    return bounded(high, distances=(2,))
-
-
-def reach_of(settings: GoToBallSettings) -> float | None:
-    """Return the distance at which the ball counts as reached, for pictures [m]; None for none."""
-    return settings.contact.distance if settings.contact.rule.startswith("distance") else None
-
-
-_KIND = EnvKind(GoToBallTask, GoToBallSettings, go_to_ball_space, reach_of)
-
-
-class GoToBallEnv(SingleEnv):
+class GoToBallEnv(TaskEnv):
     """Go-To-Ball: drive an omnidirectional robot to the ball.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
@@ -102,10 +65,10 @@ class GoToBallEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """
 
-    kind = _KIND
+    task_name = "go_to_ball"
 
 
-class GoToBallVectorEnv(ManyEnv):
+class GoToBallVectorEnv(TaskVectorEnv):
     """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended."""
 
-    kind = _KIND
+    task_name = "go_to_ball"

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan2, cos, hypot, inf, sin
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, reward
-from robobt.learning.envs.go_to_ball.settings import ContactRule, GoToBallSettings
+from robobt.learning.envs.go_to_ball.settings import (
+    ContactRule,
+    GoToBallAmongRobotsSettings,
+    GoToBallSettings,
+)
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
 from robobt.learning.envs.judging import begin_tick, end_tick, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.scripted import BEHIND
+from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import (
@@ -41,13 +49,15 @@ _WEIGHTS = numbers_dtype(GoToBallReward)
 
 
 class GoToBallTask(ArenaTask):
-    """Drive to the ball; see :class:`~robobt.learning.envs.GoToBallEnv` and ``GoToBallAmongRobotsEnv``."""
+    """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
 
+    Settings = GoToBallSettings
+    played_by = "GoToBall"
     observation: ObservationSpec = GO_TO_BALL
     settings: GoToBallSettings
 
     def __init__(self, settings: GoToBallSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        settings = GoToBallSettings() if settings is None else settings
+        settings = self.Settings() if settings is None else settings
         self._to_shoot = settings.to_shoot
         if settings.to_shoot:
             self.observation = GO_TO_BALL_TO_SHOOT
@@ -70,6 +80,43 @@ class GoToBallTask(ArenaTask):
         if self.robots > 1:
             return among_robots_rows(robots, balls)
         return go_to_ball_rows(robots[:, 0], balls, self._goal[0], self.observation_size)
+
+    @property
+    def ranges(self) -> dict[str, float]:
+        """See :attr:`ArenaTask.ranges`."""
+        settings = self.settings
+        limits, starts = settings.robot_limits, settings.starts
+        fastest = limits.max_speed * settings.randomisation.top_speed[1]
+        speed = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+        speed += max(0.0, starts.ball_speed[1])
+        turn = max(
+            min(limits.max_turn, settings.action.max_turn),
+            abs(starts.robot_turn[0]),
+            abs(starts.robot_turn[1]),
+        )
+        # Sliding along a wall turns a robot, at most until it rolls along it.
+        turn += speed / ROBOT_RADIUS
+        return {
+            "far": farthest(settings),
+            "speed": seen_speed(settings, speed, settings.noise.robot_position),
+            "turn": seen_turn(settings, turn),
+        }
+
+    @property
+    def reach(self) -> float | None:
+        """See :attr:`ArenaTask.reach`."""
+        contact = self.settings.contact
+        return contact.distance if contact.rule.startswith("distance") else None
+
+    def script(self) -> Policy:
+        """See :meth:`ArenaTask.script`."""
+        if self._to_shoot:
+            return partial(drive_to_shoot, max_turn=self.action.max_turn)
+        return freest_way if self.robots > 1 else partial(drive_and_face, max_turn=self.action.max_turn)
+
+    def skill(self) -> Skill:
+        """See :meth:`ArenaTask.skill`."""
+        return GoToBall(goalkeeper=True)
 
     @property
     def _robot_limits(self) -> list[RobotLimits | None]:
@@ -120,6 +167,12 @@ class GoToBallTask(ArenaTask):
         fastest = max(limits.acceleration, limits.lateral_acceleration) * self._randomiser.acceleration[which]
         top_speed = limits.max_speed * self._randomiser.top_speed[which]
         return straight_line_time(way, np.minimum(top_speed, settings.action.max_speed), fastest)
+
+
+class GoToBallAmongRobotsTask(GoToBallTask):
+    """Drive to the ball among others; :class:`~robobt.learning.envs.GoToBallAmongRobotsEnv` specifies it."""
+
+    Settings = GoToBallAmongRobotsSettings
 
 
 @compiled

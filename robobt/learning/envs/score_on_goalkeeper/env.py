@@ -2,57 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from gymnasium.spaces import Box
-
-from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
-from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
-from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
-from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
-from robobt.world.scoring import FAR_OFF
-from robobt.world.state import ROBOT_RADIUS
+from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 
 
-def _space(settings: ScoreOnGoalkeeperSettings) -> Box[np.float32]:
-    """Return bounds that follow from walls, limits, kicker and noise."""
-    limits, starts, noise = settings.robot_limits, settings.starts, settings.noise
-    most, fastest = farthest(settings), limits.max_speed * settings.randomisation.top_speed[1]
-    driven = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
-    turned = min(limits.max_turn, settings.action.max_turn) + driven / ROBOT_RADIUS
-    # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
-    kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
-    own, ball = (
-        seen_speed(settings, driven, noise.robot_position),
-        seen_speed(settings, max(kicked, starts.ball_speed[1]), noise.ball_position),
-    )
-    keeper = seen_speed(settings, settings.simulator.limits.max_speed + BUMP, noise.robot_position)
-    turn = seen_turn(settings, turned)
-    posts = [most + settings.field.goal_width] * 4
-    high = [
-        own,
-        own,
-        turn,
-        most,
-        most,
-        ball,
-        ball,
-        1.0,
-        1.0,
-        *posts,
-        most,
-        most,
-        keeper,
-        keeper,
-        FAR_OFF,
-        FAR_OFF / 2,
-    ]
-    return bounded(high, distances=())
-
-
-_KIND = EnvKind(ScoreOnGoalkeeperTask, ScoreOnGoalkeeperSettings, _space)
-
-
-class ScoreOnGoalkeeperEnv(SingleEnv):
+class ScoreOnGoalkeeperEnv(TaskEnv):
     """Score-On-Goalkeeper: get the ball, carry it to where it can be kicked past the goalkeeper, and score.
 
     What is given here are the defaults of
@@ -118,10 +71,10 @@ class ScoreOnGoalkeeperEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """  # noqa: E501 - a table's row is a line
 
-    kind = _KIND
+    task_name = "score_on_goalkeeper"
 
 
-class ScoreOnGoalkeeperVectorEnv(ManyEnv):
+class ScoreOnGoalkeeperVectorEnv(TaskVectorEnv):
     """Many arenas of :class:`ScoreOnGoalkeeperEnv`, which says what is observed, rewarded and ended."""
 
-    kind = _KIND
+    task_name = "score_on_goalkeeper"

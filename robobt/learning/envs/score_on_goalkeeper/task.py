@@ -7,6 +7,7 @@ from math import hypot, isnan, nan
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, reward
@@ -29,6 +30,8 @@ _WEIGHTS = numbers_dtype(ScoreReward)
 class ScoreOnGoalkeeperTask(ArenaTask):
     """Get the ball and score; :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification."""
 
+    Settings = ScoreOnGoalkeeperSettings
+    played_by = "Score"
     observation: ObservationSpec = SCORE_ON_GOALKEEPER
     robots = 2
     start_columns = COLUMNS
@@ -37,7 +40,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
     def __init__(
         self, settings: ScoreOnGoalkeeperSettings | None = None, n: int = 1, seed: int | None = None
     ) -> None:
-        super().__init__(ScoreOnGoalkeeperSettings() if settings is None else settings, n, seed)
+        super().__init__(settings, n, seed)
         field = self.settings.field
         self._goal = field.half_length, field.goal_width / 2
         self._field = numbers_of(field)
@@ -50,6 +53,26 @@ class ScoreOnGoalkeeperTask(ArenaTask):
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """See :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`."""
         return score_on_goalkeeper_rows(robots, balls, *self._goal)
+
+    @property
+    def ranges(self) -> dict[str, float]:
+        """See :attr:`ArenaTask.ranges`."""
+        settings, noise = self.settings, self.settings.noise
+        limits, starts = settings.robot_limits, settings.starts
+        far, fastest = farthest(settings), limits.max_speed * settings.randomisation.top_speed[1]
+        driven = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+        turned = min(limits.max_turn, settings.action.max_turn) + driven / ROBOT_RADIUS
+        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+        kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
+        keeper = settings.simulator.limits.max_speed + BUMP
+        return {
+            "far": far,
+            "goal": far + settings.field.goal_width,
+            "speed": seen_speed(settings, driven, noise.robot_position),
+            "turn": seen_turn(settings, turned),
+            "ball_speed": seen_speed(settings, max(kicked, starts.ball_speed[1]), noise.ball_position),
+            "keeper_speed": seen_speed(settings, keeper, noise.robot_position),
+        }
 
     @property
     def _robot_limits(self) -> list[RobotLimits | None]:

@@ -2,32 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from gymnasium.spaces import Box
-
-from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
-from robobt.learning.envs.gymnasium_base import EnvKind, ManyEnv, SingleEnv
-from robobt.learning.envs.shoot.settings import ShootSettings
-from robobt.learning.envs.shoot.task import ShootTask
-from robobt.world.state import ROBOT_RADIUS
+from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 
 
-def _space(settings: ShootSettings) -> Box[np.float32]:
-    """Return bounds that follow from walls, limits, kicker and noise."""
-    starts = settings.starts
-    most = farthest(settings)
-    most_turn = max(settings.action.max_turn, abs(starts.robot_turn[0]), abs(starts.robot_turn[1]))
-    speed = settings.simulator.kicker.max_speed + most_turn * ROBOT_RADIUS * 2.0 + BUMP
-    seen = seen_speed(settings, speed, settings.noise.ball_position)
-    turn = seen_turn(settings, most_turn + BUMP / ROBOT_RADIUS)
-    high = [most, most, seen, seen, turn, most, 1.0, 1.0, 1.0, 1.0]
-    return bounded(high, distances=(5,))
-
-
-_KIND = EnvKind(ShootTask, ShootSettings, _space)
-
-
-class ShootTowardsGoalEnv(SingleEnv):
+class ShootTowardsGoalEnv(TaskEnv):
     """Shoot-Towards-Goal: turn on the spot with the ball and kick it into the goal.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
@@ -92,10 +70,10 @@ class ShootTowardsGoalEnv(SingleEnv):
         render_mode: None or "rgb_array".
     """
 
-    kind = _KIND
+    task_name = "shoot"
 
 
-class ShootTowardsGoalVectorEnv(ManyEnv):
+class ShootTowardsGoalVectorEnv(TaskVectorEnv):
     """Many arenas of :class:`ShootTowardsGoalEnv`, which says what is observed, rewarded and ended."""
 
-    kind = _KIND
+    task_name = "shoot"

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import hypot
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.scripted import turn_and_kick
 from robobt.learning.envs.shoot.rewards import ShootReward, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.base import Skill
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import in_area, is_out
+from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
 _WEIGHTS = numbers_dtype(ShootReward)
 
+_CAREFUL = 0.9
+"""Share of what the dribbler can hold that the script turns with."""
 _ROBOT_BACK_LIMIT = -0.2
 """A robot farther back than this ends an episode [m]. Source: the authors' code."""
 
@@ -28,11 +36,14 @@ _ROBOT_BACK_LIMIT = -0.2
 class ShootTask(ArenaTask):
     """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
 
+    Settings = ShootSettings
+    played_by = "Shoot"
+    timed = "kick_time"
     observation: ObservationSpec = SHOOT
     settings: ShootSettings
 
     def __init__(self, settings: ShootSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        super().__init__(ShootSettings() if settings is None else settings, n, seed)
+        super().__init__(settings, n, seed)
         field = self.settings.field
         self._goal = field.half_length, field.goal_width / 2
         self._field = numbers_of(field)
@@ -46,6 +57,30 @@ class ShootTask(ArenaTask):
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """See :data:`robobt.world.features.SHOOT`."""
         return shoot_rows(robots[:, 0], balls, *self._goal)
+
+    @property
+    def ranges(self) -> dict[str, float]:
+        """See :attr:`ArenaTask.ranges`."""
+        settings, starts = self.settings, self.settings.starts
+        turn = max(settings.action.max_turn, *map(abs, starts.robot_turn))
+        speed = settings.simulator.kicker.max_speed + turn * ROBOT_RADIUS * 2.0 + BUMP
+        return {
+            "far": farthest(settings),
+            "ball_speed": seen_speed(settings, speed, settings.noise.ball_position),
+            "turn": seen_turn(settings, turn + BUMP / ROBOT_RADIUS),
+        }
+
+    def script(self) -> Policy:
+        """See :meth:`ArenaTask.script`."""
+        simulator = self.settings.simulator
+        dribbler = simulator.dribbler
+        held = dribbler.pull if dribbler.kind == "force" else simulator.limits.hold_acceleration
+        pull = np.inf if dribbler.kind == "glue" else _CAREFUL * held
+        return partial(turn_and_kick, scaling=self.action, pull=pull)
+
+    def skill(self) -> Skill:
+        """See :meth:`ArenaTask.skill`."""
+        return KickToTarget(target=self.settings.field.their_goal, kick_speed=self.action.kick_speed)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
         arenas = self.arenas

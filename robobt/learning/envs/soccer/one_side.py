@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from robobt.learning.envs.soccer.per_robot import PerRobot
+from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.task import FloatArray, StepResult
 
 Others = Callable[[FloatArray], FloatArray]

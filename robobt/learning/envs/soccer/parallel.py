@@ -20,10 +20,10 @@ from robobt.learning.envs.gymnasium_base import (  # noqa: E402
     checked_action,
     need_reset,
     picture_of,
+    settings_for,
 )
-from robobt.learning.envs.soccer.env import kind_of, learner_space  # noqa: E402
-from robobt.learning.envs.soccer.settings import SoccerSettings  # noqa: E402
-from robobt.learning.envs.soccer.task import SoccerTask  # noqa: E402
+from robobt.learning.envs.make import make_task  # noqa: E402
+from robobt.learning.envs.settings import TaskSettings  # noqa: E402
 from robobt.learning.envs.task import FloatArray  # noqa: E402
 
 Observation = NDArray[np.float32]
@@ -33,42 +33,38 @@ Info = dict[str, Any]
 class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     """One arena of a task with an agent for each learner, named by team and number: ``blue_0``, ``yellow_1``.
 
-    What an agent observes, does and earns is what is said of a learner in :class:`SoccerEnv`; episodes end
-    for all of them together. The last step's infos hold ``is_success``, blue's, and ``time`` [s].
+    What an agent observes, does and earns is what is said of a learner in
+    :class:`~robobt.learning.envs.gymnasium_base.TaskVectorEnv`; episodes end for all of them together. The
+    last step's infos hold ``is_success``, blue's, and ``time`` [s].
 
     Args:
-        task: name in :data:`~robobt.learning.envs.soccer.suite.TASKS`.
+        task: name in :data:`~robobt.learning.tasks.TASKS`, or Gymnasium's for it.
         settings: that task's settings, or the mapping that makes them.
         render_mode: None or "rgb_array".
 
     Raises:
-        ValueError: there is no such task.
+        KeyError: there is no such task.
+        ValueError: the settings are wrong.
     """
 
     def __init__(
         self,
         task: str,
-        settings: SoccerSettings | Mapping[str, object] | None = None,
+        settings: TaskSettings | Mapping[str, object] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
-        kind = kind_of(task)
-        made = kind.task(None if settings is None else kind.settings.model_validate(settings), 1)
-        assert isinstance(made, SoccerTask)
-        self.task = made
+        self.task = made = make_task(settings_for(task, settings, render_mode), 1)
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": 33, "name": task}
         self.render_mode = render_mode
-        blue = len(made.settings.blue)
+        blue = made.blue
         self.possible_agents = [
             f"blue_{index}" if index < blue else f"yellow_{index - blue}" for index in made.learners
         ]
         self.agents: list[str] = []
-        space, action = learner_space(made.settings), Box(-1.0, 1.0, (made.action.size,), np.float32)
+        space, action = made.space, Box(-1.0, 1.0, (made.action.size,), np.float32)
         self.observation_spaces = dict.fromkeys(self.possible_agents, space)
         self.action_spaces = dict.fromkeys(self.possible_agents, action)
-        told = 2 * made.settings.rules.restarts
-        high = np.full(7 * made.robots + 4 + told, np.inf, dtype=np.float32)
+        high = np.full(made.state_size, np.inf, dtype=np.float32)
         self.state_space = Box(-high, high, dtype=np.float32)
         self._begun = False
 

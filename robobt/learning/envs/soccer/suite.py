@@ -17,6 +17,7 @@ from robobt.learning.envs.soccer.settings import (
     SoccerSettings,
     SoccerStarts,
 )
+from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.opponents.play_settings import PlaySettings
 
 _ATTACKED = SoccerStarts(
@@ -163,23 +164,40 @@ class Small3v3Settings(SoccerSettings):
     starts: SoccerStarts = _IN_PLAY
 
 
-SUITE: dict[str, type[SoccerSettings]] = {
-    "ScoreOnGoalkeeperAndDefenders": ScoreOnGoalkeeperAndDefendersSettings,
-    "ScoreOnGoalkeeperAndTwoDefenders": ScoreOnGoalkeeperAndTwoDefendersSettings,
-    "Save": SaveSettings,
-    "Duel": DuelSettings,
-    "DuelWithScript": DuelWithScriptSettings,
-    "Keepaway": KeepawaySettings,
-    "Pass": PassSettings,
-    "Receive": ReceiveSettings,
-    "Redirect": RedirectSettings,
-    "Attack3v2": Attack3v2Settings,
-    "Small3v3": Small3v3Settings,
-}
-"""The tasks by name."""
+def _task(settings: type[SoccerSettings], played_by: str = "LearnedSkill") -> type[SoccerTask]:
+    """Return the task with these settings."""
+    name = settings.__name__.removesuffix("Settings")
+    about = {"__module__": __name__, "__doc__": settings.__doc__}
+    return type(name, (SoccerTask,), {"Settings": settings, "played_by": played_by, **about})
 
-TASKS: dict[str, type[SoccerSettings]] = {"Soccer": SoccerSettings, **SUITE}
-"""The same, and any mix of robots: ``Soccer`` is one against nobody until its settings say who plays."""
+
+ScoreOnGoalkeeperAndDefenders = _task(ScoreOnGoalkeeperAndDefendersSettings, "Score")
+ScoreOnGoalkeeperAndTwoDefenders = _task(ScoreOnGoalkeeperAndTwoDefendersSettings, "Score")
+Save = _task(SaveSettings, "Goalkeeper")
+Duel = _task(DuelSettings, "Duel")
+DuelWithScript = _task(DuelWithScriptSettings, "Duel")
+Keepaway = _task(KeepawaySettings)
+Pass = _task(PassSettings)
+Receive = _task(ReceiveSettings)
+Redirect = _task(RedirectSettings)
+Attack3v2 = _task(Attack3v2Settings)
+Small3v3 = _task(Small3v3Settings)
+
+_SUITE = (
+    ScoreOnGoalkeeperAndDefenders,
+    ScoreOnGoalkeeperAndTwoDefenders,
+    Save,
+    Duel,
+    DuelWithScript,
+    Keepaway,
+    Pass,
+    Receive,
+    Redirect,
+    Attack3v2,
+    Small3v3,
+)
+SUITE: dict[str, type[SoccerSettings]] = {task.__name__: task.Settings for task in _SUITE}
+"""The settings of the tasks by their names in Gymnasium."""
 
 SCRIPTS: dict[str, Role] = {
     "score": "attack",

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
-from robobt.learning.envs.soccer.central import states_of
+from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
+from robobt.learning.envs.central import central_view
 from robobt.learning.envs.soccer.judge import (
     BLUE_TICKS,
     GOAL,
@@ -31,23 +34,23 @@ from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.world.compiled import numbers_of
 from robobt.world.game import GameState
 from robobt.world.limits import RobotLimits
-from robobt.world.team_view import team_view, team_view_rows
+from robobt.world.state import ROBOT_RADIUS
+from robobt.world.team_view import AWAY, team_view, team_view_rows
 
 
 class SoccerTask(ArenaTask):
     """Any mix of learned and scripted robots; see :mod:`robobt.learning.envs.soccer.suite` for tasks of it.
 
     The observations of an arena are those of its learners one after the other, and so are the actions;
-    :class:`~robobt.learning.envs.soccer.per_robot.PerRobot` has a row for each learner instead.
-
-    Attributes:
-        shares: (n, L) what each learner earned in the last decision; their mean is the arena's reward.
+    :class:`~robobt.learning.envs.per_robot.PerRobot` has a row for each learner instead.
     """
 
+    Settings: ClassVar[type[SoccerSettings]] = SoccerSettings
+    central = True
     settings: SoccerSettings
 
     def __init__(self, settings: SoccerSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        settings = SoccerSettings() if settings is None else settings
+        settings = self.Settings() if settings is None else settings
         self.robots = len(settings.roles)
         self.learners = settings.learners
         self.observation = team_view(*settings.places, settings.rules.told)
@@ -61,7 +64,7 @@ class SoccerTask(ArenaTask):
         self._weights = numbers_of(settings.reward)
         self._rules = numbers_of(settings.rules)
         self._aim = AIMS.index(settings.aim)
-        self.shares = np.zeros((n, len(self.learners)))
+        self._shares = np.zeros((n, len(self.learners)))
         self._owns = np.zeros(len(self.learners))
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -75,16 +78,56 @@ class SoccerTask(ArenaTask):
             robots, balls, self._who, self.blue, *settings.places, *self._goal, settings.rules.told
         )
 
-    def state(self) -> FloatArray:
-        """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
+    @property
+    def ranges(self) -> dict[str, float]:
+        """See :attr:`ArenaTask.ranges`."""
+        settings, noise = self.settings, self.settings.noise
+        limits, own = settings.simulator.limits, settings.robot_limits
+        far, fastest = farthest(settings), own.max_speed * settings.randomisation.top_speed[1]
+        driven = max(fastest, limits.max_speed) + BUMP
+        turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
+        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+        kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
+        ball = max(kicked, settings.starts.ball_speed[1])
+        return {
+            "far": far,
+            "away": far + AWAY,
+            "goal": far + settings.field.goal_width,
+            "speed": seen_speed(settings, driven, noise.robot_position),
+            "turn": seen_turn(settings, turned),
+            "ball_speed": seen_speed(settings, ball, noise.ball_position),
+        }
 
-        For each robot x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx, vy, in
-        field coordinates. Where the rules have restarts two entries follow: whose ball it is, 1 blue's, -1
-        yellow's, 0 in play; and which robot may not touch it after its restart, -1 for none.
+    @property
+    def shares(self) -> FloatArray:
+        """See :attr:`ArenaTask.shares`."""
+        return self._shares
+
+    @property
+    def central_scale(self) -> tuple[float, ...]:
+        """See :attr:`ArenaTask.central_scale`."""
+        speed, turn = self.action.max_speed, self.action.max_turn
+        each = (3.0, 2.0, 1.0, 1.0, speed, speed, turn)
+        return (*each * sum(self.settings.sides), 3.0, 2.0, 3.0, 3.0)
+
+    def central_view(self) -> FloatArray:
+        """See :func:`~robobt.learning.envs.central.central_view`."""
+        arenas = self.arenas
+        return central_view(arenas.robots, arenas.balls, self.learners, self.blue, *self.settings.sides)
+
+    @property
+    def state_size(self) -> int:
+        """See :attr:`ArenaTask.state_size`."""
+        return super().state_size + 2 * self.settings.rules.restarts
+
+    def state(self) -> FloatArray:
+        """Return the arenas' true states, see :meth:`ArenaTask.state`.
+
+        Where the rules have restarts two entries follow: whose ball it is, 1 blue's, -1 yellow's, 0 in play;
+        and which robot may not touch it after its restart, -1 for none.
         """
-        each = states_of(self.arenas.robots).reshape(self.n, -1)
-        told = self._restarts.rows[:, [TEAM, TAKER]] if self.settings.rules.restarts else each[:, :0]
-        return np.concatenate((each, self.arenas.balls, told), axis=1)
+        told = [self._restarts.rows[:, [TEAM, TAKER]]] if self.settings.rules.restarts else []
+        return np.concatenate((super().state(), *told), axis=1)
 
     def game(self, arena: int) -> GameState:
         """Return the state of the game in an arena as a referee would tell it, in field coordinates."""
@@ -97,7 +140,7 @@ class SoccerTask(ArenaTask):
 
     def advance(self, actions: FloatArray) -> StepResult:
         """See :meth:`ArenaTask.advance`."""
-        self.shares = np.zeros_like(self.shares)
+        self._shares = np.zeros_like(self._shares)
         return super().advance(actions)
 
     @property
@@ -190,7 +233,7 @@ class SoccerTask(ArenaTask):
             self._minds,
             self._before,
             self._owns,
-            self.shares,
+            self._shares,
             self._progress_rows,
             rewards,
             ends,

@@ -1,13 +1,13 @@
-"""Every learner of a task of several robots as an arena of its own: how one policy learns for all of them."""
+"""Every learner of a task as an arena of its own: how one policy learns for all of them."""
 
 from __future__ import annotations
 
 import numpy as np
+from gymnasium.spaces import Box
 from numpy.typing import ArrayLike
 
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.soccer.central import BALL, EACH, central_view
-from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray, StepResult
 from robobt.sim.arenas import Arenas
 
@@ -17,10 +17,10 @@ class PerRobot:
 
     An arena's learners stand one after the other; their episodes end together. The reward is each one's own.
     With ``central`` an observation is followed by what a central critic sees of the true state besides
-    (:func:`~robobt.learning.envs.soccer.central.central_view`).
+    (:meth:`~robobt.learning.envs.arena_task.ArenaTask.central_view`).
     """
 
-    def __init__(self, task: SoccerTask, central: bool = False) -> None:
+    def __init__(self, task: ArenaTask, central: bool = False) -> None:
         self.task = task
         self._central = central
         self.settings = task.settings
@@ -30,8 +30,18 @@ class PerRobot:
         self.n = task.n * self.each
         self.observation_size = task.observation.size
         if central:
-            self.observation_size += EACH * sum(task.settings.sides) + BALL
+            self.observation_size += len(task.central_scale)
         self.action_size = task.action.size
+
+    @property
+    def space(self) -> Box[np.float32]:
+        """What each learner can observe."""
+        return self.task.space
+
+    @property
+    def reach(self) -> float | None:
+        """See :attr:`~robobt.learning.envs.arena_task.ArenaTask.reach`."""
+        return self.task.reach
 
     @property
     def arenas(self) -> Arenas:
@@ -89,6 +99,4 @@ class PerRobot:
         own = observation.reshape(self.n, -1)
         if not self._central:
             return own
-        arenas, task = self.task.arenas, self.task
-        view = central_view(arenas.robots, arenas.balls, task.learners, self.blue, *task.settings.sides)
-        return np.concatenate((own, view.reshape(self.n, -1)), axis=1)
+        return np.concatenate((own, self.task.central_view().reshape(self.n, -1)), axis=1)
