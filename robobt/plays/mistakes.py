@@ -6,12 +6,13 @@ import inspect
 import traceback
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from weakref import WeakValueDictionary
 
 from py_trees.behaviour import Behaviour
 
 from robobt.config.errors import RobobtError, message_of, short_repr
 from robobt.plays.sources import NOBODYS
-from robobt.tree.walk import fault_of
+from robobt.tree.walk import fault_of, preorder
 
 
 class PlayError(RobobtError):
@@ -20,6 +21,10 @@ class PlayError(RobobtError):
 
 _OTHERS = NOBODYS | {"py_trees"}
 """Modules that no play is written in, by their first names."""
+
+
+_built: WeakValueDictionary[int, Behaviour] = WeakValueDictionary()
+"""The nodes of all trees that plays have returned, by their id()."""
 
 
 def mistake_in_play(error: BaseException) -> str:
@@ -46,7 +51,7 @@ def mistake_in_play(error: BaseException) -> str:
 
 
 def check_returned(name: str, builder: Callable[..., object], returned: object) -> None:
-    """Check that what a play returned is a tree: nodes, each of them once.
+    """Check that what a play returned is a tree: nodes, each of them once and of no tree before.
 
     Args:
         name: the play's name.
@@ -57,6 +62,12 @@ def check_returned(name: str, builder: Callable[..., object], returned: object) 
         PlayError: it is none; the message names the play, its file and its line.
     """
     problem = _no_tree(returned)
+    if problem is None:
+        assert isinstance(returned, Behaviour)
+        nodes = preorder(returned)
+        if any(_built.get(id(node)) is node for node in nodes):
+            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
+        _built.update({id(node): node for node in nodes})
     if problem is not None:
         code = getattr(inspect.unwrap(builder), "__code__", None)
         where = "" if code is None else f"{Path(code.co_filename).name}:{code.co_firstlineno}: "

@@ -6,7 +6,15 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Self
 
-from pydantic import BaseModel, Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    Field,
+    PrivateAttr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from robobt.config.errors import FieldError, RobobtError, message_of
 from robobt.config.validation import first_problem
@@ -26,6 +34,21 @@ from robobt.world.state import RobotId
 
 UNBUILT: Mapping[str, object] = {}
 """The context of a validation that builds no trees, and so loads no models."""
+
+
+class _Unplayed:
+    """The tree that validation built, until it is played; no part of what a set-up says, nor sent with it."""
+
+    def __init__(self) -> None:
+        self.tree: Behaviour | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Unplayed)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type[Self], tuple[()]]:
+        return (type(self), ())
 
 
 class RobotSetup(Part):
@@ -48,6 +71,7 @@ class RobotSetup(Part):
         "or a file of such rules beside the scenario",
     )
     start: RobotStart = Field(description="pose at the start, in the own team's view")
+    _unplayed: _Unplayed = PrivateAttr(default_factory=lambda: _Unplayed())
 
     @field_validator("play")
     @classmethod
@@ -61,7 +85,7 @@ class RobotSetup(Part):
         if info.context is UNBUILT:
             return self
         try:
-            tree, another = self.build_tree(), self.build_tree()
+            tree = self._build()
             check_tree(tree, Store, GIVEN)
         except ParameterError as error:
             raise FieldError(f"params.{error.parameter}", str(error)) from error
@@ -79,10 +103,14 @@ class RobotSetup(Part):
             field = self._blamed(error)
             said = mistake_in_play(error) if field in ("play", "params") else message_of(error)
             raise FieldError(field, said) from error
-        if {id(node) for node in tree.iterate()} & {id(node) for node in another.iterate()}:
-            problem = "returns the same nodes each time; a play builds a new tree whenever it is called"
-            raise FieldError("play", f"{self.play} {problem}")
+        self._unplayed.tree = tree
         return self
+
+    def __copy__(self) -> Self:
+        """Return a copy that may be changed, and so has no tree yet."""
+        copied = super().__copy__()
+        copied._unplayed = _Unplayed()
+        return copied
 
     def _blamed(self, error: Exception) -> str:
         """Return the field of the parameter that makes building the tree fail, if it is one alone."""
@@ -92,7 +120,7 @@ class RobotSetup(Part):
         for name in self.params:
             others = {other: value for other, value in self.params.items() if other != name}
             with suppress(Exception):
-                self.model_copy(update={"params": others}).build_tree()
+                self.model_copy(update={"params": others})._build()
                 blamed.append(name)
         if not blamed:
             # Several are wrong, or it is one that the play needs: the message tells a file or name.
@@ -101,7 +129,15 @@ class RobotSetup(Part):
         return f"params.{blamed[0]}" if len(blamed) == 1 else "params"
 
     def build_tree(self) -> Behaviour:
-        """Build a new tree of this robot's play."""
+        """Return a tree of this robot's play that nobody else gets.
+
+        The first is the one that validation built. Each match after that needs a tree of its own, for
+        nodes keep what they have done; and so does each process, for trees are not sent to another.
+        """
+        tree, self._unplayed.tree = self._unplayed.tree, None
+        return self._build() if tree is None else tree
+
+    def _build(self) -> Behaviour:
         tree = build_play(self.play, self.params)
         if not self.substitute:
             return tree

@@ -158,7 +158,8 @@ def test_a_match_with_a_missing_model_ends_before_it_begins(tmp_path: Path):
     assert result.exit_code == 1
     assert result.output.count("\n") == 1
     assert (
-        f"{path}: robots.blue.0.params.model: {tmp_path / 'gone.pt'}: there is no such file" in result.output
+        f"{path}: robots.blue.0.params.rater.model: {tmp_path / 'gone.pt'}: there is no such file"
+        in result.output
     )
 
 
