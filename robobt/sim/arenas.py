@@ -20,6 +20,7 @@ from robobt.sim.records import (
     BODY,
     COMMAND,
     CONTACT,
+    DRIVE,
     FLIGHT,
     FRONT,
     MOVING,
@@ -117,6 +118,7 @@ class Arenas:
         self._state["parameters"] = arena_parameters(settings)
         self._state["wheels"] = wheel_parameters(settings.wheels)
         self._kept = np.zeros((n, count, size(ROBOT)))
+        self._drives = np.zeros((n, count, size(DRIVE)))
         for i, own in enumerate(limits):
             self.robot_parameters[:, i] = robot_limits(own or settings.limits)
         contacts, pairs = self._contacts, self._contacts.memory.shape[1]
@@ -128,6 +130,7 @@ class Arenas:
                 ArenaArrays(
                     states=self._states,
                     kept=self._kept,
+                    drives=self._drives,
                     bodies=self._rows,
                     robots=self.robots,
                     balls=self.balls,
@@ -220,7 +223,8 @@ class Arenas:
         rows[which, count, 3:5] = ball[:, 2:]
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._restart_robots(which)
+        self._robots["cooldown"][which] = 0.0
+        self._drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
         for commands in self._pipeline:
@@ -252,7 +256,7 @@ class Arenas:
             vz: how fast it rises [m/s].
         """
         count = self.contact.shape[1]
-        self._robots["hinge"]["held"][arena] = 0.0
+        self._drives.view(DRIVE)["hinge"]["held"][arena] = 0.0
         self._read()
         row = self._arena_rows[arena, count]
         row[:] = 0.0
@@ -273,7 +277,8 @@ class Arenas:
         """
         self._read()
         self._arena_rows[arena, robot] = state
-        self._restart_robots((arena, robot))
+        self._robots["cooldown"][arena, robot] = 0.0
+        self._drives[arena, robot] = 0.0
         self._contacts.forget(arena)
         self._write()
 
@@ -324,9 +329,3 @@ class Arenas:
         balls = self._state["ball"]
         balls["vx"][arenas], balls["vy"][arenas], balls["twist"][arenas] = vx, vy, 0.0
         balls["spin_x"][arenas], balls["spin_y"][arenas] = (vx, vy) if rolls else (0.0, 0.0)
-
-    def _restart_robots(self, which: IntArray | tuple[int | IntArray, int | IntArray]) -> None:
-        """Forget what is kept of some robots but their limits."""
-        kept = self._robots
-        for name in (kept.dtype.names or ())[1:]:
-            kept[name][which] = 0.0

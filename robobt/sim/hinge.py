@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from robobt.sim.records import Body, Hinge, Records, Robot, Wheels
+from robobt.sim.records import Body, Drive, Hinge, Records, Wheels
 from robobt.world.compiled import compiled_lean
 
 _SWEEPS = 4
@@ -27,25 +27,25 @@ def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
 
 
 @compiled_lean
-def tie(robots: Records[Body], kept: Records[Robot], carrier: int, w: Wheels, dt: float) -> None:
+def tie(robots: Records[Body], drives: Records[Drive], carrier: int, w: Wheels, dt: float) -> None:
     """Let no robot that holds the ball leave the one that carries it.
 
     Args:
         robots: (R,) bodies; velocities are changed.
-        kept: (R,) what else is kept of them.
+        drives: (R,) what is kept of their wheels, and of how they hold the ball.
         carrier: the robot that carries the ball.
         w: parameters of their wheels.
         dt: time step [s].
     """
     one = robots[carrier]
-    ax, ay = _arm(one, kept[carrier].hinge)
+    ax, ay = _arm(one, drives[carrier].hinge)
     mass, inertia = 1.0 / w.mass, 1.0 / w.inertia
     for _ in range(_SWEEPS):
         for i in range(len(robots)):
-            if i == carrier or kept[i].hinge.held == 0.0:
+            if i == carrier or drives[i].hinge.held == 0.0:
                 continue
             other = robots[i]
-            bx, by = _arm(other, kept[i].hinge)
+            bx, by = _arm(other, drives[i].hinge)
             # How fast the hinges part, and how fast they are to come together.
             gx = one.vx - one.omega * ay - other.vx + other.omega * by
             gy = one.vy + one.omega * ax - other.vy - other.omega * bx

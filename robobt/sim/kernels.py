@@ -24,6 +24,7 @@ from robobt.sim.records import (
     BODY,
     COMMAND,
     CONTACT,
+    DRIVE,
     EDGE,
     FLIGHT,
     FRONT,
@@ -47,7 +48,7 @@ from robobt.sim.roller import roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import drive_wheels
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_HEIGHT
 
@@ -74,7 +75,8 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
         dt: length of each [s].
     """
     arrays = ArenaArrays(*arrays_)
-    states, kept = arrays.states.view(ARENA)[..., 0], arrays.kept.view(ROBOT)[..., 0]
+    states = arrays.states.view(ARENA)[..., 0]
+    kept, drives = arrays.kept.view(ROBOT)[..., 0], arrays.drives.view(DRIVE)[..., 0]
     bodies, flights = arrays.bodies.view(BODY)[..., 0], arrays.flight.view(FLIGHT)[..., 0]
     masses, bias = arrays.masses.view(MASSES)[..., 0], arrays.bias.view(BIAS)[..., 0]
     memory, fronts = arrays.memory.view(MEMORY)[..., 0], arrays.fronts.view(FRONT)[..., 0]
@@ -98,6 +100,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
             parameters=state.parameters,
             wheels=state.wheels,
             kept=kept[a],
+            drives=drives[a],
             kicked=arrays.kicked[a],
             fronts=fronts,
             walls=walls,
@@ -140,7 +143,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
     report(arrays_)
 
 
-@compiled_lean
+@compiled_inline
 def _act(arena: Arena, commands: Records[Command], dt: float) -> None:
     """Let the robots drive, kick and dribble for one step."""
     ball, low = arena.ball, arena.air.z < RECEIVED_HEIGHT
@@ -152,7 +155,7 @@ def _act(arena: Arena, commands: Records[Command], dt: float) -> None:
         arena.fronts[i].driven = 0.0
         begins = False
         if arena.wheels.mass > 0.0:
-            begins = drive_wheels(robot, command, kept.limits, arena.wheels, kept, dt)
+            begins = drive_wheels(robot, command, kept.limits, arena.wheels, arena.drives[i], dt)
         else:
             drive(robot, command, kept.limits, dt)
         if kept.cooldown > 0.0:
@@ -164,7 +167,7 @@ def _act(arena: Arena, commands: Records[Command], dt: float) -> None:
                 _dribble(arena, i, command, begins, dt)
 
 
-@compiled_lean
+@compiled_inline
 def _kicks(arena: Arena, i: int, command: Command, dt: float) -> bool:
     """Let a robot kick a low ball if it is commanded to and has it; return whether it did."""
     ball, robot, p = arena.ball, arena.robots[i], arena.parameters
@@ -178,20 +181,20 @@ def _kicks(arena: Arena, i: int, command: Command, dt: float) -> bool:
     command.kick_speed = 0.0
     arena.kicked[i] = True
     arena.kept[i].cooldown = p.kicker.recharge
-    arena.kept[i].hinge.held = 0.0
+    arena.drives[i].hinge.held = 0.0
     ball.kicker, ball.carrier = i, -1
     ball.held = 0
     ball.pull_x = ball.pull_y = 0.0
     return True
 
 
-@compiled_lean
+@compiled_inline
 def _dribble(arena: Arena, i: int, command: Command, begins: bool, dt: float) -> None:
     """Let a robot's dribbler hold a low ball for one step; ``begins`` tells whether a frame of grSim does."""
     body, ball, robot, p = arena.body, arena.ball, arena.robots[i], arena.parameters
     driven = command.dribbler > 0.0
     if p.core > 0.0:
-        hinge = arena.kept[i].hinge
+        hinge = arena.drives[i].hinge
         if begins:
             if not (driven and keeps(body, robot, p, hinge.held > 0.0)):
                 hinge.held = 0.0
@@ -220,7 +223,7 @@ def _dribble(arena: Arena, i: int, command: Command, begins: bool, dt: float) ->
         hold(body, ball, robot, p, p.dribbler.idle_hold, dt)
 
 
-@compiled_lean
+@compiled_inline
 def _move_ball(arena: Arena, solver: Solver, dt: float) -> bool:
     """Find how the ball moves in one step; return whether it passes over everything, and move it then."""
     body, ball, air, p, w = arena.body, arena.ball, arena.air, arena.parameters, arena.wheels
@@ -266,12 +269,12 @@ def _move_ball(arena: Arena, solver: Solver, dt: float) -> bool:
     return high
 
 
-@compiled_lean
+@compiled_inline
 def _carry(arena: Arena, dt: float) -> None:
     """Let the ball go with the robot that carries it, unless that takes it into a wall."""
     body, ball, p = arena.body, arena.ball, arena.parameters
     if ball.shared > 0:
-        tie(arena.robots, arena.kept, ball.carrier, arena.wheels, dt)
+        tie(arena.robots, arena.drives, ball.carrier, arena.wheels, dt)
     robot = arena.robots[ball.carrier]
     carry(body, ball, robot, p, dt)
     if in_a_wall(body.x + ball.move_x * dt, body.y + ball.move_y * dt, arena.walls):

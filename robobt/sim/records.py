@@ -174,14 +174,18 @@ class Hinge:
 
 
 class Robot:
-    """What is kept of a robot between steps, beside its body.
-
-    ``cooldown`` until its kicker is ready [s]; of a robot with wheels the acceleration that the loads follow
-    [m/s^2] and the time to the next frame [s].
-    """
+    """What is kept of a robot beside its body: its limits, and the time until its kicker is ready [s]."""
 
     limits: Limits
     cooldown: float
+
+
+class Drive:
+    """What is kept of a robot with wheels.
+
+    The acceleration that the loads follow [m/s^2], the time to the next frame [s], and how it holds the ball.
+    """
+
     lean_ahead: float
     lean_aside: float
     clock: float
@@ -408,6 +412,7 @@ FLIGHT = record(Flight)
 SEEN_BALL = record(SeenBall)
 LIMITS = record(Limits)
 ROBOT = record(Robot)
+DRIVE = record(Drive)
 WHEELS = record(Wheels)
 PARAMETERS = record(Parameters)
 ARENA = record(ArenaState)
@@ -431,6 +436,7 @@ class ArenaArrays(NamedTuple):
     Attributes:
         states: (n, size(ARENA)) kept between calls.
         kept: (n, R, size(ROBOT)) of robots, kept between calls.
+        drives: (n, R, size(DRIVE)) of robots with wheels, kept between calls.
         bodies: (n * stride, size(BODY)) robots and ball of an arena, then those of the next.
         robots: (n, R, size(BODY)) out.
         balls: (n, size(SEEN_BALL)) out.
@@ -458,6 +464,7 @@ class ArenaArrays(NamedTuple):
 
     states: FloatArray
     kept: FloatArray
+    drives: FloatArray
     bodies: FloatArray
     robots: FloatArray
     balls: FloatArray
@@ -493,6 +500,7 @@ class Arena(NamedTuple):
         parameters: of the arena.
         wheels: of its robots.
         kept: (R,) what else is kept of the robots.
+        drives: (R,) what is kept of their wheels.
         kicked: (R,) which of them kicked in this period.
         fronts: (R,) scratch.
         walls: (W,) relative to the arena's centre.
@@ -505,6 +513,7 @@ class Arena(NamedTuple):
     parameters: Parameters
     wheels: Wheels
     kept: Records[Robot]
+    drives: Records[Drive]
     kicked: BoolArray
     fronts: Records[Front]
     walls: Records[Wall]

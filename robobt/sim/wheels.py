@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.records import Body, Command, Limits, Records, Rim, Robot, Wheels
+from robobt.sim.records import Body, Command, Drive, Limits, Records, Rim, Wheels
 from robobt.world.compiled import compiled_lean
 
 _WHEELS = 4
@@ -60,7 +60,7 @@ def _plan(robot: Body, command: Command, limits: Limits, w: Wheels, rims: Record
 
 
 @compiled_lean
-def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept: Robot, dt: float) -> bool:
+def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, drive: Drive, dt: float) -> bool:
     """Let the wheels turn for ``dt`` and change the robot's velocity accordingly.
 
     Args:
@@ -68,20 +68,20 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept:
         command: its command.
         limits: what it can do.
         w: the parameters of its wheels.
-        kept: what is kept of it between calls, changed.
+        drive: what is kept of its wheels between calls, changed.
         dt: time step [s].
 
     Returns:
         whether a frame of grSim began.
     """
-    rims = kept.rims
-    begins = bool(kept.clock <= 1e-9)
+    rims = drive.rims
+    begins = bool(drive.clock <= 1e-9)
     if begins:
-        kept.clock += w.frame
+        drive.clock += w.frame
         for i in range(_WHEELS):
             rims[i].target = rims[i].next
         _plan(robot, command, limits, w, rims)
-    kept.clock -= dt
+    drive.clock -= dt
     c, s = cos(robot.heading), sin(robot.heading)
     ahead = c * robot.vx + s * robot.vy
     aside = c * robot.vy - s * robot.vx
@@ -89,7 +89,7 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept:
     # From the centre of the robot to its centre of mass, about which it turns.
     aside += turn * w.centre
     start_ahead, start_aside = ahead, aside
-    ahead, aside, turn = _push(ahead, aside, turn, w, kept, dt)
+    ahead, aside, turn = _push(ahead, aside, turn, w, drive, dt)
     motor, rim = w.motor * dt, 1.0 / w.rim_mass
     for i in range(_WHEELS):
         wheel = rims[i]
@@ -100,8 +100,8 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept:
         else:
             wheel.speed = wheel.target
     share = min(dt / w.load_lag, 1.0)
-    kept.lean_ahead += share * ((ahead - start_ahead) / dt - kept.lean_ahead)
-    kept.lean_aside += share * ((aside - start_aside) / dt - kept.lean_aside)
+    drive.lean_ahead += share * ((ahead - start_ahead) / dt - drive.lean_ahead)
+    drive.lean_aside += share * ((aside - start_aside) / dt - drive.lean_aside)
     aside -= turn * w.centre
     robot.vx = c * ahead - s * aside
     robot.vy = s * ahead + c * aside
@@ -111,14 +111,14 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, kept:
 
 @compiled_lean
 def _push(
-    ahead: float, aside: float, turn: float, w: Wheels, kept: Robot, dt: float
+    ahead: float, aside: float, turn: float, w: Wheels, drive: Drive, dt: float
 ) -> tuple[float, float, float]:
     """Return a robot's velocity, in its own frame, after its wheels have pushed it for ``dt``."""
-    rims, centre = kept.rims, w.centre
+    rims, centre = drive.rims, w.centre
     body, spin, rim = 1.0 / w.mass, 1.0 / w.inertia, 1.0 / w.rim_mass
     motor = w.motor * dt
     # A spinning wheel resists being turned about the vertical, and leans on the ground instead.
-    lean_ahead, lean_aside = kept.lean_ahead, kept.lean_aside
+    lean_ahead, lean_aside = drive.lean_ahead, drive.lean_aside
     for i in range(_WHEELS):
         lean_ahead -= w.gyro * turn * rims[i].speed * w.each[i].cos
         lean_aside -= w.gyro * turn * rims[i].speed * w.each[i].sin

@@ -48,6 +48,14 @@ def compiled_lean(function: Function) -> Function:
     return _compiled(function, _nrt=False)
 
 
+def compiled_inline(function: Function) -> Function:
+    """Compile as :func:`compiled_lean` does a part of a larger function, into which it goes without a call.
+
+    A call passes each array as seven numbers, and all those of a named tuple.
+    """
+    return _compiled(function, _nrt=False, forceinline=True)
+
+
 def _compiled(function: Function, **options: Any) -> Function:
     made = njit(**options)(function)
     # A read-only installation, run by somebody without a home, keeps nothing: compile anew each time.

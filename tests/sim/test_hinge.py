@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from robobt.sim import SimWorld, preset
 from robobt.sim.hinge import take_hold, tie
 from robobt.sim.parameters import wheel_parameters
-from robobt.sim.records import BODY, ROBOT
+from robobt.sim.records import BODY, DRIVE
 from robobt.world import DIVISION_B, BallState, Placement, RobotCommand, RobotState
 from robobt.world.command import KickTrigger
 from tests.sim.rig import IT, ME
@@ -97,10 +97,10 @@ def test_whoever_lets_go_leaves_the_ball_to_the_other() -> None:
 def test_a_tie_conserves_momentum_and_stops_the_parting(
     one: list[float], other: list[float], x: float, y: float
 ) -> None:
-    rows, kept = np.array([one, other]), np.zeros(2, ROBOT)
+    rows, drives = np.array([one, other]), np.zeros(2, DRIVE)
     bodies, w = rows.view(BODY)[:, 0], wheel_parameters(preset("grsim").wheels)[()]
     ball = np.array((x, y, 0.0, 0.0, 0.0, 0.0), BODY)[()]
-    for body, hinge in zip(bodies, kept["hinge"], strict=True):
+    for body, hinge in zip(bodies, drives["hinge"], strict=True):
         take_hold(ball, body, hinge)
 
     def momentum() -> np.ndarray:
@@ -112,7 +112,7 @@ def test_a_tie_conserves_momentum_and_stops_the_parting(
         return float((w["mass"] * rows[:, 3:5] ** 2).sum() + (w["inertia"] * rows[:, 5] ** 2).sum())
 
     before, had = momentum(), energy()
-    tie(bodies, kept, 0, w, 1 / 300)
+    tie(bodies, drives, 0, w, 1 / 300)
     assert momentum() == pytest.approx(before, abs=1e-9)
     assert energy() <= had + 1e-9
     arms = np.array([x, y]) - rows[:, :2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -62,6 +63,27 @@ def test_a_key_follows_the_constants_that_are_read(monkeypatch: pytest.MonkeyPat
     assert key_of(scaled) == before
     monkeypatch.setitem(scaled.__globals__, "FACTORS", np.array([1.0, 3.0]))
     assert key_of(scaled) != before
+
+
+class Pair(NamedTuple):
+    first: float
+    second: float
+
+
+def difference(pair: tuple[float, float]) -> float:
+    named = Pair(*pair)
+    return named.first - named.second
+
+
+def test_a_key_follows_the_order_of_a_named_tuples_fields(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(difference)
+
+    class Turned(NamedTuple):
+        second: float
+        first: float
+
+    monkeypatch.setitem(difference.__globals__, "Pair", Turned)
+    assert key_of(difference) != before
 
 
 def test_a_key_follows_defaults(monkeypatch: pytest.MonkeyPatch) -> None:

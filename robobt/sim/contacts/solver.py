@@ -40,7 +40,7 @@ from robobt.sim.records import (
     size,
 )
 from robobt.sim.settings import SimSettings
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_inline, compiled_lean
 
 _SETTLED = 1e-12
 """After a pass over the contacts that changed no impulse by more than this there is no other [N s]."""
@@ -138,7 +138,8 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
         it: what belongs to the arena.
         dt: time step [s].
     """
-    it.masses.clock += 1
+    clock = it.masses.clock + 1
+    it.masses.clock = clock
     for i in range(len(bodies)):
         body, bias = bodies[i], it.bias[i]
         body.x += (body.vx + bias.vx) * dt
@@ -157,13 +158,13 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
             contact = it.contacts[j]
             seen = it.memory[contact.pair]
             seen.along, seen.across = contact.normal, contact.tangent
-            seen.when = it.masses.clock
+            seen.when = clock
 
 
-@compiled_lean
+@compiled_inline
 def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt: float) -> None:
     """Compute what the contacts ask for, and apply again the impulses of the last step."""
-    robots = len(bodies) - 1
+    robots, clock = len(bodies) - 1, it.masses.clock
     for i in range(robots + 2):
         moving = it.moving[i]
         moving.vx = moving.vy = moving.omega = 0.0
@@ -187,9 +188,9 @@ def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt:
         row.push = -undone * min(row.push + solver.allowed, 0.0)
         row.lift = row.normal = row.tangent = row.warm = 0.0
         seen = it.memory[row.pair]
-        if it.masses.clock - seen.when <= solver.persistence:
+        if clock - seen.when <= solver.persistence:
             row.normal, row.tangent = seen.along, seen.across
-            row.warm = 1.0 if it.masses.clock - seen.when == 1.0 else 0.0
+            row.warm = 1.0 if clock - seen.when == 1.0 else 0.0
     for j in range(count):
         row = it.contacts[j]
         if row.warm > 0.0:
@@ -208,7 +209,7 @@ def _push(a: Moving, b: Moving, row: Contact, along: float, across: float) -> No
     b.omega += b.inertia * (row.r2x * jy - row.r2y * jx)
 
 
-@compiled_lean
+@compiled_inline
 def _solve(solver: Solver, contacts: Records[Contact], moving: Records[Moving], count: int) -> None:
     """Improve the impulses, contact by contact, until they agree."""
     for _ in range(int(solver.iterations)):

@@ -6,7 +6,7 @@ from math import cos, inf, sin, sqrt
 from typing import NamedTuple
 
 from robobt.sim.records import Body, Contact, Edge, Part, Records, Solver, Wall
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
@@ -26,7 +26,7 @@ class Shapes(NamedTuple):
     solver: Solver
 
 
-@compiled_lean
+@compiled_inline
 def find(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
     """Fill in the contacts there are; return how many.
 
@@ -42,7 +42,7 @@ def find(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> i
     return _find_ball(bodies, shapes, contacts, count, discs + robots * robots)
 
 
-@compiled_lean
+@compiled_inline
 def _find_walls(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
     """Fill in the contacts of bodies and walls; return how many."""
     solver, walls = shapes.solver, shapes.walls
@@ -69,7 +69,7 @@ def _find_walls(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact
     return count
 
 
-@compiled_lean
+@compiled_inline
 def _find_robots(
     bodies: Records[Body], solver: Solver, contacts: Records[Contact], count: int, first: int
 ) -> int:
@@ -93,7 +93,7 @@ def _find_robots(
     return count
 
 
-@compiled_lean
+@compiled_inline
 def _find_ball(
     bodies: Records[Body], shapes: Shapes, contacts: Records[Contact], count: int, first: int
 ) -> int:
