@@ -9,19 +9,17 @@ omnidirectional vehicles" (2006), as the league's teams use it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.world.ball_model import way_in
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, records
 from robobt.world.geometry import FloatArray
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
-
-X, Y, VX, VY, TOP, ACCELERATION, BRAKING = range(7)
-"""Columns of :func:`movers`."""
+from robobt.world.records import BALL, MEETING, MOVER, Ball, Meeting, Mover, mover_records
+from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 STEP = 0.1
 """From one place where a ball may be met to the next [s]."""
@@ -31,25 +29,6 @@ _DRIFT = 0.15
 """Sideways speed that does not count [m/s]."""
 _BODY = ROBOT_RADIUS + BALL_RADIUS
 _HORIZON = 4.0
-
-
-def movers(robots: Iterable[RobotState]) -> FloatArray:
-    """Return place, velocity and limits of every robot, (n, 7), for the functions of this module."""
-    row: list[float] = []
-    for robot in robots:
-        limits = robot.limits
-        row += (robot.x, robot.y, robot.vx, robot.vy)
-        row += (limits.max_speed, limits.acceleration, limits.braking)
-    # From one list, for numpy takes twice as long over a list of rows.
-    return np.array(row, dtype=np.float64).reshape(-1, 7)
-
-
-def movers_of(frame: Frame) -> FloatArray:
-    """Return :func:`movers` of everybody on the field, the own team first; made once a frame."""
-    made: FloatArray | None = frame.made.get("movers")
-    if made is None:
-        made = frame.made["movers"] = movers((*frame.own, *frame.opponents))
-    return made
 
 
 @compiled
@@ -82,16 +61,34 @@ def axis_time(gap: float, speed: float, top: float, acceleration: float, braking
 
 
 @compiled
-def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
-    """Compute when a robot, a row of :func:`movers`, can stand within ``slack`` [m] of (x, y) [s]."""
-    dx, dy = x - robot[0], y - robot[1]
+def arrival_time(mover_: FloatArray, x: float, y: float, slack: float) -> float:
+    """Do what :func:`time_to` does, for a row of :func:`robobt.world.records.movers`."""
+    return time_to(mover_.view(MOVER)[0], x, y, slack)
+
+
+@compiled
+def arrival_times(movers_: FloatArray, rows: NDArray[np.int64], places: FloatArray) -> FloatArray:
+    """Compute when the robots of these rows of the movers can stand at every place (m, 2): (n, m) [s]."""
+    movers = mover_records(movers_)
+    out = np.empty((len(rows), len(places)))
+    for i in range(len(rows)):
+        for j in range(len(places)):
+            x, y = places[j]
+            out[i, j] = time_to(movers[rows[i]], x, y, 0.0)
+    return out
+
+
+@compiled
+def time_to(mover: Mover, x: float, y: float, slack: float) -> float:
+    """Compute when a robot can stand within ``slack`` [m] of (x, y) [s]."""
+    dx, dy = x - mover.x, y - mover.y
     gap = hypot(dx, dy)
-    top, acceleration, braking = robot[4], robot[5], robot[6]
+    top, acceleration, braking = mover.max_speed, mover.acceleration, mover.braking
     if gap <= slack:
         return 0.0
     ux, uy = dx / gap, dy / gap
-    along = ux * robot[2] + uy * robot[3]
-    across = abs(ux * robot[3] - uy * robot[2])
+    along = ux * mover.vx + uy * mover.vy
+    across = abs(ux * mover.vy - uy * mover.vx)
     gap -= slack
     if across < _DRIFT:
         return axis_time(gap, along, top, acceleration, braking)
@@ -111,36 +108,26 @@ def arrival_time(robot: FloatArray, x: float, y: float, slack: float) -> float:
 
 
 @compiled
-def out_of_reach(robot: FloatArray, x: float, y: float, fastest: float, time: float) -> bool:
+def out_of_reach(mover: Mover, x: float, y: float, fastest: float, time: float) -> bool:
     """Return whether a robot can surely not meet a ball at (x, y) by ``time`` [s].
 
     It never drives faster than ``fastest`` [m/s], nor gets there before one that need not mind its drift;
     but for one that is too fast now, and covers the more ground the later it brakes.
     """
-    dx, dy = x - robot[X], y - robot[Y]
+    dx, dy = x - mover.x, y - mover.y
     gap = hypot(dx, dy)
     if gap - _BODY >= fastest * time + 1e-6:
         return True
-    if gap <= _BODY or fastest > robot[TOP]:
+    if gap <= _BODY or fastest > mover.max_speed:
         return False
-    along = (dx * robot[VX] + dy * robot[VY]) / gap
-    return bool(axis_time(gap - _BODY, along, robot[TOP], robot[ACCELERATION], robot[BRAKING]) > time + 1e-6)
-
-
-@compiled
-def arrival_times(robots: FloatArray, rows: NDArray[np.int64], places: FloatArray) -> FloatArray:
-    """Compute when the robots of these rows of :func:`movers` can stand at every place (m, 2): (n, m) [s]."""
-    out = np.empty((len(rows), len(places)))
-    for i in range(len(rows)):
-        for j in range(len(places)):
-            out[i, j] = arrival_time(robots[rows[i]], places[j, 0], places[j, 1], 0.0)
-    return out
+    along = (dx * mover.vx + dy * mover.vy) / gap
+    return axis_time(gap - _BODY, along, mover.max_speed, mover.acceleration, mover.braking) > time + 1e-6
 
 
 @compiled
 def meetings(
-    robots: FloatArray,
-    ball: FloatArray,
+    movers_: FloatArray,
+    ball_: FloatArray,
     rolling: float,
     slide: float,
     roll: float,
@@ -153,24 +140,40 @@ def meetings(
     never can, where the ball comes to rest or leaves the field.
 
     Args:
-        robots: as of :func:`movers`.
-        ball: its x, y, vx, vy.
+        movers_: as of :func:`robobt.world.records.movers`.
+        ball_: as of :func:`robobt.world.records.ball_of`.
         rolling: the speed from which on it rolls [m/s].
         slide: its deceleration while it slides [m/s^2].
         roll: the same while it rolls [m/s^2].
         half_length: half the field's length [m].
         half_width: half its width [m].
+
+    Returns:
+        A :class:`~robobt.world.records.Meeting` in each row.
     """
-    # Where the ball is from step to step, up to where it has to be met at the latest.
-    path = np.empty((int(_HORIZON / STEP) + 2, 3))
-    speed = hypot(ball[2], ball[3])
+    path = _path(ball_.view(BALL)[0], rolling, slide, roll, half_length, half_width)
+    movers = mover_records(movers_)
+    out = np.empty((len(movers), 3))
+    found = out.view(MEETING)[:, 0]
+    for i in range(len(movers)):
+        _meet(movers[i], path, found[i])
+    return out
+
+
+@compiled
+def _path(
+    ball: Ball, rolling: float, slide: float, roll: float, half_length: float, half_width: float
+) -> Sequence[Meeting]:
+    """Return where the ball is from step to step, up to where it has to be met at the latest."""
+    path: Sequence[Meeting] = records(int(_HORIZON / STEP) + 2, MEETING)
+    speed = hypot(ball.vx, ball.vy)
     ux, uy = 0.0, 0.0
     if speed > 0.0:
-        ux, uy = ball[2] / speed, ball[3] / speed
+        ux, uy = ball.vx / speed, ball.vy / speed
     last, time, way = 0, 0.0, 0.0
     while True:
-        x, y = ball[0] + way * ux, ball[1] + way * uy
-        path[last, 0], path[last, 1], path[last, 2] = time, x, y
+        x, y = ball.x + way * ux, ball.y + way * uy
+        path[last].time, path[last].x, path[last].y = time, x, y
         further = way_in(time + STEP, speed, rolling, slide, roll)
         gone = abs(x) > half_length or abs(y) > half_width
         if gone or further - way < 0.02 or time >= _HORIZON:
@@ -178,25 +181,27 @@ def meetings(
         last += 1
         time += STEP
         way = further
-    out = np.empty((len(robots), 3))
-    for i in range(len(robots)):
-        robot = robots[i]
-        fastest = max(robot[TOP], hypot(robot[VX], robot[VY]))
-        k, late = 0, 0.0
-        while True:
-            time, x, y = path[k, 0], path[k, 1], path[k, 2]
-            # Most steps are out of its reach, which is seen without computing when it would be there.
-            if k == last or not out_of_reach(robot, x, y, fastest, time):
-                late = arrival_time(robot, x, y, _BODY) - time
-                if k == last or late <= 0.0:
-                    break
-            k += 1
-        if late > 0.0:
-            time += late
-        elif k > 0:
-            before = arrival_time(robot, path[k - 1, 1], path[k - 1, 2], _BODY) - path[k - 1, 0]
-            time += STEP * late / (before - late)
-        out[i, 0] = time
-        out[i, 1] = x
-        out[i, 2] = y
-    return out
+    return path[: last + 1]
+
+
+@compiled
+def _meet(mover: Mover, path: Sequence[Meeting], meeting: Meeting) -> None:
+    """Fill in where on its path a robot can meet the ball first."""
+    fastest = max(mover.max_speed, hypot(mover.vx, mover.vy))
+    last = len(path) - 1
+    k, late = 0, 0.0
+    while True:
+        at = path[k]
+        # Most steps are out of its reach, which is seen without computing when it would be there.
+        if k == last or not out_of_reach(mover, at.x, at.y, fastest, at.time):
+            late = time_to(mover, at.x, at.y, _BODY) - at.time
+            if k == last or late <= 0.0:
+                break
+        k += 1
+    meeting.time, meeting.x, meeting.y = at.time, at.x, at.y
+    if late > 0.0:
+        meeting.time += late
+    elif k > 0:
+        earlier = path[k - 1]
+        before = time_to(mover, earlier.x, earlier.y, _BODY) - earlier.time
+        meeting.time += STEP * late / (before - late)

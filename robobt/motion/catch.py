@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from math import atan2, hypot, sqrt
 
-from robobt.motion.pilot import command, turn_rate
-from robobt.motion.speeds import approach_speed
+from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, RobotState

@@ -6,14 +6,13 @@ Source of the limit: RoboCup SSL rules, chapter "Crashing": the relative velocit
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, hypot, sin, sqrt
 
-import numpy as np
-
-from robobt.motion.arrival import VX, VY, X, Y, movers_of
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, Point
+from robobt.world.records import ROBOT, Mover, Robot, mover_records, movers_of, robot_of
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _CLOSING = 1.0
@@ -50,30 +49,36 @@ def avoid_crash(frame: Frame, me: RobotState, order: RobotCommand) -> RobotComma
         order: what it was to do; changed in place.
     """
     if frame.game.in_play and (order.vx != 0.0 or order.vy != 0.0):
-        now = np.array((me.x, me.y, me.heading, order.vx, order.vy))
+        velocity = float(order.vx), float(order.vy)
         theirs = movers_of(frame)[len(frame.own) :]
-        order.vx, order.vy = slowed_in_play(now, theirs, _BRAKES * me.limits.braking)
+        order.vx, order.vy = _slowed(robot_of(me), velocity, theirs, _BRAKES * me.limits.braking)
     return order
 
 
 @compiled
-def slowed_in_play(now: FloatArray, others: FloatArray, braking: float) -> Point:
+def _slowed(me_: FloatArray, velocity: Point, others_: FloatArray, braking: float) -> Point:
+    return slowed_in_play(me_.view(ROBOT)[0], velocity, mover_records(others_), braking)
+
+
+@compiled
+def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking: float) -> Point:
     """Return the velocity ahead and to the left, slowed down towards every opponent that it would crash into.
 
     Args:
-        now: place and heading of the robot, and the velocity ahead and to the left that it is to have.
-        others: the opponents, as of :func:`~robobt.motion.arrival.movers`.
+        me: the robot.
+        velocity: ahead and to the left, that it is to have [m/s].
+        others: the opponents.
         braking: how hard to brake for it [m/s^2].
     """
-    x, y, ahead, left = now[0], now[1], now[3], now[4]
-    c, s = cos(now[2]), sin(now[2])
+    ahead, left = velocity
+    c, s = cos(me.heading), sin(me.heading)
     vx, vy = c * ahead - s * left, s * ahead + c * left
     changed = False
-    for i in range(len(others)):
-        gap, nx, ny = _meeting(x, y, vx, vy, others, i)
+    for other in others:
+        gap, nx, ny = _meeting(me, vx, vy, other)
         if gap < 0.0:
             continue
-        coming = -(nx * others[i, VX] + ny * others[i, VY])
+        coming = -(nx * other.vx + ny * other.vy)
         most = max(coming - _SLOWER, sqrt(_IN_PLAY * _IN_PLAY + 2.0 * braking * gap) - coming)
         towards = nx * vx + ny * vy
         if towards > most:
@@ -83,27 +88,28 @@ def slowed_in_play(now: FloatArray, others: FloatArray, braking: float) -> Point
 
 
 @compiled
-def slowed_towards(now: FloatArray, others: FloatArray, skip: int, mates: int) -> Point:
+def slowed_towards(me: Robot, velocity: Point, others: Sequence[Mover], skip: int, mates: int) -> Point:
     """Return the velocity ahead and to the left, slowed down towards every robot that it would run into.
 
     Of two robots that drive at each other each lets the other be the faster one: neither drives on
     faster than leaves room to brake, and an oncoming robot uses that room up.
 
     Args:
-        now: place and heading of the robot, and the velocity ahead and to the left that it is to have.
-        others: the robots, as of :func:`~robobt.motion.arrival.movers`.
+        me: the robot.
+        velocity: ahead and to the left, that it is to have [m/s].
+        others: the robots.
         skip: the row among them of the robot itself, -1 for none.
         mates: how many of them, the first ones, are of its own team.
     """
-    x, y, ahead, left = now[0], now[1], now[3], now[4]
-    c, s = cos(now[2]), sin(now[2])
+    ahead, left = velocity
+    c, s = cos(me.heading), sin(me.heading)
     vx, vy = c * ahead - s * left, s * ahead + c * left
     changed = False
-    for i in range(len(others)):
-        gap, nx, ny = _meeting(x, y, vx, vy, others, i)
+    for i, other in enumerate(others):
+        gap, nx, ny = _meeting(me, vx, vy, other)
         if i == skip or gap < 0.0:
             continue
-        coming = max(0.0, -(nx * others[i, VX] + ny * others[i, VY]))
+        coming = max(0.0, -(nx * other.vx + ny * other.vy))
         touching = _GENTLY if i < mates else _CLOSING
         most = max(0.0, sqrt(touching * touching + 2.0 * _BRAKING * gap) - coming)
         towards = nx * vx + ny * vy
@@ -114,18 +120,16 @@ def slowed_towards(now: FloatArray, others: FloatArray, skip: int, mates: int) -
 
 
 @compiled
-def _meeting(
-    x: float, y: float, vx: float, vy: float, others: FloatArray, i: int
-) -> tuple[float, float, float]:
+def _meeting(me: Robot, vx: float, vy: float, other: Mover) -> tuple[float, float, float]:
     """Return the gap to a robot that would be hit and the direction to it; -1 where it passes by."""
-    dx, dy = others[i, X] - x, others[i, Y] - y
+    dx, dy = other.x - me.x, other.y - me.y
     centres = hypot(dx, dy)
     gap = max(0.0, centres - 2.0 * ROBOT_RADIUS)
     if gap > _LOOK or centres == 0.0:
         return -1.0, 0.0, 0.0
     nx, ny = dx / centres, dy / centres
-    across = abs(nx * (vy - others[i, VY]) - ny * (vx - others[i, VX]))
-    closing = nx * (vx - others[i, VX]) + ny * (vy - others[i, VY])
+    across = abs(nx * (vy - other.vy) - ny * (vx - other.vx))
+    closing = nx * (vx - other.vx) + ny * (vy - other.vy)
     if closing <= 0.0 or across * gap > closing * 3.0 * ROBOT_RADIUS:
         return -1.0, 0.0, 0.0
     return gap, nx, ny

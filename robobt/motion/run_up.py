@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
-from robobt.motion.pilot import command, travel_time, turn_rate
-from robobt.motion.speeds import approach_speed
+from robobt.motion.pilot import approach_speed, command, travel_time, turn_rate
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, RobotState

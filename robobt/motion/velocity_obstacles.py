@@ -10,30 +10,15 @@ cost of a velocity is that of van den Berg, Lin and Manocha, "Reciprocal velocit
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, hypot, inf, pi, sin
+from typing import Protocol
 
-import numpy as np
-
-from robobt.motion.arrival import VX, VY, X, Y
-from robobt.motion.scene import (
-    AREA_GAP,
-    BALL_VX,
-    BALL_VY,
-    BALL_X,
-    BALL_Y,
-    GOALKEEPER,
-    IN_PLAY,
-    PERIOD,
-    PLACING,
-    THEIR_GAP,
-    from_ball,
-    is_open,
-    row_of,
-)
-from robobt.motion.speeds import BRAKING, FORWARD, LATERAL, LATERAL_BRAKING, REACTION
+from robobt.motion.scene import AREA_GAP, from_ball, is_open, row_of
 from robobt.world.avoiding import MARGIN, free_time
-from robobt.world.compiled import compiled
-from robobt.world.geometry import FloatArray, Point
+from robobt.world.compiled import compiled, record_dtype, records
+from robobt.world.geometry import Point
+from robobt.world.records import Limits, Mover, Robot, Scene, Trip
 from robobt.world.state import ROBOT_RADIUS
 
 MOVES = 0.2
@@ -58,20 +43,26 @@ _SOON = 0.05
 """Sooner than this is all the same [s]."""
 
 
-@compiled
-def is_moving(robots: FloatArray, i: int) -> bool:
-    """Return whether robot ``i`` is evaded, and not gone round."""
-    vx, vy = robots[i, VX], robots[i, VY]
-    return bool(vx * vx + vy * vy > MOVES * MOVES)
+class _Obstacle(Protocol):
+    """Place and velocity from the robot [m, m/s], and how near its centre may come [m]."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    apart: float
+
+
+_OBSTACLE = record_dtype(_Obstacle)
 
 
 @compiled
 def clear_velocity(
-    task: FloatArray,
-    scene: FloatArray,
-    robots: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers: Sequence[Mover],
+    own: Limits,
+    given: Limits,
     wanted: Point,
     goal: Point,
 ) -> Point:
@@ -81,48 +72,32 @@ def clear_velocity(
     the robot could not stop before a line that it may not cross are left out.
 
     Args:
-        task: as of :func:`~robobt.motion.scene.task_of`.
-        scene: as of :func:`~robobt.motion.scene.scene_of`.
-        robots: as of :func:`~robobt.motion.arrival.movers_of`.
-        own: what the robot can do, as of :func:`~robobt.motion.speeds.numbers`.
+        trip: the robot.
+        scene: the scene.
+        movers: everybody, the own team first.
+        own: what the robot can do.
         given: how it is driven.
         wanted: the velocity in field coordinates [m/s].
         goal: where it is to get in the end [m].
     """
-    x, y, now = task[0], task[1], (task[3], task[4])
+    me = trip.me
+    x, y = me.x, me.y
     vx, vy = wanted
     speed = hypot(vx, vy)
     if speed < _SLOW:
         return wanted
     needed = min(_HORIZON, hypot(goal[0] - x, goal[1] - y) / speed)
-    skip = row_of(task, scene)
-    if not _any_moves(robots, skip, x, y, speed):
+    if not _any_moves(movers, row_of(trip, scene, movers), x, y, speed):
         return wanted
-    near, count = np.empty((len(robots) + 1, 5)), 0
-    for i in range(len(robots)):
-        if i != skip and _is_near(robots, i, x, y, speed):
-            apart = MOVES_APART if is_moving(robots, i) else STANDS_APART
-            near[count] = robots[i, X] - x, robots[i, Y] - y, robots[i, VX], robots[i, VY], apart
-            count += 1
-    apart = from_ball(task, scene)
-    if apart > 0.0:
-        near[count] = scene[BALL_X] - x, scene[BALL_Y] - y, scene[BALL_VX], scene[BALL_VY], apart
-        count += 1
-    near = near[:count]
-    for one in near:
-        gx, gy = goal[0] - x - one[0], goal[1] - y - one[1]
-        one[4] = min(one[4], 0.999 * min(hypot(gx, gy), hypot(gx - needed * one[2], gy - needed * one[3])))
-    faster = min(given[FORWARD], given[LATERAL])
-    slower = min(given[BRAKING], given[LATERAL_BRAKING])
-    lag = own[REACTION] + 0.5 * scene[PERIOD]
-    if _free_for(near, now, wanted, faster, slower, lag) >= needed:
+    near = _obstacles(trip, scene, movers, speed, needed, goal)
+    faster = min(given.acceleration, given.lateral_acceleration)
+    slower = min(given.braking, given.lateral_braking)
+    lag = own.reaction + 0.5 * scene.period
+    if _free_for(near, me, wanted, faster, slower, lag) >= needed:
         return wanted
-    goalkeeper, placing = task[GOALKEEPER] > 0.0, task[PLACING] > 0.0
-    bounded = is_open(scene, x, y, goalkeeper, placing)
-    if scene[IN_PLAY] == 0.0:
-        # What is open leaves out a little of their area's gap, which is the rules' in a restart.
-        scene = scene.copy()
-        scene[THEIR_GAP] += 2.0 * AREA_GAP
+    bounded = is_open(trip, scene, x, y, scene.their_gap)
+    # What is open leaves out a little of their area's gap, which is the rules' in a restart.
+    their_gap = scene.their_gap + 2.0 * AREA_GAP if scene.in_play == 0.0 else scene.their_gap
     best, least = wanted, inf
     for way in range(_WAYS + _SLOW_WAYS + 1):
         share, angle = 0.0, 0.0
@@ -132,50 +107,88 @@ def clear_velocity(
             share, angle = 0.5, 2.0 * pi * (way - _WAYS) / _SLOW_WAYS
         ahead, aside = share * cos(angle), share * sin(angle)
         tried = vx * ahead - vy * aside, vy * ahead + vx * aside
-        free = max(_SOON, _free_for(near, now, tried, faster, slower, lag))
+        free = max(_SOON, _free_for(near, me, tried, faster, slower, lag))
         cost = hypot(1.0 - ahead, aside) + _PENALTY * max(0.0, 1.0 / free - 1.0 / needed)
         if cost >= least:
             continue
         stops = lag + 0.5 * share * speed / slower
         px, py = x + stops * tried[0], y + stops * tried[1]
-        if way == 0 or not bounded or is_open(scene, px, py, goalkeeper, placing):
+        if way == 0 or not bounded or is_open(trip, scene, px, py, their_gap):
             best, least = tried, cost
     return best
 
 
 @compiled
-def _any_moves(robots: FloatArray, skip: int, x: float, y: float, speed: float) -> bool:
+def is_moving(mover: Mover) -> bool:
+    """Return whether a robot is evaded, and not gone round."""
+    return mover.vx * mover.vx + mover.vy * mover.vy > MOVES * MOVES
+
+
+@compiled
+def _any_moves(movers: Sequence[Mover], skip: int, x: float, y: float, speed: float) -> bool:
     """Return whether anybody near moves: most often nobody does."""
-    for i in range(len(robots)):
-        if is_moving(robots, i) and i != skip and _is_near(robots, i, x, y, speed):
+    for i, mover in enumerate(movers):
+        if is_moving(mover) and i != skip and _is_near(mover, x, y, speed):
             return True
     return False
 
 
 @compiled
-def _is_near(robots: FloatArray, i: int, x: float, y: float, speed: float) -> bool:
-    """Return whether a robot at (x, y) that drives so fast can meet robot ``i`` soon enough to matter."""
-    reach = MOVES_APART + (speed + hypot(robots[i, VX], robots[i, VY])) * _HORIZON
-    return hypot(robots[i, X] - x, robots[i, Y] - y) < reach
+def _is_near(mover: Mover, x: float, y: float, speed: float) -> bool:
+    """Return whether a robot at (x, y) that drives so fast can meet this one soon enough to matter."""
+    reach = MOVES_APART + (speed + hypot(mover.vx, mover.vy)) * _HORIZON
+    return hypot(mover.x - x, mover.y - y) < reach
 
 
 @compiled
-def _free_for(near: FloatArray, now: Point, then: Point, faster: float, slower: float, lag: float) -> float:
-    """Return how soon the robot, changing from the velocity ``now`` to ``then``, is too near to another [s].
+def _obstacles(
+    trip: Trip, scene: Scene, movers: Sequence[Mover], speed: float, needed: float, goal: Point
+) -> Sequence[_Obstacle]:
+    """Return who is near, and the ball where it is to be avoided; none reaches to where the robot is to get.
 
-    ``near`` are place and velocity of the others from the robot, and how near each may come. While it changes
-    it is taken to drive with the mean of both.
+    ``speed`` is that wanted [m/s], ``needed`` how long a velocity has to be free [s].
+    """
+    x, y, skip = trip.me.x, trip.me.y, row_of(trip, scene, movers)
+    near: Sequence[_Obstacle] = records(len(movers) + 1, _OBSTACLE)
+    count = 0
+    for i, mover in enumerate(movers):
+        if i != skip and _is_near(mover, x, y, speed):
+            one = near[count]
+            one.x, one.y, one.vx, one.vy = mover.x - x, mover.y - y, mover.vx, mover.vy
+            one.apart = MOVES_APART if is_moving(mover) else STANDS_APART
+            count += 1
+    apart = from_ball(trip, scene)
+    if apart > 0.0:
+        one, ball = near[count], scene.ball
+        one.x, one.y, one.vx, one.vy, one.apart = ball.x - x, ball.y - y, ball.vx, ball.vy, apart
+        count += 1
+    near = near[:count]
+    for one in near:
+        gx, gy = goal[0] - x - one.x, goal[1] - y - one.y
+        one.apart = min(
+            one.apart, 0.999 * min(hypot(gx, gy), hypot(gx - needed * one.vx, gy - needed * one.vy))
+        )
+    return near
+
+
+@compiled
+def _free_for(
+    near: Sequence[_Obstacle], me: Robot, then: Point, faster: float, slower: float, lag: float
+) -> float:
+    """Return how soon the robot, changing its velocity to ``then``, is too near to another [s].
+
+    While it changes it is taken to drive with the mean of both.
     """
     vx, vy = then
-    rate = faster if vx * vx + vy * vy > now[0] * now[0] + now[1] * now[1] else slower
-    changes = lag + hypot(vx - now[0], vy - now[1]) / rate
-    mx, my = 0.5 * (vx + now[0]), 0.5 * (vy + now[1])
+    rate = faster if vx * vx + vy * vy > me.vx * me.vx + me.vy * me.vy else slower
+    changes = lag + hypot(vx - me.vx, vy - me.vy) / rate
+    mx, my = 0.5 * (vx + me.vx), 0.5 * (vy + me.vy)
     free = inf
-    for i in range(len(near)):
-        ox, oy, wx, wy, apart = near[i]
-        meets = free_time(ox, oy, wx - mx, wy - my, apart)
+    for other in near:
+        ox, oy, wx, wy = other.x, other.y, other.vx, other.vy
+        meets = free_time(ox, oy, wx - mx, wy - my, other.apart)
         if meets >= changes:
             ox, oy = ox + changes * (wx - mx), oy + changes * (wy - my)
-            meets = changes + free_time(ox, oy, wx - vx, wy - vy, apart)
+            meets = changes + free_time(ox, oy, wx - vx, wy - vy, other.apart)
         free = min(free, meets)
     return free

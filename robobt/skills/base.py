@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from math import atan2, radians
 from typing import TypeVar, dataclass_transform
 
-from robobt.motion.path_planner import BALL_GAP, travel
+from robobt.motion.path_planner import travel
 from robobt.motion.pilot import roughly
+from robobt.motion.scene import BALL_GAP
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
 from robobt.world.geometry import Point, direction, distance

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import field
 from math import hypot, radians
 
-from robobt.motion.path_planner import BALL_GAP, allowed_target, travel
+from robobt.motion.path_planner import allowed_target, travel
 from robobt.motion.pilot import roughly
+from robobt.motion.scene import BALL_GAP
 from robobt.skills.ball.learned_control import PolicyError
 from robobt.skills.base import KICKER_GAP, skill
 from robobt.skills.driving import DrivingSkill

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from robobt.motion.path_planner import BALL_GAP, TARGETS, allowed_target, next_waypoint
+from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint
+from robobt.motion.scene import BALL_GAP
 from robobt.skills.ball.learned_control import PacedControl
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.command import RobotCommand

@@ -14,6 +14,7 @@ from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings, app
 from robobt.world.ball_model import BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
+from robobt.world.records import MOVER_SIZE
 from robobt.world.state import Frame
 
 
@@ -59,7 +60,7 @@ class Plan:
         next_pass_time: when it was chosen last [s].
         meant: when each player was last the receiver of that pass, and where [s, m].
         own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
-        own_movers, their_movers: all robots of either team as :func:`robobt.motion.arrival.movers`, opponents
+        own_movers, their_movers: all robots of either team as :func:`robobt.world.records.movers`, opponents
             with no more speed and acceleration than they are taken to use.
         meetings: when and where each robot can meet the ball, as :func:`robobt.motion.arrival.meetings`.
         attacker_since: since when the attacker is the one it is [s].
@@ -88,8 +89,8 @@ class Plan:
     meant: dict[int, tuple[float, Point]] = field(default_factory=dict)
     own_times: dict[int, float] = field(default_factory=dict)
     their_times: dict[int, float] = field(default_factory=dict)
-    own_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
-    their_movers: FloatArray = field(default_factory=lambda: np.empty((0, 7)))
+    own_movers: FloatArray = field(default_factory=lambda: np.empty((0, MOVER_SIZE)))
+    their_movers: FloatArray = field(default_factory=lambda: np.empty((0, MOVER_SIZE)))
     meetings: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
     attacker_since: float = -10.0
     ours: bool = False

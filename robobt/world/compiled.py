@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from math import inf
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, get_type_hints
 
 import numpy as np
 from numba import njit
@@ -114,6 +114,18 @@ def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
     """
     kinds = (bool, int, float, int | None, float | None)
     return np.dtype([(name, "f8") for name, field in model.model_fields.items() if field.annotation in kinds])
+
+
+def record_dtype(kind: type, **inner: np.dtype[np.record]) -> np.dtype[np.record]:
+    """Return the record with a class's annotated fields: numbers, but for the records named in ``inner``."""
+    fields = [(name, inner.get(name, np.dtype(np.float64))) for name in get_type_hints(kind)]
+    return cast("np.dtype[np.record]", np.dtype((np.record, fields)))
+
+
+@compilable
+def records(count: int, dtype: np.dtype[np.record]) -> Any:
+    """Return so many records, not filled in."""
+    return np.empty(count, dtype=dtype)
 
 
 def numbers_of(settings: BaseModel) -> FloatArray:

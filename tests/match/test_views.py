@@ -7,11 +7,11 @@ from collections.abc import Callable
 import pytest
 
 from robobt.match.views import KeptView
-from robobt.motion.arrival import movers_of
 from robobt.world import Frame, RobotState
 from robobt.world.ball_model import BallModel
 from robobt.world.game import GameState, TeamStatus
 from robobt.world.limits import RobotLimits
+from robobt.world.records import movers_of
 from tests.skills.fixed_world import frame, robot
 
 

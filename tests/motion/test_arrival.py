@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import arrival_time, axis_time, meetings, movers, out_of_reach
+from robobt.motion.arrival import arrival_time, axis_time, meetings, out_of_reach, time_to
 from robobt.motion.pilot import drive, travel_time
 from robobt.world import RobotLimits, RobotState
+from robobt.world.records import mover_records, movers
 from tests.skills.fixed_world import moved, robot
 
 LIMITS = RobotLimits()
@@ -88,8 +89,8 @@ def test_a_ball_that_leaves_the_field_first_is_met_outside() -> None:
 def test_what_is_out_of_reach_by_a_time_is_reached_later(
     x: float, y: float, vx: float, vy: float, time: float
 ) -> None:
-    one = movers([robot(velocity=(vx, vy, 0.0))])[0]
+    (one,) = mover_records(movers([robot(velocity=(vx, vy, 0.0))]))
     fastest = max(LIMITS.max_speed, hypot(vx, vy))
     if out_of_reach(one, x, y, fastest, time):
-        assert arrival_time(one, x, y, 0.1115) > time
+        assert time_to(one, x, y, 0.1115) > time
     assert out_of_reach(one, 12.0, 0.0, fastest, time)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from math import hypot
 
-import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import movers
 from robobt.motion.give_way import slowed_in_play, slowed_towards
 from robobt.motion.path_planner import travel
 from robobt.world import RobotCommand, RobotState
 from robobt.world.game import Team
+from robobt.world.records import ROBOT, Robot, mover_records, movers, robot_of
 from tests.skills.fixed_world import frame, moved, robot
 from tests.skills.refereed import OPEN, STOP, free_kick
 
@@ -20,9 +19,12 @@ FULL = RobotCommand(3.0, 0.0, 0.0)
 speed = st.floats(-3.0, 3.0)
 
 
+def record(me: RobotState) -> Robot:
+    return robot_of(me).view(ROBOT)[0]
+
+
 def order(me: RobotState, *others: RobotState, ahead: float = 3.0, left: float = 0.0) -> RobotCommand:
-    now = np.array((me.x, me.y, me.heading, ahead, left), dtype=np.float64)
-    return RobotCommand(*slowed_towards(now, movers(others), -1, 0))
+    return RobotCommand(*slowed_towards(record(me), (ahead, left), mover_records(movers(others)), -1, 0))
 
 
 def test_a_robot_brakes_before_one_that_stands_in_its_way() -> None:
@@ -64,8 +66,7 @@ def test_only_while_the_ball_is_not_in_play() -> None:
 
 
 def in_play(me: RobotState, other: RobotState, ahead: float = 3.0, left: float = 0.0) -> RobotCommand:
-    now = np.array((me.x, me.y, me.heading, ahead, left), dtype=np.float64)
-    return RobotCommand(*slowed_in_play(now, movers([other]), 4.0))
+    return RobotCommand(*slowed_in_play(record(me), (ahead, left), mover_records(movers([other])), 4.0))
 
 
 def test_in_play_a_robot_touches_one_that_stands_slower_than_a_crash_is() -> None:

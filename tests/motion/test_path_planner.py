@@ -8,8 +8,9 @@ from math import hypot, pi
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba.core.dispatcher import Dispatcher
 
-from robobt.motion import detour, path_planner, scene, velocity_obstacles, way
+from robobt.motion import arrival, give_way, path_planner, pilot, scene, velocity_obstacles
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
 from robobt.world import (
     DIVISION_A,
@@ -262,35 +263,7 @@ def test_whoever_places_the_ball_may_enter_both_defence_areas(target: Point) -> 
     assert next_waypoint(seen, me, target, placing=True)[0] == target
 
 
-COMPILED = (
-    (detour, "first_hit"),
-    (detour, "detour"),
-    (path_planner, "travel_numbers"),
-    (scene, "_away_from_ball"),
-    (scene, "_expelled"),
-    (velocity_obstacles, "_any_moves"),
-    (velocity_obstacles, "_free_for"),
-    (velocity_obstacles, "_is_near"),
-    (velocity_obstacles, "from_ball"),
-    (velocity_obstacles, "is_moving"),
-    (velocity_obstacles, "is_open"),
-    (velocity_obstacles, "row_of"),
-    (way, "_obstacles"),
-    (way, "allowed_numbers"),
-    (way, "around_area"),
-    (way, "clear_velocity"),
-    (way, "command_numbers"),
-    (way, "detour"),
-    (way, "first_hit"),
-    (way, "from_ball"),
-    (way, "is_moving"),
-    (way, "is_open"),
-    (way, "row_of"),
-    (way, "slowed_towards"),
-    (way, "turn_rate_numbers"),
-    (way, "wanted_velocity"),
-    (way, "waypoint_numbers"),
-)
+MODULES = (arrival, give_way, path_planner, pilot, scene, velocity_obstacles)
 
 
 def orders(seed: int) -> list[float]:
@@ -312,6 +285,8 @@ def orders(seed: int) -> list[float]:
 
 def test_compiled_code_drives_as_python_does(monkeypatch: pytest.MonkeyPatch) -> None:
     compiled = orders(1)
-    for module, name in COMPILED:
-        monkeypatch.setattr(module, name, getattr(module, name).py_func)
+    for module in MODULES:
+        for name, value in vars(module).items():
+            if isinstance(value, Dispatcher):
+                monkeypatch.setattr(module, name, value.py_func)
     assert orders(1) == pytest.approx(compiled, abs=1e-9)

@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 
 from robobt.motion.pilot import (
     ROBOBULLS_LIMITS,
+    along,
+    approach_speed,
     command,
     drive,
     roughly,
     travel_time,
     turn_rate,
 )
-from robobt.motion.speeds import along, approach_speed
 from robobt.sim import preset
 from robobt.sim.settings import RealismSettings
 from robobt.skills import GoToPose

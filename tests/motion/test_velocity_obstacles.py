@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import random
-from math import cos, hypot, pi, sin
+from dataclasses import replace
+from math import cos, hypot, inf, pi, sin
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import movers_of
 from robobt.motion.path_planner import travel
-from robobt.motion.scene import scene_of, task_of
-from robobt.motion.speeds import numbers
+from robobt.motion.scene import scene_of, trip_of
 from robobt.motion.velocity_obstacles import MOVES, clear_velocity
 from robobt.world import ROBOT_RADIUS, Frame, RobotLimits, RobotState
 from robobt.world.avoiding import AHEAD, free_time
 from robobt.world.geometry import Point
+from robobt.world.records import LIMITS, SCENE, TRIP, limits_of, mover_records, movers_of
 from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import frame, moved, robot
 from tests.skills.refereed import STOP
@@ -26,6 +25,12 @@ PERIOD = 1 / 60
 FAR_BALL = (0.0, 2.9)
 place, speed = st.floats(-2, 2), st.floats(-3, 3)
 places = st.lists(st.tuples(place, place, speed, speed), max_size=8)
+
+
+def clear(seen: Frame, me: RobotState, wanted: Point, goal: Point) -> Point:
+    limits, trip = limits_of(me.limits).view(LIMITS)[0], trip_of(me, goal).view(TRIP)[0]
+    scene, movers = scene_of(seen).view(SCENE)[0], mover_records(movers_of(seen))
+    return clear_velocity(trip, scene, movers, limits, limits, wanted, goal)
 
 
 def cleared(
@@ -42,8 +47,7 @@ def cleared(
     )
     me = RobotState(me.id, me.x, mirror * me.y, 0.0, me.vx, mirror * me.vy)
     seen, goal = frame(me, (0.0, 0.0), opponents=opponents), (goal[0], mirror * goal[1])
-    limits, wanted = numbers(me.limits), (wanted[0], mirror * wanted[1])
-    vx, vy = clear_velocity(task_of(me, goal), scene_of(seen), movers_of(seen), limits, limits, wanted, goal)
+    vx, vy = clear(seen, me, (wanted[0], mirror * wanted[1]), goal)
     return vx, mirror * vy
 
 
@@ -87,8 +91,7 @@ def test_a_ball_that_it_may_touch_is_nothing_to_evade() -> None:
         me = robot(velocity=(5 * x, 5 * y, 0.0))
         away = robot(-2 * x, -2 * y, velocity=(-3 * x, -3 * y, 0.0))
         seen, goal, wanted = frame(me, (x, y), opponents=(away,)), (1.2 * x, 1.2 * y), (6.0 * x, 6.0 * y)
-        task, limits = task_of(me, goal), numbers(me.limits)
-        assert clear_velocity(task, scene_of(seen), movers_of(seen), limits, limits, wanted, goal) == wanted
+        assert clear(seen, me, wanted, goal) == wanted
 
 
 def test_one_that_crosses_is_evaded_the_more_the_sooner_it_is_met() -> None:
@@ -106,8 +109,7 @@ def test_a_robot_that_turns_slowly_has_to_evade_sooner() -> None:
     moving = robot(-2.0, -1.5, number=1, velocity=(1.0, 0.0, 0.0))
     seen, goal, found = frame(me, FAR_BALL, opponents=(other, moving)), (0.5, 2.0), []
     for limits in (RobotLimits(), RobotLimits(acceleration=1.0, braking=1.0)):
-        known, task = numbers(limits), task_of(me, goal)
-        found.append(clear_velocity(task, scene_of(seen), movers_of(seen), known, known, (0.0, 2.0), goal))
+        found.append(clear(seen, replace(me, limits=limits), (0.0, 2.0), goal))
     assert found[0] == (0.0, 2.0)
     assert found[1] != (0.0, 2.0)
 
@@ -141,7 +143,7 @@ def test_in_a_stop_it_evades_nobody_into_the_circle_round_the_ball() -> None:
 
 def all_driven(starts: list[Point], goals: list[Point], most: float = 5.0) -> tuple[float, float]:
     """Robots of one team, each on its way: the least gap between two [m], and when the last was there [s]."""
-    robots, time, gap = [robot(*start, number=i) for i, start in enumerate(starts)], 0.0, np.inf
+    robots, time, gap = [robot(*start, number=i) for i, start in enumerate(starts)], 0.0, inf
     while time < most and any(
         hypot(r.x - x, r.y - y) > 0.02 for r, (x, y) in zip(robots, goals, strict=True)
     ):

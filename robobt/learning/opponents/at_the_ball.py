@@ -8,6 +8,7 @@ carrying the ball (straight at the other goal, where the play looks for the best
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, hypot, inf, pi, sin
 
 import numpy as np
@@ -16,31 +17,8 @@ from robobt.motion.arrival import meetings
 from robobt.motion.catch import MOUTH
 from robobt.motion.dribbling import dribbling_limits
 from robobt.motion.give_way import slowed_in_play
-from robobt.motion.pilot import roughly
-from robobt.motion.scene import (
-    AVOID_ROBOTS,
-    BALL_GAP,
-    DEPTH,
-    FINAL_SPEED,
-    HALF_LENGTH,
-    HALF_WIDTH,
-    HEADING,
-    PERIOD,
-    TARGET_X,
-    TARGET_Y,
-)
-from robobt.motion.speeds import (
-    BRAKING,
-    FORWARD,
-    REACTION,
-    TOP,
-    approach_speed,
-    command_numbers,
-    numbers,
-    stop_time,
-    turn_rate_numbers,
-)
-from robobt.motion.way import travel_numbers, waypoint_numbers
+from robobt.motion.path_planner import travel_law, waypoint_law
+from robobt.motion.pilot import approach_speed, command_law, roughly, stop_time, turn_law
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE, beside
 from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.let_go import FASTER
@@ -52,6 +30,17 @@ from robobt.world.ball_model import DEFAULT_BALL, way_in
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.records import (
+    LIMITS,
+    MOVER_SIZE,
+    Limits,
+    Mover,
+    Robot,
+    Scene,
+    Trip,
+    limits_of,
+    mover_records,
+)
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 HELD_SINCE, HELD_SEEN, TAKEN_X, TAKEN_Y, HAD, SETTLED, WAY, WAY_SINCE, AT_IT = range(9)
@@ -84,17 +73,16 @@ _SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
 def with_the_ball(limits: RobotLimits) -> FloatArray:
     """Return the limits for carrying it and for braking with it, (2, 9)."""
     braking = dribbling_limits(max_acceleration=SettleBall.share * limits.hold_acceleration)
-    return np.array([numbers(dribbling_limits(_CARRYING)), numbers(braking)])
+    return np.array([limits_of(dribbling_limits(_CARRYING)), limits_of(braking)])
 
 
 @compiled
 def play_the_ball(
-    task: FloatArray,
-    scene: FloatArray,
-    movers: FloatArray,
-    mates: int,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers_: FloatArray,
+    own: Limits,
+    given: Limits,
     carrying: FloatArray,
     ball: FloatArray,
     rolling: float,
@@ -107,11 +95,10 @@ def play_the_ball(
     """Decide a tick of the robot that goes for the ball.
 
     Args:
-        task: as of :func:`~robobt.motion.scene.task_of`, with the robot's state; changed.
-        scene: as of :func:`~robobt.motion.scene.scene_of`.
-        movers: as of :func:`~robobt.motion.arrival.movers_of`.
-        mates: how many of them, the first, are the robot's team.
-        own: what the robot can do, as of :func:`~robobt.motion.speeds.numbers`.
+        trip: with the robot's state; changed.
+        scene: what a plan depends on.
+        movers_: everybody, the robot's team first, as of :func:`~robobt.world.records.movers`.
+        own: what the robot can do.
         given: how it is to be driven.
         carrying: of :func:`with_the_ball`.
         ball: x, y, vx, vy as its team sees it.
@@ -122,39 +109,39 @@ def play_the_ball(
         memory: ``MEMORY`` of the robot; changed.
         command: (>= 6,) to be filled.
     """
-    state, speed = task[:TARGET_X], hypot(ball[2], ball[3])
+    me, movers, speed = trip.me, mover_records(movers_), hypot(ball[2], ball[3])
     command[:] = 0.0
-    if _kicks_loose(state, has and disputed, time, memory):
+    if _kicks_loose(me, has and disputed, time, memory):
         command[0], command[3], command[4] = _FOLLOW, _LOOSE, 1.0
     elif _carried_far(ball, speed, has and not disputed, memory):
-        along = cos(state[2]) * ball[2] + sin(state[2]) * ball[3]
-        command[3] = max(0.0, along) + FASTER if ball[0] > 0.0 or cos(state[2]) > 0.0 else 0.0
+        along = cos(me.heading) * ball[2] + sin(me.heading) * ball[3]
+        command[3] = max(0.0, along) + FASTER if ball[0] > 0.0 or cos(me.heading) > 0.0 else 0.0
     elif has and _settles(speed, time, memory):
-        limits, period = carrying[BRAKE], scene[PERIOD]
-        omega = turn_rate_numbers(state, state[2], own, limits, period)
-        command[0], command[1], command[2] = command_numbers(
-            state, 0.0, 0.0, omega, own, limits, True, period
+        limits, period = carrying.view(LIMITS)[BRAKE, 0], scene.period
+        omega = turn_law(me, me.heading, own, limits, period)
+        command[0], command[1], command[2] = command_law(
+            me, (0.0, 0.0), omega, own, limits, limits.max_speed, True, period
         )
         command[5] = 1.0
     elif has:
-        _carry(task, scene, movers, own, carrying, time, memory, command)
-    elif speed >= _ROLLS and _comes(state, ball, speed):
-        _meet(task, scene, movers, own, given, ball, speed, rolling, command)
+        _carry(trip, scene, movers, own, carrying, time, memory, command)
+    elif speed >= _ROLLS and _comes(me, ball, speed):
+        _meet(trip, scene, movers, own, given, ball, speed, rolling, command)
     else:
-        _get(task, scene, movers, own, given, ball, speed, memory, command)
+        _get(trip, scene, movers, own, given, ball, speed, memory, command)
     if command[0] != 0.0 or command[1] != 0.0:
-        now = np.array((state[0], state[1], state[2], command[0], command[1]))
-        command[0], command[1] = slowed_in_play(now, movers[mates:], _BRAKES * own[BRAKING])
+        velocity, theirs = (command[0], command[1]), movers[int(scene.mates) :]
+        command[0], command[1] = slowed_in_play(me, velocity, theirs, _BRAKES * own.braking)
 
 
 @compiled
-def _kicks_loose(state: FloatArray, disputed: bool, time: float, memory: FloatArray) -> bool:
+def _kicks_loose(me: Robot, disputed: bool, time: float, memory: FloatArray) -> bool:
     if not disputed:
         return False
     if not 0.0 <= time - memory[HELD_SEEN] < _BROKEN:
         memory[HELD_SINCE] = time
     memory[HELD_SEEN] = time
-    return bool(time - memory[HELD_SINCE] >= _PATIENCE * (1.0 if cos(state[2]) > 0.0 else 2.0))
+    return bool(time - memory[HELD_SINCE] >= _PATIENCE * (1.0 if cos(me.heading) > 0.0 else 2.0))
 
 
 @compiled
@@ -178,21 +165,21 @@ def _settles(speed: float, time: float, memory: FloatArray) -> bool:
 
 @compiled
 def _carry(
-    task: FloatArray,
-    scene: FloatArray,
-    movers: FloatArray,
-    own: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers: Sequence[Mover],
+    own: Limits,
     carrying: FloatArray,
     time: float,
     memory: FloatArray,
     command: FloatArray,
 ) -> None:
     """Do what ``DribbleTo`` does, to before the other goal."""
-    state, limits, period = task[:TARGET_X], carrying[DRIBBLE], scene[PERIOD]
-    task[TARGET_X], task[TARGET_Y] = scene[HALF_LENGTH] - scene[DEPTH] - _BEFORE_AREA, 0.0
-    task[BALL_GAP], task[AVOID_ROBOTS] = -1.0, 1.0
-    x, y, there = waypoint_numbers(task, scene, movers, own, True)
-    dx, dy = x - state[0], y - state[1]
+    me, limits, period = trip.me, carrying.view(LIMITS)[DRIBBLE, 0], scene.period
+    trip.x, trip.y = scene.half_length - scene.area_depth - _BEFORE_AREA, 0.0
+    trip.ball_gap, trip.avoids_robots = -1.0, 1.0
+    x, y, there = waypoint_law(trip, (trip.x, trip.y), scene, movers, own, True)
+    dx, dy = x - me.x, y - me.y
     way, gap = atan2(dy, dx), hypot(dx, dy)
     if abs(wrap_angle(way - memory[WAY])) > _OTHER_WAY and 0.0 <= time - memory[WAY_SINCE] < _STEADY:
         way = memory[WAY]
@@ -201,35 +188,37 @@ def _carry(
     vx = vy = 0.0
     if gap > 0.0:
         ux, uy = dx / gap, dy / gap
-        there, faster = min(there, limits[TOP]), limits[FORWARD]
+        there, faster = min(there, limits.max_speed), limits.acceleration
         speed = approach_speed(
             gap + there * there / (2.0 * faster),
-            ux * state[3] + uy * state[4],
-            limits[TOP],
+            ux * me.vx + uy * me.vy,
+            limits.max_speed,
             faster,
             faster,
-            period + 2.0 * own[REACTION],
+            period + 2.0 * own.reaction,
         )
-        speed *= max(0.0, cos(wrap_angle(way - state[2]))) ** 2
+        speed *= max(0.0, cos(wrap_angle(way - me.heading))) ** 2
         vx, vy = ux * speed, uy * speed
-    omega = turn_rate_numbers(state, way, own, limits, period)
-    command[0], command[1], command[2] = command_numbers(state, vx, vy, omega, own, limits, True, period)
+    omega = turn_law(me, way, own, limits, period)
+    command[0], command[1], command[2] = command_law(
+        me, (vx, vy), omega, own, limits, limits.max_speed, True, period
+    )
     command[5] = 1.0
 
 
 @compiled
-def _comes(state: FloatArray, ball: FloatArray, speed: float) -> bool:
-    ahead = (state[0] - ball[0]) * ball[2] + (state[1] - ball[1]) * ball[3]
+def _comes(me: Robot, ball: FloatArray, speed: float) -> bool:
+    ahead = (me.x - ball[0]) * ball[2] + (me.y - ball[1]) * ball[3]
     return bool(ahead >= _PASSED * speed)
 
 
 @compiled
 def _meet(
-    task: FloatArray,
-    scene: FloatArray,
-    movers: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers: Sequence[Mover],
+    own: Limits,
+    given: Limits,
     ball: FloatArray,
     speed: float,
     rolling: float,
@@ -237,38 +226,40 @@ def _meet(
 ) -> None:
     """Get onto the way of a ball that comes, facing it: here if the robot is near, else where it is first."""
     ux, uy = ball[2] / speed, ball[3] / speed
-    dx, dy = task[0] - ball[0], task[1] - ball[1]
+    dx, dy = trip.me.x - ball[0], trip.me.y - ball[1]
     ahead = dx * ux + dy * uy
     if abs(dx * uy - dy * ux) < _ON_LINE and ahead > MOUTH:
         x, y = ball[0] + ahead * ux, ball[1] + ahead * uy
     else:
-        me = np.array([[task[0], task[1], task[3], task[4], given[TOP], given[FORWARD], given[BRAKING]]])
-        met = meetings(me, ball, rolling, _SLIDE, _ROLL, scene[HALF_LENGTH], scene[HALF_WIDTH])
+        me, one = trip.me, np.zeros((1, MOVER_SIZE))
+        one[0, :4] = me.x, me.y, me.vx, me.vy
+        one[0, 4:7] = given.max_speed, given.acceleration, given.braking
+        met = meetings(one, ball, rolling, _SLIDE, _ROLL, scene.half_length, scene.half_width)
         x, y = met[0, 1] + MOUTH * ux, met[0, 2] + MOUTH * uy
-    task[TARGET_X], task[TARGET_Y], task[HEADING] = x, y, atan2(-dy, -dx)
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, -1.0, 1.0
-    other = given[TOP] != own[TOP]
-    command[0], command[1], command[2] = travel_numbers(task, scene, movers, own, given, other, False)
+    trip.x, trip.y, trip.heading = x, y, atan2(-dy, -dx)
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, -1.0, 1.0
+    other = given.max_speed != own.max_speed
+    command[0], command[1], command[2] = travel_law(trip, scene, movers, own, given, other, False)
     command[5] = 1.0
 
 
 @compiled
 def _get(
-    task: FloatArray,
-    scene: FloatArray,
-    movers: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers: Sequence[Mover],
+    own: Limits,
+    given: Limits,
     ball: FloatArray,
     speed: float,
     memory: FloatArray,
     command: FloatArray,
 ) -> None:
     """Do what ``GoToBall`` and ``PickUpBall`` do."""
-    state, period = task[:TARGET_X], scene[PERIOD]
-    dx, dy = ball[0] - state[0], ball[1] - state[1]
+    me, period = trip.me, scene.period
+    dx, dy = ball[0] - me.x, ball[1] - me.y
     bearing, gap = atan2(dy, dx), hypot(dx, dy)
-    aside = abs(wrap_angle(bearing - state[2]))
+    aside = abs(wrap_angle(bearing - me.heading))
     at_it = memory[AT_IT] > 0.0
     at_it = gap <= (LOST_DISTANCE if at_it else HANDOVER_DISTANCE) and aside <= (
         _FACING_STILL if at_it else _FACING
@@ -276,25 +267,29 @@ def _get(
     memory[AT_IT] = 1.0 if at_it else 0.0
     if at_it:
         closing = _CREEP * cos(min(2.0 * aside, 0.5 * pi))
-        omega = turn_rate_numbers(state, bearing, own, own, period)
+        omega = turn_law(me, bearing, own, own, period)
         vx, vy = ball[2] + closing * cos(bearing), ball[3] + closing * sin(bearing)
-        late = own[REACTION] > 0.0
-        command[0], command[1], command[2] = command_numbers(state, vx, vy, omega, own, own, late, period)
+        late = own.reaction > 0.0
+        command[0], command[1], command[2] = command_law(
+            me, (vx, vy), omega, own, own, own.max_speed, late, period
+        )
         command[5] = 1.0
         return
     x, y = ball[0], ball[1]
     if speed >= _RESTS:
         for _ in range(2):
-            mx, my = x - state[0], y - state[1]
+            mx, my = x - me.x, y - me.y
             way = hypot(mx, my)
-            towards = (state[3] * mx + state[4] * my) / way if way > 0.0 else 0.0
-            time = stop_time(max(0.0, way - _TOUCHING), towards, given[FORWARD], given[BRAKING], given[TOP])
+            towards = (me.vx * mx + me.vy * my) / way if way > 0.0 else 0.0
+            time = stop_time(
+                max(0.0, way - _TOUCHING), towards, given.acceleration, given.braking, given.max_speed
+            )
             rolled = way_in(time, speed, speed, _SLIDE, _ROLL)
             x, y = ball[0] + ball[2] / speed * rolled, ball[1] + ball[3] / speed * rolled
-    towards = atan2(y - state[1], x - state[0])
-    far = hypot(x - state[0], y - state[1]) >= _TURN_DISTANCE
-    task[TARGET_X], task[TARGET_Y] = beside((x, y), towards)
-    task[HEADING] = roughly(state[2], bearing, _LOOKING) if far else bearing
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = _ARRIVAL_SPEED, -1.0, 1.0
-    other = given[TOP] != own[TOP]
-    command[0], command[1], command[2] = travel_numbers(task, scene, movers, own, given, other, False)
+    towards = atan2(y - me.y, x - me.x)
+    far = hypot(x - me.x, y - me.y) >= _TURN_DISTANCE
+    trip.x, trip.y = beside((x, y), towards)
+    trip.heading = roughly(me.heading, bearing, _LOOKING) if far else bearing
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = _ARRIVAL_SPEED, -1.0, 1.0
+    other = given.max_speed != own.max_speed
+    command[0], command[1], command[2] = travel_law(trip, scene, movers, own, given, other, False)

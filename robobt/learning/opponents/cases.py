@@ -7,14 +7,14 @@ from math import cos, hypot, inf, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
-from robobt.motion.scene import AVOID_ROBOTS, BALL_GAP, FINAL_SPEED, HEADING, TARGET_X, TARGET_Y
+from robobt.motion.scene import BALL_GAP
 from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge
 from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.world.compiled import compiled, numbers_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, line_crossing_x, wrap_angle
+from robobt.world.records import Trip
 from robobt.world.rules import ALONG, MOUTH_SECTOR, before_mouth, in_area
 from robobt.world.state import ROBOT_RADIUS
 
@@ -42,8 +42,8 @@ def see(
         contact: (R,) whether the ball lies in the robot's mouth.
         me: which of the R is the goalkeeper; it defends the goal at +x.
         seen: (R, 6) to be filled like ``robots``.
-        movers: (R, 7) to be filled with what a way in open play depends on
-            (:func:`robobt.motion.arrival.movers_of`).
+        movers: (R, 8) to be filled with what a way in open play depends on
+            (:func:`robobt.world.records.movers_of`).
         sensed: (R,) to be filled like ``contact``.
     """
     for k in range(len(robots)):
@@ -117,7 +117,7 @@ def case_of(
 
 
 @compiled
-def set_out_for_home(task: FloatArray, half_length: float) -> None:
+def set_out_for_home(trip: Trip, half_length: float) -> None:
     """Set the task of the skill ReturnToGoal."""
-    task[TARGET_X], task[TARGET_Y], task[HEADING] = _BEFORE_GOAL - half_length, 0.0, 0.0
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, PLANNED_GAP, 1.0
+    trip.x, trip.y, trip.heading = _BEFORE_GOAL - half_length, 0.0, 0.0
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0

@@ -11,29 +11,9 @@ from numpy.typing import NDArray
 from robobt.learning.opponents.at_the_ball import FRESH, MEMORY, play_the_ball, with_the_ball
 from robobt.motion.arrival import meetings
 from robobt.motion.ball_watch import rolling_after
-from robobt.motion.path_planner import BALL_GAP as PLANNED_GAP
+from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import roughly
-from robobt.motion.scene import AREA_WIDTH as AREA
-from robobt.motion.scene import (
-    AVOID_ROBOTS,
-    BALL_GAP,
-    BALL_VX,
-    BALL_VY,
-    BALL_X,
-    BALL_Y,
-    DEPTH,
-    FINAL_SPEED,
-    HALF_LENGTH,
-    HALF_WIDTH,
-    HEADING,
-    NUMBER,
-    TARGET_X,
-    TARGET_Y,
-    scene_of,
-    task_of,
-)
-from robobt.motion.speeds import BRAKING, FORWARD, TOP, numbers
-from robobt.motion.way import travel_numbers
+from robobt.motion.scene import BALL_GAP, scene_of, trip_of
 from robobt.skills.defence.wall import GAP, wall_place
 from robobt.skills.tactics.settings import DEFAULT_TACTICS
 from robobt.world.ball_model import DEFAULT_BALL
@@ -42,6 +22,19 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.records import (
+    LIMITS,
+    MOVER_SIZE,
+    ROBOT_SIZE,
+    SCENE,
+    TRIP,
+    Limits,
+    Mover,
+    Scene,
+    Trip,
+    limits_of,
+    mover_records,
+)
 from robobt.world.rules import before_mouth, in_area
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
@@ -95,7 +88,7 @@ class Challengers:
         self.any = bool(self._who.any())
         top = limits.max_speed if speed is None else min(speed, limits.max_speed)
         given = limits if top == limits.max_speed else limits.model_copy(update={"max_speed": top})
-        self._own, self._given = numbers(limits), numbers(given)
+        self._own, self._given = limits_of(limits), limits_of(given)
         self._carrying = with_the_ball(limits)
         # Each team sees its own robots first, numbered from 0, in open play.
         self._sides: list[tuple[float, int, NDArray[np.int64], FloatArray]] = []
@@ -104,13 +97,13 @@ class Challengers:
             if not self._who[first:last].any():
                 continue
             own = tuple(RobotState(k, 0.0, 0.0) for k in range(last - first))
-            scene = scene_of(Frame(0.0, field, BallState(0.0, 0.0), own, (), Team.BLUE, period))
+            frame = Frame(0.0, field, BallState(0.0, 0.0), own, (), Team.BLUE, period)
             others = [k for k in range(count) if not first <= k < last]
             rows = np.array([*range(first, last), *others], dtype=np.int64)
-            self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, scene))
+            self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, scene_of(frame)))
             # Whoever asks first of all is alone, and goes.
             self._begin.append([float(self._who[first:last].argmax()), 0.0])
-        self._task = task_of(RobotState(0, 0.0, 0.0), (0.0, 0.0))
+        self._trip = trip_of(RobotState(0, 0.0, 0.0), (0.0, 0.0))
         self._period = period
         self._ticks = np.zeros(n)
         self._memory = np.empty((n, count, MEMORY))
@@ -137,7 +130,7 @@ class Challengers:
                 mates,
                 sign,
                 scene,
-                self._task,
+                self._trip,
                 self._own,
                 self._given,
                 self._carrying,
@@ -160,9 +153,9 @@ def _decide(
     mates: int,
     sign: float,
     scene_: FloatArray,
-    task_: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip_: FloatArray,
+    own_: FloatArray,
+    given_: FloatArray,
     carrying: FloatArray,
     times: FloatArray,
     robots: FloatArray,
@@ -173,8 +166,13 @@ def _decide(
     memory: FloatArray,
     commands: FloatArray,
 ) -> None:
-    scene, task, count = scene_.copy(), task_.copy(), len(rows)
-    seen, movers, has = np.empty((count, 6)), np.empty((count, 7)), np.empty(count, dtype=np.bool_)
+    scene: Scene = scene_.view(SCENE)[0]
+    trip: Trip = trip_.view(TRIP)[0]
+    own: Limits = own_.view(LIMITS)[0]
+    given: Limits = given_.view(LIMITS)[0]
+    count = len(rows)
+    seen, movers, has = np.empty((count, 6)), np.empty((count, MOVER_SIZE)), np.empty(count, dtype=np.bool_)
+    every = mover_records(movers)
     for i in range(len(balls)):
         ball = sign * balls[i]
         disputed = False
@@ -183,12 +181,14 @@ def _decide(
             seen[row] = sign * robot
             seen[row, 2] = robot[2] if sign > 0.0 else wrap_angle(robot[2] + pi)
             seen[row, 5] = robot[5]
-            movers[row, :2], movers[row, 2:4] = seen[row, :2], seen[row, 3:5]
-            movers[row, 4], movers[row, 5], movers[row, 6] = own[TOP], own[FORWARD], own[BRAKING]
+            mover = every[row]
+            mover.x, mover.y, mover.vx, mover.vy = seen[row, 0], seen[row, 1], seen[row, 3], seen[row, 4]
+            mover.max_speed, mover.acceleration, mover.braking = own.max_speed, own.acceleration, own.braking
+            mover.number = row
             dx, dy = ball[0] - seen[row, 0], ball[1] - seen[row, 1]
             has[row] = contact[i, rows[row]] or before_mouth(dx, dy, seen[row, 2])
             disputed = disputed or (row >= mates and has[row])
-        scene[BALL_X], scene[BALL_Y], scene[BALL_VX], scene[BALL_VY] = ball[0], ball[1], ball[2], ball[3]
+        scene.ball.x, scene.ball.y, scene.ball.vx, scene.ball.vy = ball[0], ball[1], ball[2], ball[3]
         rolling = _rolling(times[i], ball, watches[i])
         first = _who_goes(who, rows, mates, scene, seen, movers, has, ball, rolling, times[i], plans[i])
         waiting = place = 0
@@ -197,14 +197,13 @@ def _decide(
         for row in range(mates):
             if not who[rows[row]]:
                 continue
-            task[:TARGET_X], task[NUMBER] = seen[row], row
+            trip_[:ROBOT_SIZE], trip.number = seen[row], row
             command = commands[i, rows[row]]
             if row == first:
                 play_the_ball(
-                    task,
+                    trip,
                     scene,
                     movers,
-                    mates,
                     own,
                     given,
                     carrying,
@@ -217,7 +216,7 @@ def _decide(
                     command,
                 )
             else:
-                _wall(task, scene, movers, own, given, ball, place, waiting, command)
+                _wall(trip, scene, mover_records(movers), own, given, ball, place, waiting, command)
                 place += 1
 
 
@@ -236,7 +235,7 @@ def _who_goes(
     who: NDArray[np.bool_],
     rows: NDArray[np.int64],
     mates: int,
-    scene: FloatArray,
+    scene: Scene,
     seen: FloatArray,
     movers: FloatArray,
     has: NDArray[np.bool_],
@@ -247,12 +246,12 @@ def _who_goes(
 ) -> int:
     """Return the row of who goes for the ball, -1 for nobody, as the plan of the play's team has it."""
     before, best, least, present = plan[_ATTACKER], -1, inf, inf
-    length, depth, width = scene[HALF_LENGTH], scene[DEPTH], scene[AREA]
+    length, depth, width = scene.half_length, scene.area_depth, scene.area_width
     free = not in_area(-ball[0], ball[1], length, depth, width, _OWN_REACH) and not in_area(
         ball[0], ball[1], length, depth, width, _REACH
     )
     if free:
-        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, length, scene[HALF_WIDTH])
+        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, length, scene.half_width)
         for row in range(mates):
             if not who[rows[row]]:
                 continue
@@ -275,25 +274,25 @@ def _who_goes(
 
 @compiled
 def _wall(
-    task: FloatArray,
-    scene: FloatArray,
-    movers: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    movers: Sequence[Mover],
+    own: Limits,
+    given: Limits,
     ball: FloatArray,
     place: int,
     size: int,
     command: FloatArray,
 ) -> None:
     """Drive to a place of the wall by the planned way, facing the ball."""
-    depth = scene[DEPTH] + GAP
-    half = min(scene[AREA] / 2 + GAP, scene[HALF_WIDTH])
+    depth = scene.area_depth + GAP
+    half = min(scene.area_width / 2 + GAP, scene.half_width)
     x, y = ball[0] + _WALL_AHEAD * ball[2], ball[1] + _WALL_AHEAD * ball[3]
-    task[TARGET_X], task[TARGET_Y] = wall_place(-scene[HALF_LENGTH], depth, half, x, y, place, size)
-    dx, dy = ball[0] - task[0], ball[1] - task[1]
+    trip.x, trip.y = wall_place(-scene.half_length, depth, half, x, y, place, size)
+    dx, dy = ball[0] - trip.me.x, ball[1] - trip.me.y
     slack = _WALL_FACING + atan2(ROBOT_RADIUS, hypot(dx, dy))
-    task[HEADING] = roughly(task[2], atan2(dy, dx), slack)
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, PLANNED_GAP, 1.0
+    trip.heading = roughly(trip.me.heading, atan2(dy, dx), slack)
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0
     command[:] = 0.0
-    other = given[TOP] != own[TOP]
-    command[0], command[1], command[2] = travel_numbers(task, scene, movers, own, given, other, True)
+    other = given.max_speed != own.max_speed
+    command[0], command[1], command[2] = travel_law(trip, scene, movers, own, given, other, True)

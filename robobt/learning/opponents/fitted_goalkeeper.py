@@ -12,25 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.learning.opponents.cases import AIM, COVER, HOME, SHOT, case_of, see, set_out_for_home
-from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
-from robobt.motion.scene import (
-    AVOID_ROBOTS,
-    BALL_GAP,
-    BALL_VX,
-    BALL_VY,
-    BALL_X,
-    BALL_Y,
-    FINAL_SPEED,
-    HALF_LENGTH,
-    HEADING,
-    PERIOD,
-    TARGET_X,
-    TARGET_Y,
-    scene_of,
-    task_of,
-)
-from robobt.motion.speeds import TOP, drive_numbers, numbers
-from robobt.motion.way import travel_numbers
+from robobt.motion.path_planner import travel_law
+from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law, roughly
+from robobt.motion.scene import scene_of, trip_of
 from robobt.skills.base import FACING
 from robobt.skills.defence.cover_near_post import CoverNearPost
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
@@ -38,6 +22,18 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, closest_point_on_segment, direction, distance
 from robobt.world.limits import RobotLimits
+from robobt.world.records import (
+    LIMITS,
+    MOVER_SIZE,
+    ROBOT_SIZE,
+    SCENE,
+    TRIP,
+    Limits,
+    Scene,
+    Trip,
+    limits_of,
+    mover_records,
+)
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 _FIELD = numbers_dtype(FieldGeometry)
@@ -78,13 +74,14 @@ class FittedGoalkeepers:
     ) -> None:
         self.cases: NDArray[np.int64] = np.full(n, HOME, dtype=np.int64)
         self._field = numbers_of(field)
-        self._own = numbers(limits)
+        self._own = limits_of(limits)
         driven = ROBOBULLS_LIMITS.model_copy(update={"acceleration": acceleration, "braking": braking})
-        self._given = np.tile(numbers(driven), (n, 1))
+        self._given = np.tile(limits_of(driven), (n, 1))
         # Open play, seen by a team whose only robot is the goalkeeper.
         me = RobotState(0, 0.0, 0.0)
-        self._scene = scene_of(Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period))
-        self._task = task_of(me, me.position, goalkeeper=True)
+        frame = Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period)
+        self._scene = scene_of(frame)
+        self._trip = trip_of(me, me.position, goalkeeper=True)
         self._fetching = np.zeros((n, 1))
         self._share = delay / period % 1.0
         # What was decided and is not done yet, the oldest first.
@@ -92,7 +89,7 @@ class FittedGoalkeepers:
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike) -> None:
         """Begin anew in the arenas ``which``, with these top speeds [m/s], one for all or as many."""
-        self._given[which, TOP] = speed
+        self._given.view(LIMITS)["max_speed"][which, 0] = speed
         self._fetching[which] = 0.0
         self._held[:, which] = 0.0
 
@@ -112,7 +109,7 @@ class FittedGoalkeepers:
         _decide(
             self._field,
             self._scene,
-            self._task,
+            self._trip,
             self._own,
             self._given,
             robots,
@@ -130,9 +127,9 @@ class FittedGoalkeepers:
 def _decide(
     field_: FloatArray,
     scene_: FloatArray,
-    task_: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip_: FloatArray,
+    own_: FloatArray,
+    given_: FloatArray,
     robots: FloatArray,
     balls: FloatArray,
     contact: NDArray[np.bool_],
@@ -142,36 +139,43 @@ def _decide(
     cases: NDArray[np.int64],
 ) -> None:
     count = robots.shape[1]
-    seen, movers, sensed = np.empty((count, 6)), np.zeros((count, 7)), np.empty(count, dtype=np.bool_)
-    scene, task = scene_.copy(), task_.copy()
+    seen, movers, sensed = (
+        np.empty((count, 6)),
+        np.zeros((count, MOVER_SIZE)),
+        np.empty(count, dtype=np.bool_),
+    )
+    scene: Scene = scene_.view(SCENE)[0]
+    trip: Trip = trip_.view(TRIP)[0]
+    own: Limits = own_.view(LIMITS)[0]
+    given: Limits
     for i in range(len(balls)):
         see(robots[i], contact[i], me, seen, movers, sensed)
         ball = -balls[i]
         case, y = case_of(field_, seen, sensed, ball, fetching[i], _MIN_SPEED, 0.0, _BEFORE_GOAL)
         commands[i], order = 0.0, (0.0, 0.0, 0.0)
-        task[:TARGET_X] = seen[0]
-        here, there = (task[0], task[1]), (ball[0], ball[1])
+        trip_[:ROBOT_SIZE] = seen[0]
+        given = given_.view(LIMITS)[i, 0]
+        here, there = (trip.me.x, trip.me.y), (ball[0], ball[1])
         if case in (AIM, SHOT):
-            place = closest_point_on_segment(here, there, (ROBOT_RADIUS - scene[HALF_LENGTH], y))
-            task[TARGET_X], task[TARGET_Y], task[HEADING] = place[0], place[1], direction(here, there)
-            task[FINAL_SPEED] = 0.0
-            leg = task[TARGET_X : FINAL_SPEED + 1]
-            order = drive_numbers(task[:TARGET_X], leg, own, given[i], True, scene[PERIOD])
+            place = closest_point_on_segment(here, there, (ROBOT_RADIUS - scene.half_length, y))
+            trip.x, trip.y, trip.heading = place[0], place[1], direction(here, there)
+            trip.final_speed = 0.0
+            order = drive_law(trip.me, place, trip.heading, 0.0, own, given, True, scene.period)
         elif case in (COVER, HOME):
-            if case == HOME or not _set_out(field_, task, ball):
+            if case == HOME or not _set_out(field_, trip, ball):
                 case = HOME
-                set_out_for_home(task, scene[HALF_LENGTH])
-            scene[BALL_X], scene[BALL_Y], scene[BALL_VX], scene[BALL_VY] = ball[0], ball[1], ball[2], ball[3]
-            order = travel_numbers(task, scene, movers, own, given[i], True, False)
+                set_out_for_home(trip, scene.half_length)
+            scene.ball.x, scene.ball.y, scene.ball.vx, scene.ball.vy = ball[0], ball[1], ball[2], ball[3]
+            order = travel_law(trip, scene, mover_records(movers), own, given, True, False)
         cases[i] = case
         commands[i, 0], commands[i, 1], commands[i, 2] = order
 
 
 @compiled
-def _set_out(field_: FloatArray, task: FloatArray, ball: FloatArray) -> bool:
+def _set_out(field_: FloatArray, trip: Trip, ball: FloatArray) -> bool:
     """Set the task of the skill CoverNearPost; return False where it fails."""
     field: FieldGeometry = field_.view(_FIELD)[0]
-    here, there = (task[0], task[1]), (ball[0], ball[1])
+    here, there = (trip.me.x, trip.me.y), (ball[0], ball[1])
     half_length, half_goal = field.length / 2, field.goal_width / 2
     post = (-half_length, min(half_goal, max(-half_goal, ball[1])))
     place = closest_point_on_segment(here, there, post)
@@ -179,7 +183,7 @@ def _set_out(field_: FloatArray, task: FloatArray, ball: FloatArray) -> bool:
     if far_out or abs(place[1]) > field.defense_width / 2:
         return False
     slack = FACING + atan2(ROBOT_RADIUS, distance(here, there))
-    task[TARGET_X], task[TARGET_Y] = place
-    task[HEADING] = roughly(task[2], direction(here, there), slack)
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, -1.0, 0.0
+    trip.x, trip.y = place
+    trip.heading = roughly(trip.me.heading, direction(here, there), slack)
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, -1.0, 0.0
     return True

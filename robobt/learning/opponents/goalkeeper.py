@@ -21,25 +21,9 @@ from robobt.learning.opponents.cases import (
     set_out_for_home,
 )
 from robobt.motion.ball_watch import rolling_after
-from robobt.motion.pilot import roughly
-from robobt.motion.scene import (
-    AVOID_ROBOTS,
-    BALL_GAP,
-    BALL_VX,
-    BALL_VY,
-    BALL_X,
-    BALL_Y,
-    FINAL_SPEED,
-    HALF_LENGTH,
-    HEADING,
-    PERIOD,
-    TARGET_X,
-    TARGET_Y,
-    scene_of,
-    task_of,
-)
-from robobt.motion.speeds import BRAKING, FORWARD, REACTION, TOP, TURN, drive_numbers, numbers
-from robobt.motion.way import travel_numbers
+from robobt.motion.path_planner import travel_law
+from robobt.motion.pilot import drive_law, roughly
+from robobt.motion.scene import scene_of, trip_of
 from robobt.skills.base import FACING
 from robobt.skills.defence.block_shot import dive_speed
 from robobt.skills.defence.cover_angle import CoverAngle, cover_place
@@ -55,6 +39,18 @@ from robobt.world.geometry import (
     distance,
 )
 from robobt.world.limits import RobotLimits
+from robobt.world.records import (
+    LIMITS,
+    MOVER_SIZE,
+    ROBOT_SIZE,
+    SCENE,
+    TRIP,
+    Limits,
+    Scene,
+    Trip,
+    limits_of,
+    mover_records,
+)
 from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
@@ -95,13 +91,14 @@ class Goalkeepers:
     ) -> None:
         self.cases: NDArray[np.int64] = np.full(n, HOME, dtype=np.int64)
         self._field = numbers_of(field)
-        self._own = numbers(limits)
+        self._own = limits_of(limits)
         self._given = np.empty((n, len(self._own)))
         self._slowed: NDArray[np.bool_] = np.empty(n, dtype=np.bool_)
         # Open play, seen by a team whose only robot is the goalkeeper.
         me = RobotState(0, 0.0, 0.0)
-        self._scene = scene_of(Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period))
-        self._task = task_of(me, me.position, goalkeeper=True)
+        frame = Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period)
+        self._scene = scene_of(frame)
+        self._trip = trip_of(me, me.position, goalkeeper=True)
         self._period = period
         self._ticks = np.zeros(n)
         self._memory = np.zeros((n, _MEMORY))
@@ -114,7 +111,8 @@ class Goalkeepers:
             if not ((factors > 0.0) & np.isfinite(factors)).all():
                 raise ValueError("speed must be above 0 and finite")
             self._given[which] = self._own
-            self._given[which[:, None], [TOP, TURN]] *= factors[:, None]
+            for limit in ("max_speed", "max_turn"):
+                self._given.view(LIMITS)[limit][which, 0] *= factors
             self._slowed[which] = factors != 1.0
         self._ticks[which] = 0.0
         self._memory[which] = 0.0
@@ -135,7 +133,7 @@ class Goalkeepers:
         _decide(
             self._field,
             self._scene,
-            self._task,
+            self._trip,
             self._own,
             self._given,
             self._slowed,
@@ -155,9 +153,9 @@ class Goalkeepers:
 def _decide(
     field_: FloatArray,
     scene_: FloatArray,
-    task_: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip_: FloatArray,
+    own_: FloatArray,
+    given_: FloatArray,
     slowed: NDArray[np.bool_],
     times: FloatArray,
     robots: FloatArray,
@@ -169,26 +167,34 @@ def _decide(
     cases: NDArray[np.int64],
 ) -> None:
     count = robots.shape[1]
-    seen, movers, sensed = np.empty((count, 6)), np.zeros((count, 7)), np.empty(count, dtype=np.bool_)
-    scene, task = scene_.copy(), task_.copy()
+    seen, movers, sensed = (
+        np.empty((count, 6)),
+        np.zeros((count, MOVER_SIZE)),
+        np.empty(count, dtype=np.bool_),
+    )
+    scene: Scene = scene_.view(SCENE)[0]
+    trip: Trip = trip_.view(TRIP)[0]
+    own: Limits = own_.view(LIMITS)[0]
+    given: Limits
     for i in range(len(balls)):
         see(robots[i], contact[i], me, seen, movers, sensed)
         ball = -balls[i]
         case, y = case_of(field_, seen, sensed, ball, memory[i, _FETCHING:], _MIN_SPEED, _MARGIN, 0.0)
         cases[i] = case
         commands[i] = 0.0
-        task[:TARGET_X] = seen[0]
+        trip_[:ROBOT_SIZE] = seen[0]
+        given = given_.view(LIMITS)[i, 0]
         if case in (AIM, SHOT):
             watch = memory[i, 3 * case : 3 * case + 3]
-            order = _block(task, scene, own, given[i], slowed[i], ball, y, times[i], watch)
+            order = _block(trip, scene, own, given, slowed[i], ball, y, times[i], watch)
             commands[i, 5] = 1.0
         elif case in (COVER, HOME):
-            scene[BALL_X], scene[BALL_Y], scene[BALL_VX], scene[BALL_VY] = ball[0], ball[1], ball[2], ball[3]
+            scene.ball.x, scene.ball.y, scene.ball.vx, scene.ball.vy = ball[0], ball[1], ball[2], ball[3]
             if case == COVER:
-                _set_out(field_, task, ball)
+                _set_out(field_, trip, ball)
             else:
-                set_out_for_home(task, scene[HALF_LENGTH])
-            order = travel_numbers(task, scene, movers, own, given[i], slowed[i], False)
+                set_out_for_home(trip, scene.half_length)
+            order = travel_law(trip, scene, mover_records(movers), own, given, slowed[i], False)
         else:
             continue
         commands[i, 0], commands[i, 1], commands[i, 2] = order
@@ -196,10 +202,10 @@ def _decide(
 
 @compiled
 def _block(
-    task: FloatArray,
-    scene: FloatArray,
-    own: FloatArray,
-    given: FloatArray,
+    trip: Trip,
+    scene: Scene,
+    own: Limits,
+    given: Limits,
     slowed: bool,
     ball: FloatArray,
     y: float,
@@ -207,29 +213,29 @@ def _block(
     watch: FloatArray,
 ) -> tuple[float, float, float]:
     """Do what the skill BlockShot does against a shot at ``y`` on the goal line."""
-    here, there, speed = (task[0], task[1]), (ball[0], ball[1]), hypot(ball[2], ball[3])
-    place = closest_point_on_segment(here, there, (ROBOT_RADIUS - scene[HALF_LENGTH], y))
+    here, there, speed = (trip.me.x, trip.me.y), (ball[0], ball[1]), hypot(ball[2], ball[3])
+    place = closest_point_on_segment(here, there, (ROBOT_RADIUS - scene.half_length, y))
     rolling = rolling_after(time - watch[0], watch[1], watch[2], speed, _SLIDE, _ROLL, _SHARE)
     watch[0], watch[1], watch[2] = time, speed, rolling
     rolling = min(rolling, speed)
-    top, faster, slower = given[TOP], given[FORWARD], given[BRAKING]
-    task[TARGET_X], task[TARGET_Y], task[HEADING] = place[0], place[1], direction(here, there)
-    task[FINAL_SPEED] = dive_speed(
-        here, (task[3], task[4]), place, there, speed, rolling, top, faster, slower, _SLIDE, _ROLL
+    top, faster, slower = given.max_speed, given.acceleration, given.braking
+    trip.x, trip.y, trip.heading = place[0], place[1], direction(here, there)
+    trip.final_speed = dive_speed(
+        here, (trip.me.vx, trip.me.vy), place, there, speed, rolling, top, faster, slower, _SLIDE, _ROLL
     )
-    leg, gentle = task[TARGET_X : FINAL_SPEED + 1], slowed or own[REACTION] > 0.0
-    return drive_numbers(task[:TARGET_X], leg, own, given, gentle, scene[PERIOD])
+    gentle = slowed or own.reaction > 0.0
+    return drive_law(trip.me, place, trip.heading, trip.final_speed, own, given, gentle, scene.period)
 
 
 @compiled
-def _set_out(field_: FloatArray, task: FloatArray, ball: FloatArray) -> None:
+def _set_out(field_: FloatArray, trip: Trip, ball: FloatArray) -> None:
     """Set the task of the skill CoverAngle."""
     field: FieldGeometry = field_.view(_FIELD)[0]
     half_length, depth, width = field.length / 2, field.defense_depth, field.defense_width
-    here, there = (task[0], task[1]), (ball[0], ball[1])
+    here, there = (trip.me.x, trip.me.y), (ball[0], ball[1])
     place = cover_place(there, _STAND_OUT, half_length, field.goal_width / 2, depth, width)
     slack = FACING + atan2(ROBOT_RADIUS, distance(here, there))
-    task[HEADING] = roughly(task[2], direction(here, there), slack)
+    trip.heading = roughly(trip.me.heading, direction(here, there), slack)
     at_home = in_area(-here[0], here[1], half_length, depth, width, ROBOT_RADIUS)
-    task[FINAL_SPEED], task[BALL_GAP], task[AVOID_ROBOTS] = 0.0, -1.0, 0.0 if at_home else 1.0
-    task[TARGET_X], task[TARGET_Y] = place
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, -1.0, 0.0 if at_home else 1.0
+    trip.x, trip.y = place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from py_trees.common import Status
 
-from robobt.motion.scene import EVADES, scene_of
+from robobt.motion.scene import evade
 from robobt.skills.store import Store
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes.gate import Gate
@@ -18,9 +18,9 @@ class GoRound(Gate, Bound[Store]):
 
     def answer(self) -> None:
         """Plan in the old way from now on, and tick the child."""
-        scene_of(self.store.frame)[EVADES] = 0.0
+        evade(self.store.frame, False)
 
     def update(self) -> Status:
         """Plan as ever for the robots that come next."""
-        scene_of(self.store.frame)[EVADES] = 1.0
+        evade(self.store.frame, True)
         return super().update()

@@ -6,12 +6,12 @@ from math import atan2, cos, inf, radians, sin
 
 import numpy as np
 
-from robobt.motion.arrival import X, Y, movers_of
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, Point, segment_distance, wrap_angle
+from robobt.world.records import mover_records, movers_of
 from robobt.world.rules import has_ball
 
 _TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
@@ -59,7 +59,7 @@ class AimUpfield(Skill):
 
 
 @compiled
-def _rooms(x: float, y: float, ahead: float, reach: float, opponents: FloatArray) -> FloatArray:
+def _rooms(x: float, y: float, ahead: float, reach: float, opponents_: FloatArray) -> FloatArray:
     """Return how far the nearest opponent is from the lane at each turn, at most ``_ENOUGH`` [m].
 
     Args:
@@ -67,12 +67,12 @@ def _rooms(x: float, y: float, ahead: float, reach: float, opponents: FloatArray
         y: of the ball [m].
         ahead: from where the turns count [rad].
         reach: length of the lanes [m].
-        opponents: as of :func:`~robobt.motion.arrival.movers`.
+        opponents_: as of :func:`~robobt.world.records.movers`.
     """
-    rooms = np.full(len(_TURNS), _ENOUGH)
+    rooms, opponents = np.full(len(_TURNS), _ENOUGH), mover_records(opponents_)
     for k, turn in enumerate(_TURNS):
         end = (x + reach * cos(ahead + turn), y + reach * sin(ahead + turn))
-        for j in range(len(opponents)):
-            room = segment_distance((opponents[j, X], opponents[j, Y]), (x, y), end)
+        for opponent in opponents:
+            room = segment_distance((opponent.x, opponent.y), (x, y), end)
             rooms[k] = min(rooms[k], room)
     return rooms

@@ -7,8 +7,7 @@ from math import cos, hypot, inf
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
 from robobt.motion.path_planner import next_waypoint
-from robobt.motion.pilot import command, turn_rate
-from robobt.motion.speeds import approach_speed
+from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import Point, direction, distance, wrap_angle

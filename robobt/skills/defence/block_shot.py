@@ -6,8 +6,7 @@ from dataclasses import field
 from math import cos, sin, sqrt
 
 from robobt.motion.ball_watch import BallWatch
-from robobt.motion.pilot import drive
-from robobt.motion.speeds import stop_time
+from robobt.motion.pilot import drive, stop_time
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status

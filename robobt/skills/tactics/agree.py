@@ -10,7 +10,7 @@ from math import hypot, inf
 
 import numpy as np
 
-from robobt.motion.arrival import BRAKING, TOP, arrival_times, meetings, movers_of
+from robobt.motion.arrival import arrival_times, meetings
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import assign
@@ -19,6 +19,7 @@ from robobt.skills.tactics.support import short_place, support_places
 from robobt.skills.team.teamwork import follow_restart
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
+from robobt.world.records import MOVER, ball_of, movers_of
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
 from robobt.world.state import Frame, RobotState
 
@@ -62,11 +63,14 @@ def _look(frame: Frame, plan: Plan) -> None:
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
     plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
-    theirs[:, TOP:BRAKING] = np.minimum(theirs[:, TOP:BRAKING], plan.tactics.quickest)
+    for limit in ("max_speed", "acceleration"):
+        of_all = theirs.view(MOVER)[limit]
+        np.minimum(of_all, plan.tactics.quickest, out=of_all)
     plan.their_movers = theirs
-    state = np.array((ball.x, ball.y, ball.vx, ball.vy))
     slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
-    plan.meetings = meetings(everybody, state, plan.rolling, slide, roll, field.half_length, field.half_width)
+    plan.meetings = meetings(
+        everybody, ball_of(ball), plan.rolling, slide, roll, field.half_length, field.half_width
+    )
     times = plan.meetings[:, 0].tolist()
     ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}

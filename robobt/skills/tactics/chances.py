@@ -21,6 +21,7 @@ from robobt.skills.tactics.lanes import (
 from robobt.skills.tactics.settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, Point
+from robobt.world.records import MOVER_SIZE
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
@@ -199,7 +200,7 @@ def rate_points(
     """
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     out = np.empty((len(points), 2))
-    nobody = np.empty((0, 7))
+    nobody = np.empty((0, MOVER_SIZE))
     for g in range(len(points)):
         x, y = points[g, 0], points[g, 1]
         length = hypot(x - ox, y - oy)

@@ -7,7 +7,7 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from robobt.motion.arrival import arrival_time, movers
+from robobt.motion.arrival import arrival_time
 from robobt.motion.catch import MOUTH, catch
 from robobt.motion.path_planner import travel
 from robobt.skills.ball.intercept import earliest_meeting, meet
@@ -18,6 +18,7 @@ from robobt.skills.tactics.chances import aim_of, redirect_angle, redirect_kick,
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.geometry import Point, wrap_angle
+from robobt.world.records import movers
 from robobt.world.rules import has_ball, in_own_defense_area
 
 

@@ -7,7 +7,6 @@ from math import inf
 
 import numpy as np
 
-from robobt.motion.arrival import movers_of
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
@@ -15,6 +14,7 @@ from robobt.skills.tactics.settings import TacticsSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Restart
 from robobt.world.geometry import FloatArray, Point, distance
+from robobt.world.records import movers_of
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import Frame
 

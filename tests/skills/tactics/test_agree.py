@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robobt.motion.arrival import ACCELERATION, TOP
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Omitted, Task
 from robobt.skills.tactics.chances import rate_points
 from robobt.world import DIVISION_B, RobotLimits, Team
 from robobt.world.geometry import Point, distance
+from robobt.world.records import MOVER
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from tests.skills.fixed_world import held, robot
 from tests.skills.refereed import free_kick, penalty, penalty_in_play
@@ -156,9 +156,11 @@ def test_opponents_are_not_taken_to_use_all_that_their_robots_could() -> None:
     quick = RobotLimits(max_speed=5.0, acceleration=4.15)
     theirs = tuple(replace(it, limits=quick) for it in THEIRS)
     plan = Agreement().at(0.0, theirs=theirs)
-    assert (plan.their_movers[:, [TOP, ACCELERATION]] == plan.tactics.quickest).all()
+    theirs = plan.their_movers.view(MOVER)
+    assert (theirs["max_speed"] == plan.tactics.quickest).all()
+    assert (theirs["acceleration"] == plan.tactics.quickest).all()
     slow = tuple(replace(it, limits=RobotLimits(max_speed=1.5)) for it in THEIRS)
-    assert (Agreement().at(0.0, theirs=slow).their_movers[:, TOP] == 1.5).all()
+    assert (Agreement().at(0.0, theirs=slow).their_movers.view(MOVER)["max_speed"] == 1.5).all()
 
 
 def test_tasks_stay_while_nothing_changes() -> None:

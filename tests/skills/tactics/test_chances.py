@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import movers
 from robobt.skills.tactics.chances import (
     aim_of,
     point_worth,
@@ -19,11 +18,12 @@ from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.records import MOVER_SIZE, movers
 from tests.skills.fixed_world import robot
 
 APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
 SPEEDS = DEFAULT_TACTICS.shot_speed, DEFAULT_TACTICS.fastest
-NOBODY = np.empty((0, 7))
+NOBODY = np.empty((0, MOVER_SIZE))
 
 
 def chance(x: float, y: float, opponents: FloatArray = NOBODY, delay: float = 0.0) -> float:

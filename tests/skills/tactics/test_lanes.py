@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.motion.arrival import movers
 from robobt.sim import PRESETS, preset
 from robobt.skills.tactics.lanes import (
     arrive_chance,
@@ -21,9 +20,10 @@ from robobt.skills.tactics.lanes import (
 from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
+from robobt.world.records import MOVER_SIZE, movers
 from tests.skills.fixed_world import robot
 
-NOBODY = np.empty((0, 7))
+NOBODY = np.empty((0, MOVER_SIZE))
 APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
 
 

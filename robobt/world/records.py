@@ -1,0 +1,200 @@
+"""Robots, ball and scene as records: how compiled code reads plain float arrays, by names of fields.
+
+A compiled function that Python calls takes plain arrays and views each as what it is, ``me_.view(ROBOT)[0]``:
+numba needs many times as long to look at the type of a record when it is called. All further functions take
+the records. A record does not keep its array alive: a function may view arrays that it was given, but none
+that it has made itself, unless it uses that array after the record.
+
+:class:`~robobt.world.state.RobotState` and :class:`~robobt.world.state.BallState` have the fields of
+:class:`Robot` and :class:`Ball`, so that a function that Python and compiled code share takes either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+from robobt.world.compiled import compilable, record_dtype
+from robobt.world.geometry import FloatArray
+from robobt.world.limits import RobotLimits
+from robobt.world.state import BallState, Frame, RobotState
+
+
+class Robot(Protocol):
+    """Centre [m], heading [rad], velocity in field coordinates [m/s] and turning rate [rad/s]."""
+
+    x: float
+    y: float
+    heading: float
+    vx: float
+    vy: float
+    omega: float
+
+
+class Ball(Protocol):
+    """Place [m] and velocity [m/s] along the ground."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+
+
+class Limits(Protocol):
+    """What driving needs of :class:`~robobt.world.limits.RobotLimits`, by the same names."""
+
+    max_speed: float
+    acceleration: float
+    lateral_acceleration: float
+    braking: float
+    lateral_braking: float
+    max_turn: float
+    turn_acceleration: float
+    angular_braking: float
+    reaction: float
+
+
+class Mover(Protocol):
+    """A robot seen from outside: place [m], velocity [m/s], limits [m/s, m/s^2] and number on its team."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    max_speed: float
+    acceleration: float
+    braking: float
+    number: float
+
+
+class Meeting(Protocol):
+    """When [s] and where [m] a robot meets the ball."""
+
+    time: float
+    x: float
+    y: float
+
+
+class Scene(Protocol):
+    """What a plan depends on but the robots; see :func:`robobt.motion.scene.scene_of`.
+
+    Attributes:
+        half_length, half_width, half_goal: half the field's sizes [m].
+        area_depth, area_width: of a defence area [m].
+        margin, behind: from side line and goal line to the walls [m].
+        ball: the ball.
+        period: time until the next command [s].
+        keeps_off: whether robots have to stay away from the ball.
+        their_gap: from their defence area to a robot's centre [m].
+        insists: on which side robots go round for now, 1 or -1; 0 for the shorter one.
+        in_play: whether the ball is in play.
+        max_speed: the rules' speed limit [m/s].
+        evades: whether ways evade robots that move; else they go round where those will be.
+        mates: how many of the movers, the first, are of the own team.
+    """
+
+    half_length: float
+    half_width: float
+    half_goal: float
+    area_depth: float
+    area_width: float
+    margin: float
+    behind: float
+    ball: Ball
+    period: float
+    keeps_off: float
+    their_gap: float
+    insists: float
+    in_play: float
+    max_speed: float
+    evades: float
+    mates: float
+
+
+class Trip(Protocol):
+    """A robot and where it is to go; see :func:`robobt.motion.scene.trip_of`.
+
+    Attributes:
+        me: the robot.
+        x, y: the target [m].
+        heading: where the mouth is to point [rad].
+        final_speed: speed allowed at the target [m/s].
+        ball_gap: how far to stay from the ball, hull to ball [m]; negative where it is no obstacle.
+        avoids_robots: whether robots are obstacles.
+        goalkeeper: may enter the own defence area.
+        placing: may enter both defence areas.
+        number: the robot's on its team.
+    """
+
+    me: Robot
+    x: float
+    y: float
+    heading: float
+    final_speed: float
+    ball_gap: float
+    avoids_robots: float
+    goalkeeper: float
+    placing: float
+    number: float
+
+
+ROBOT, BALL, LIMITS = record_dtype(Robot), record_dtype(Ball), record_dtype(Limits)
+MOVER, MEETING = record_dtype(Mover), record_dtype(Meeting)
+SCENE, TRIP = record_dtype(Scene, ball=BALL), record_dtype(Trip, me=ROBOT)
+
+ROBOT_SIZE, MOVER_SIZE = len(ROBOT.names or ()), len(MOVER.names or ())
+"""How many numbers they are."""
+
+_MOST_KNOWN = 256
+_KNOWN: dict[int, tuple[RobotLimits, FloatArray]] = {}
+"""By the limits' id, which stays theirs as they are kept too: hashing and comparing a model takes longer."""
+
+
+def limits_of(limits: RobotLimits) -> FloatArray:
+    """Return a robot's limits as the numbers of :class:`Limits`; made once."""
+    known = _KNOWN.get(id(limits))
+    if known is None:
+        if len(_KNOWN) >= _MOST_KNOWN:
+            _KNOWN.clear()
+        numbers = [getattr(limits, name) for name in LIMITS.names or ()]
+        known = _KNOWN[id(limits)] = (limits, np.array(numbers, dtype=np.float64))
+    return known[1]
+
+
+def robot_of(robot: RobotState) -> FloatArray:
+    """Return a robot's state as the numbers of :class:`Robot`."""
+    return np.array((robot.x, robot.y, robot.heading, robot.vx, robot.vy, robot.omega), dtype=np.float64)
+
+
+def ball_of(ball: BallState) -> FloatArray:
+    """Return the ball on the ground as the numbers of :class:`Ball`."""
+    return np.array((ball.x, ball.y, ball.vx, ball.vy), dtype=np.float64)
+
+
+def movers(robots: Iterable[RobotState]) -> FloatArray:
+    """Return every robot as the numbers of :class:`Mover`, (n, ``MOVER_SIZE``)."""
+    row: list[float] = []
+    for robot in robots:
+        limits = robot.limits
+        row += (robot.x, robot.y, robot.vx, robot.vy)
+        row += (limits.max_speed, limits.acceleration, limits.braking, robot.id)
+    # From one list, for numpy takes twice as long over a list of rows.
+    return np.array(row, dtype=np.float64).reshape(-1, MOVER_SIZE)
+
+
+def movers_of(frame: Frame) -> FloatArray:
+    """Return :func:`movers` of everybody on the field, the own team first; made once a frame."""
+    made: FloatArray | None = frame.made.get("movers")
+    if made is None:
+        made = frame.made["movers"] = movers((*frame.own, *frame.opponents))
+    return made
+
+
+@compilable
+def mover_records(movers_: FloatArray) -> Sequence[Mover]:
+    """Return the rows of :func:`movers` as records."""
+    rows: Any = movers_.view(MOVER)
+    first: Sequence[Mover] = rows[:, 0]
+    return first
