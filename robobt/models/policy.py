@@ -200,7 +200,7 @@ class _TorchScript:
         return infer
 
     def _on_one_thread(self, inputs: Tensor) -> Tensor:
-        # On networks this small, threads wait for each other. Their number is the process.s: restore it.
+        # On networks this small, threads wait for each other. The setting is the process's: restore it.
         threads = self._torch.get_num_threads()
         if threads == 1:
             return self._forward(inputs)

@@ -1,4 +1,4 @@
-"""Deep deterministic policy gradient, and what later papers changed about it, each a switch.
+"""Deep deterministic policy gradient, and the changes of later papers, each a switch.
 
 The plain agent learns as Spinning Up defines DDPG. With Q the critic, mu the
 actor and Q', mu' their targets:
@@ -7,8 +7,8 @@ actor and Q', mu' their targets:
     (2)  critic: minimise the mean of (Q(s, a) - y)^2 over a batch
     (3)  actor:  maximise the mean of Q(s, mu(s)) over a batch
 
-and after each update both targets move a share tau towards the networks they follow
-(Spinning Up's polyak is 1 - tau). The replay hands out gamma (1 - d) as one
+and after each update both targets move a fraction tau towards the online networks
+(Spinning Up's polyak is 1 - tau). The replay returns gamma (1 - d) as one
 number, ``discount``, so that n-step returns need no other equation.
 """
 
@@ -33,16 +33,14 @@ _NORM_EVERY = 16
 
 
 class DDPG(Learner):
-    """Actor, critic, their targets and their optimisers.
+    """Actor, critic, their target networks and their optimisers.
 
     Args:
-        settings: which switches are on.
+        settings: of the learner.
         scale: (observation,) typical size of each entry of the observation.
-        smoothed: (action,) which entries of the action target smoothing may change; a
-            threshold, as that of a kick, it may not.
+        smoothed: (action,) entries to which target policy smoothing adds noise: all but thresholds, such as
+            that of a kick.
         seed: of the initial weights.
-
-    The targets are the slow networks, of which the target y is made.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What every learner with an actor and a critic keeps, saves and takes over."""
+"""The base of learners with an actor and a critic: their state, saved and restored."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Learner(ABC):
 
     @abstractmethod
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
-        """Return all networks, by the names under which they are saved."""
+        """Return all networks by the names under which they are saved."""
 
     def set_learning_rates(self, fraction: float) -> None:
         """Set both learning rates to ``fraction`` of those in the settings."""
@@ -42,11 +42,11 @@ class Learner(ABC):
         return {"updates": np.array([self.updates]), **state_of(self._modules(), self._optimisers())}
 
     def restore(self, state: Mapping[str, NDArray[np.generic]]) -> None:
-        """Take over another learner's :meth:`state`.
+        """Restore the :meth:`state` of another learner.
 
         Raises:
-            KeyError: it is that of a learner with other settings.
-            RuntimeError: the same.
+            KeyError: it belongs to a learner with other settings.
+            RuntimeError: a network has other shapes.
         """
         self.updates = int(state["updates"].tolist()[0])
         restore_state(state, self._modules(), self._optimisers())

@@ -50,16 +50,16 @@ class ActorBuild(TypedDict):
 class Actor(nn.Module):
     """The deterministic policy: observation -> action in [-1, 1].
 
-    The observation's scaling is a constant inside, so that whoever runs the
-    exported module feeds it what :mod:`robobt.world.features` makes, unchanged.
+    The observation is scaled inside, so that the exported module takes what
+    :mod:`robobt.world.features` makes, unchanged.
 
     ``scale`` (observation,) is the typical size of each entry in its SI unit, ``hidden`` the sizes of the
     hidden layers; ``layer_norm``, ``generator`` and ``activation`` are as for :func:`mlp`.
 
-    ``vectors`` are the observation's entries at which vectors in the robot's frame begin, x and then y. With
-    any, the network sees them all, and answers the velocity that the action begins with, in the frame in
-    which the first one points ahead: what it does in one heading it does in all. The velocity is then at
-    most 1 long in any direction.
+    ``vectors`` are the entries at which vectors in the robot's frame begin, x and then y. If there are any,
+    the network gets all of them, and returns the velocity at the beginning of the action, in the frame in
+    which the first vector points ahead: it does the same in every heading. The velocity is then clipped to
+    length 1 in any direction.
 
     Attributes:
         build: the arguments that make an actor of the same shape.
@@ -97,7 +97,7 @@ class Actor(nn.Module):
         return self.turned_back(observation, torch.tanh(output))
 
     def turned(self, observation: Tensor) -> Tensor:
-        """Return the observation (..., observation) as the network sees it, but for its scale."""
+        """Return the observation (..., observation) with its vectors turned, before scaling."""
         if not self._vectors:
             return observation
         c, s = self._ahead(observation)
@@ -109,7 +109,7 @@ class Actor(nn.Module):
         return torch.cat([*parts, observation[..., done:]], -1)
 
     def turned_back(self, observation: Tensor, action: Tensor) -> Tensor:
-        """Return the action (..., action) that the network's answer stands for."""
+        """Return the action (..., action) with its velocity turned back into the robot's frame."""
         if not self._vectors:
             return action
         c, s = self._ahead(observation)
@@ -127,8 +127,8 @@ class Actor(nn.Module):
 class Critic(nn.Module):
     """One or several independent estimates of the return of (observation, action).
 
-    It answers one value, or the logits of a distribution over ``outputs`` atoms; ``heads`` says how many
-    estimates, of which TD3 takes two. The rest is as for :class:`Actor`.
+    Each is one value, or the logits of a distribution over ``outputs`` atoms; ``heads`` is the number of
+    estimates, two for TD3. The other arguments are as for :class:`Actor`.
     """
 
     inverse_scale: Tensor
@@ -161,7 +161,7 @@ class Critic(nn.Module):
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Let torch use one thread in the block: on networks this small, threads wait for each other."""
+    """Let torch use one thread in the block: with networks this small more threads only wait."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
@@ -171,7 +171,7 @@ def one_thread() -> Iterator[None]:
 
 
 def policy_of(actor: nn.Module) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-    """Return an actor over numpy arrays, without gradient: (n, observation) -> (n, action)."""
+    """Return an actor as a function of numpy arrays: (n, observation) -> (n, action)."""
 
     def decide(observation: NDArray[np.float64]) -> NDArray[np.float64]:
         with torch.no_grad():

@@ -12,7 +12,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Transitions(NamedTuple):
-    """What a critic learns from: Q(observation, action) = reward + discount * Q(next observation, ...).
+    """Transitions for a critic: Q(observation, action) = reward + discount * Q(next observation, ...).
 
     Attributes:
         observation, action: (m, ...).
@@ -31,11 +31,11 @@ class Transitions(NamedTuple):
 class NStep:
     """Collects steps of ``envs`` interleaved episodes into n-step transitions.
 
-    A return is cut at the end of its episode. A terminated episode is worth
-    nothing more; a truncated one is bootstrapped from its last observation.
+    A return ends with its episode. After a terminated episode nothing follows; a truncated one is
+    bootstrapped from its last observation.
 
-    ``horizons`` are how many rewards a return sums at most. Every transition comes once for each; what is
-    smaller than the first must be 1.
+    ``horizons`` are the numbers of rewards that returns sum, n alone or n and 1; there is one transition for
+    each.
     """
 
     def __init__(
@@ -66,8 +66,8 @@ class NStep:
     ) -> list[tuple[Transitions, ...]]:
         """Add one step of every environment; return the transitions it completes, once for each horizon.
 
-        All are (envs, ...). ``next_observation`` is an ended episode's own last one; ``truncated`` tells that
-        a time limit cut the episode off.
+        All are (envs, ...). Where an episode has ended ``next_observation`` is its last one, not the first of
+        the next episode. ``truncated`` means that a time limit ended the episode.
         """
         slot = self._step % self._n
         self._step += 1

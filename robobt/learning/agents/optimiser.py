@@ -1,4 +1,4 @@
-"""Adam over a whole network, and what of networks and optimisers goes into a checkpoint."""
+"""Adam over a whole network, and the state of networks and optimisers for checkpoints."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from torch import Tensor
 
 
 class Adam:
-    """Adam over all weights of a network, in single calls whatever their number."""
+    """Adam over all weights of a network, in fused calls."""
 
     def __init__(
         self, weights: list[torch.nn.Parameter], learning_rate: float, decay: float = 0.0, eps: float = 1e-8
@@ -59,11 +59,11 @@ def restore_state(
     modules: Sequence[tuple[str, torch.nn.Module]],
     optimisers: Sequence[tuple[str, Adam]],
 ) -> None:
-    """Take over what :func:`state_of` returned.
+    """Restore what :func:`state_of` returned.
 
     Raises:
-        KeyError: it is that of other networks.
-        RuntimeError: the same.
+        KeyError: it belongs to other networks.
+        RuntimeError: a network has other shapes.
     """
     for name, module in modules:
         module.load_state_dict(

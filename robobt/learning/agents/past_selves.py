@@ -1,4 +1,4 @@
-"""Copies of a policy as it was: whom it plays against so that it forgets nothing."""
+"""Frozen copies of a policy, against which it plays so that it does not forget how to beat them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Floats = NDArray[np.float64]
 
 
 class PastSelves:
-    """The newest ``size`` copies of a policy, which learn no more.
+    """The newest ``size`` frozen copies of a policy.
 
     Attributes:
-        taken: after how many steps each was, the oldest first.
+        taken: the steps after which each was copied, the oldest first.
     """
 
     def __init__(self, size: int) -> None:
@@ -26,21 +26,21 @@ class PastSelves:
         self.taken: list[int] = []
 
     def add(self, actor: Actor, steps: int) -> Actor:
-        """Return a copy of ``actor`` after so many steps, added in the oldest one's place if need be."""
+        """Add a copy of ``actor`` after ``steps``, replacing the oldest when full; return the copy."""
         copy = _copy(actor.build, actor.state_dict())
         self._actors = [*self._actors, copy][-self._size :]
         self.taken = [*self.taken, steps][-self._size :]
         return copy
 
     def decide(self, observation: Floats) -> Floats:
-        """Decide in arenas: (arenas, k, O) -> (arenas, k, A), each in as many arenas as any other."""
+        """Map (arenas, k, O) to (arenas, k, A); arenas are divided evenly among the copies."""
         blocks = np.array_split(observation, len(self._actors))
         return np.concatenate(
             [policy_of(actor)(block) for actor, block in zip(self._actors, blocks, strict=True)]
         )
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Return all weights by the steps after which they were taken, and their names."""
+        """Return all weights, by steps and name."""
         return {
             f"{steps}/{name}": weight.numpy().copy()
             for steps, actor in zip(self.taken, self._actors, strict=True)

@@ -15,10 +15,10 @@ standard deviation, except thresholds such as that of a kick: these are Bernoull
 log-odds. Without noise the policy takes the mean of the normal entries, and kicks where the probability is
 over one half; so the actor alone is the network that is evaluated and exported, like DDPG's.
 
-V may be told more than the policy is, for it is needed in training alone. Of several robots that learn one
-policy a *central* V sees all of them (Yu et al., "The surprising effectiveness of PPO in cooperative
-multi-agent games", 2022): then s above is what the robot sees followed by the state, and the policy takes
-the first part alone.
+V may have more inputs than the policy, since it is only needed in training. Where several robots learn one
+policy a *central* V has the true state of all of them (Yu et al., "The surprising effectiveness of PPO in
+cooperative multi-agent games", 2022): then s above is the robot's observation followed by the state, and the
+policy takes only the first part.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ class Rollout:
     """Steps of ``n`` arenas, T of each.
 
     Attributes:
-        observation: (T, n, O) what was seen, by the policy first and then by the value alone.
-        action: (T, n, A) what was done, as drawn.
-        log_probability: (T, n) of it.
-        value: (T, n) V of what was seen.
-        next_value: (T, n) V of what the step led to; whatever where the episode has terminated.
+        observation: (T, n, O) the policy's observation, followed by what only the value gets.
+        action: (T, n, A) as sampled.
+        log_probability: (T, n) of the action.
+        value: (T, n) V of the observation.
+        next_value: (T, n) V of the next observation; arbitrary where the episode has terminated.
         reward: (T, n).
-        terminated: (T, n) the episode ended in a state from which nothing follows.
-        ended: (T, n) the episode ended, whatever the reason.
+        terminated: (T, n) whether the episode terminated with this step.
+        ended: (T, n) whether it terminated or was truncated.
     """
 
     observation: Floats
@@ -68,7 +68,7 @@ class Rollout:
 
     @classmethod
     def empty(cls, ticks: int, n: int, observations: int, actions: int) -> Rollout:
-        """Return one to be filled."""
+        """Return a rollout of zeros."""
 
         def numbers() -> Floats:
             return np.zeros((ticks, n))
@@ -76,12 +76,12 @@ class Rollout:
         def flags() -> NDArray[np.bool_]:
             return np.zeros((ticks, n), dtype=np.bool_)
 
-        seen, done = np.zeros((ticks, n, observations)), np.zeros((ticks, n, actions))
-        return cls(seen, done, numbers(), numbers(), numbers(), numbers(), flags(), flags())
+        observation, action = np.zeros((ticks, n, observations)), np.zeros((ticks, n, actions))
+        return cls(observation, action, numbers(), numbers(), numbers(), numbers(), flags(), flags())
 
 
 class Value(nn.Module):
-    """V: what a state is worth; arguments as for :class:`Actor`."""
+    """V, the value of a state; arguments as for :class:`Actor`."""
 
     inverse_scale: Tensor
 
@@ -103,17 +103,17 @@ class PPO(Learner):
     Args:
         settings: of the learner.
         scale: (observation,) typical size of each entry of the observation.
-        smooth: (action,) which entries are normal; the others are thresholds at 0.
+        continuous: (action,) which entries are normal; the others are thresholds at 0.
         seed: of the initial weights.
-        state_scale: (state,) typical sizes of what follows the observation for the value alone.
-        vectors: of the observation, where the policy is asked in another frame; see :class:`Actor`.
+        state_scale: (state,) typical sizes of the entries after the observation, which only the value gets.
+        vectors: entries of the observation that are turned into the ball's frame; see :class:`Actor`.
     """
 
     def __init__(
         self,
         settings: PPOSettings,
         scale: Sequence[float],
-        smooth: Sequence[bool],
+        continuous: Sequence[bool],
         seed: int,
         state_scale: Sequence[float] = (),
         vectors: Sequence[int] = (),
@@ -121,19 +121,17 @@ class PPO(Learner):
         super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
-        self.actor = Actor(scale, len(smooth), settings.hidden_sizes, False, generator, "tanh", vectors)
+        self.actor = Actor(scale, len(continuous), settings.hidden_sizes, False, generator, "tanh", vectors)
         self.critic = Value([*scale, *state_scale], settings.hidden_sizes, generator)
-        self._own, self._turns = len(scale), bool(vectors)
-        self._smooth = torch.tensor(list(smooth))
+        self._observed, self._in_ball_frame = len(scale), bool(vectors)
+        self._continuous = torch.tensor(list(continuous))
         self._gamma = settings.gamma
-        self._spread = nn.ParameterDict(
-            {"log": nn.Parameter(torch.full((sum(smooth),), float(np.log(settings.init_std))))}
-        )
-        # So that all directions are alike at first, and kicks rare.
+        self._log_std = nn.Parameter(torch.full((sum(continuous),), float(np.log(settings.init_std))))
+        # The initial policy prefers no direction and rarely kicks.
         last = orthogonal(self.actor.body, 0.01, generator)
         with torch.no_grad():
-            last.bias.copy_(torch.where(self._smooth, 0.0, settings.threshold_bias))
-        weights = [*self.actor.parameters(), *self._spread.parameters()]
+            last.bias.copy_(torch.where(self._continuous, 0.0, settings.threshold_bias))
+        weights = [*self.actor.parameters(), self._log_std]
         self._actor_adam = Adam(weights, settings.learning_rate, eps=1e-5)
         self._critic_adam = Adam(list(self.critic.parameters()), settings.learning_rate, eps=1e-5)
 
@@ -141,23 +139,23 @@ class PPO(Learner):
     def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
         """Draw actions: (n, observation and state) -> (n, action), log-probabilities (n,), values (n,)."""
         seen = torch.from_numpy(observation.astype(np.float32))
-        output = self._decided(seen)
-        noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._spread["log"])), np.float32))
-        toss = torch.from_numpy(rng.random((len(seen), int((~self._smooth).sum())), np.float32))
+        output = self._policy_output(seen)
+        noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._log_std)), np.float32))
+        uniform = torch.from_numpy(rng.random((len(seen), int((~self._continuous).sum())), np.float32))
         action = torch.empty_like(output)
-        action[:, self._smooth] = output[:, self._smooth] + self._spread["log"].exp() * noise
-        kicks = toss < torch.sigmoid(output[:, ~self._smooth])
-        action[:, ~self._smooth] = torch.where(kicks, 1.0, -1.0)
-        log_probability, _ = self._weigh(output, action)
-        return (_doubles(action), _doubles(log_probability), _doubles(self._valued(seen)))
+        action[:, self._continuous] = output[:, self._continuous] + self._log_std.exp() * noise
+        kicks = uniform < torch.sigmoid(output[:, ~self._continuous])
+        action[:, ~self._continuous] = torch.where(kicks, 1.0, -1.0)
+        log_probability, _ = self._evaluate_actions(output, action)
+        return (_to_numpy(action), _to_numpy(log_probability), _to_numpy(self._values(seen)))
 
     @torch.no_grad()
-    def worth(self, observation: Floats) -> Floats:
+    def values(self, observation: Floats) -> Floats:
         """Return V of (n, observation and state), (n,)."""
-        return _doubles(self._valued(torch.from_numpy(observation.astype(np.float32))))
+        return _to_numpy(self._values(torch.from_numpy(observation.astype(np.float32))))
 
-    def look_ahead(self, share: float) -> None:
-        """Discount as after a ``share`` of the steps: patience is learned after what pays at once."""
+    def anneal_gamma(self, share: float) -> None:
+        """Set the discount for when ``share`` of the run's steps is over: the horizon grows linearly."""
         first, last = self.settings.gamma, self.settings.final_gamma
         if last is not None:
             self._gamma = 1.0 - 1.0 / ((1.0 - share) / (1.0 - first) + share / (1.0 - last))
@@ -193,8 +191,8 @@ class PPO(Learner):
     ) -> None:
         """Take a step of (3), with a bonus for entropy; with ``report`` add to the diagnostics."""
         settings = self.settings
-        output = self._decided(seen)
-        log_probability, entropy = self._weigh(output, action)
+        output = self._policy_output(seen)
+        log_probability, entropy = self._evaluate_actions(output, action)
         advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
         log_ratio = log_probability - old
         ratio = log_ratio.exp()
@@ -218,7 +216,7 @@ class PPO(Learner):
 
     def _update_value(self, seen: Tensor, target: Tensor, report: bool = False) -> None:
         """Take a step of (4); with ``report`` add to the diagnostics."""
-        value = self._valued(seen)
+        value = self._values(seen)
         loss = (value - target).square().mean()
         weights = self._critic_adam.weights
         gradients = torch.autograd.grad(0.5 * loss, weights)
@@ -227,34 +225,38 @@ class PPO(Learner):
             mean = value.detach().mean()
             self.diagnostics.add(value_loss=loss.detach(), value_mean=mean, value_grad_norm=norm)
 
-    def _decided(self, seen: Tensor) -> Tensor:
-        """Return the means of normal entries and log-odds of the others, (m, action)."""
-        own = seen[:, : self._own]
+    def _policy_output(self, seen: Tensor) -> Tensor:
+        """Return the means of the normal entries and the log-odds of the others, (m, action)."""
+        own = seen[:, : self._observed]
         output: Tensor = self.actor.body(self.actor.turned(own) * self.actor.inverse_scale)
-        return torch.where(self._smooth, self.actor.turned_back(own, torch.tanh(output)), output)
+        return torch.where(self._continuous, self.actor.turned_back(own, torch.tanh(output)), output)
 
-    def _valued(self, seen: Tensor) -> Tensor:
+    def _values(self, seen: Tensor) -> Tensor:
         """Return V (m,) of (m, observation and state)."""
-        if self._turns:
-            own = self.actor.turned(seen[:, : self._own])
-            seen = torch.cat([own, seen[:, self._own :]], -1)
+        if self._in_ball_frame:
+            own = self.actor.turned(seen[:, : self._observed])
+            seen = torch.cat([own, seen[:, self._observed :]], -1)
         value: Tensor = self.critic(seen)
         return value
 
-    def _weigh(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
-        """Return log-probability and entropy, both (m,), of actions (m, action), given what was decided."""
-        log_spread = self._spread["log"]
-        off = (action[:, self._smooth] - output[:, self._smooth]) * (-log_spread).exp()
-        normal = -0.5 * off.square() - log_spread - _LOG_ROOT
-        odds, kicks = output[:, ~self._smooth], action[:, ~self._smooth]
+    def _evaluate_actions(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
+        """Return log-probability and entropy, both (m,), of actions (m, action) under the policy's output."""
+        log_std = self._log_std
+        off = (action[:, self._continuous] - output[:, self._continuous]) * (-log_std).exp()
+        normal = -0.5 * off.square() - log_std - _LOG_ROOT
+        odds, kicks = output[:, ~self._continuous], action[:, ~self._continuous]
         # log sigmoid(x) = -softplus(-x), and 1 - sigmoid(x) = sigmoid(-x).
-        coins = -softplus(-odds * kicks)
-        tossed = softplus(odds) - odds * torch.sigmoid(odds)
-        entropy = (log_spread + 0.5 + _LOG_ROOT).sum() + tossed.sum(-1)
-        return normal.sum(-1) + coins.sum(-1), entropy
+        thresholds = -softplus(-odds * kicks)
+        threshold_entropy = softplus(odds) - odds * torch.sigmoid(odds)
+        entropy = (log_std + 0.5 + _LOG_ROOT).sum() + threshold_entropy.sum(-1)
+        return normal.sum(-1) + thresholds.sum(-1), entropy
 
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
-        return (("actor", self.actor), ("critic", self.critic), ("spread", self._spread))
+        return (
+            ("actor", self.actor),
+            ("critic", self.critic),
+            ("spread", nn.ParameterDict({"log": self._log_std})),
+        )
 
 
 def orthogonal(body: nn.Sequential, last_gain: float, generator: torch.Generator) -> nn.Linear:
@@ -281,5 +283,5 @@ def advantages(rollout: Rollout, gamma: float, gae_lambda: float) -> Floats:
     return result
 
 
-def _doubles(tensor: Tensor) -> Floats:
+def _to_numpy(tensor: Tensor) -> Floats:
     return np.asarray(tensor.numpy(), dtype=np.float64)

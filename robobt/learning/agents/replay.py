@@ -18,7 +18,7 @@ Floats = NDArray[np.float32]
 
 @dataclass(slots=True)
 class Bootstrap:
-    """A return to bootstrap: target = reward + discount * Q(next observation); rows as in Transitions."""
+    """An n-step return: target = reward + discount * Q(next observation); rows as in Transitions."""
 
     reward: Tensor
     discount: Tensor
@@ -27,10 +27,10 @@ class Bootstrap:
 
 @dataclass(slots=True)
 class Batch:
-    """Rows drawn from a replay.
+    """Rows sampled from a replay.
 
-    ``bootstraps`` has one for each horizon of the returns in the replay; ``weights`` (batch,) are for
-    importance, None when sampled uniformly; ``rows`` (batch,) are indices in the replay.
+    ``bootstraps`` has one entry per horizon of the returns in the replay; ``weights`` (batch,) are importance
+    weights, None when sampled uniformly; ``rows`` (batch,) are indices in the replay.
     """
 
     observation: Tensor
@@ -41,12 +41,12 @@ class Batch:
 
 
 class Replay:
-    """A ring of transitions behind an optional part that is never overwritten.
+    """A ring buffer of transitions after an optional part that is never overwritten.
 
     Every row is packed as observation, action, then for each horizon reward,
     discount and next observation, so that a batch is one gather.
 
-    ``capacity`` counts rows, demonstrations included; each holds a return over each of ``horizons`` steps.
+    ``capacity`` is the number of rows, demonstrations included; ``horizons`` that of returns per row.
     """
 
     def __init__(self, capacity: int, observation_size: int, action_size: int, horizons: int = 1) -> None:
@@ -63,10 +63,10 @@ class Replay:
         return self._filled
 
     def add(self, *transitions: Transitions) -> NDArray[np.int64]:
-        """Append transitions, over the oldest when full, the same once for each horizon; return their rows.
+        """Append transitions, given once per horizon, over the oldest when full; return their rows.
 
         Raises:
-            ValueError: they are more than the replay has room for.
+            ValueError: there are more than the replay has room for.
         """
         first = transitions[0]
         parts = [first.observation, first.action]
@@ -128,8 +128,8 @@ class PrioritisedReplay(Replay):
     P(i) = p_i^alpha / sum, and importance weights (N P(i))^-beta, the largest of a
     batch scaled to 1, correct for it. New rows get the largest priority yet.
 
-    An ``alpha`` of 0 samples uniformly, 1 in proportion to the priorities; ``beta`` is how far the weights
-    correct for it, 1 in full; ``epsilon`` is added to every priority, ``bonus`` to those of kept rows
+    An ``alpha`` of 0 samples uniformly, 1 in proportion to the priorities; with a ``beta`` of 1 the weights
+    correct for it in full; ``epsilon`` is added to every priority, ``bonus`` to those of kept rows
     (demonstrations).
 
     Source: Schaul et al., "Prioritized experience replay", 2015; the bonus from
@@ -169,8 +169,8 @@ class PrioritisedReplay(Replay):
     def update_priorities(self, rows: NDArray[np.int64], errors: NDArray[np.float64]) -> None:
         """Set the priorities of rows after an update.
 
-        ``rows`` (batch,) are indices in the replay; ``errors`` (batch,) squared TD errors, with whatever else
-        raises a priority.
+        ``rows`` (batch,) are indices in the replay; ``errors`` (batch,) squared TD errors, with any other
+        terms of the priorities added.
         """
         priority = errors + self._epsilon + self._bonus * (rows < self.kept)
         self._largest = max(self._largest, float(priority.max()))

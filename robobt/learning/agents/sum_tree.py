@@ -10,7 +10,7 @@ class SumTree:
     """Priorities of ``capacity`` items, 0 to begin with.
 
     Setting and sampling go level by level over whole arrays, so a batch costs
-    some twenty array operations whatever its size.
+    about twenty array operations whatever its size.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -27,7 +27,7 @@ class SumTree:
         return self._sums[items + self._leaves]
 
     def set(self, items: NDArray[np.int64], priorities: NDArray[np.float64]) -> None:
-        """Set priorities; of an item named twice one of the two stands."""
+        """Set priorities; of an item given twice, one of the two is kept."""
         nodes = items + self._leaves
         self._sums[nodes] = priorities
         while nodes[0] > 1:

@@ -1,7 +1,7 @@
-"""Checkpoints: arrays and plain data in one file that is whole or not there.
+"""Checkpoints: arrays and plain data in one file, written atomically.
 
-The file is a magic word, a checksum and a zip of arrays, so that nothing in it
-is code and damage is noticed before anything is taken from it.
+The file is a magic word, a checksum and a zip of arrays: nothing in it is code, and
+damage is noticed before anything is read from it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Arrays = dict[str, NDArray[np.generic]]
 
 
 class RunState(TypedDict):
-    """What a run goes on from besides its arrays."""
+    """The state of a run besides its arrays."""
 
     steps: int
     rng: Mapping[str, Any]

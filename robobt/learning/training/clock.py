@@ -1,4 +1,4 @@
-"""What a training run costs, over all the processes it took."""
+"""CPU and wall time of a training run."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 
 class RunClock:
-    """The CPU and wall time of a run, that of interrupted processes included; evaluations count apart."""
+    """CPU and wall time of a run over all its processes; evaluations are counted separately."""
 
     def __init__(self) -> None:
         self._cpu, self._wall = time.process_time(), time.monotonic()
@@ -28,7 +28,7 @@ class RunClock:
 
     @property
     def wall_s(self) -> float:
-        """Wall time in all [s]."""
+        """Total wall time [s]."""
         return self._earlier_wall_s + self.here_s
 
     @property
@@ -47,10 +47,10 @@ class RunClock:
         self.evaluation_s += spent
 
     def state(self) -> dict[str, float]:
-        """Return what a resumed run goes on from."""
+        """Return the times so far, for a resumed run."""
         return {"cpu_s": self.cpu_s, "wall_s": self.wall_s, "evaluation_s": self.evaluation_s}
 
     def restore(self, state: Mapping[str, float]) -> None:
-        """Go on from the ``state`` of an interrupted run."""
+        """Continue from the ``state`` of an interrupted run."""
         self._earlier_cpu_s, self._earlier_wall_s = state["cpu_s"], state["wall_s"]
         self.evaluation_s = state["evaluation_s"]

@@ -1,4 +1,4 @@
-"""Each switch on the fast preset, one at a time, and the paper's setting beside them, on one budget."""
+"""A comparison of the fast preset, single changes to it, and the paper's setting, on one budget of steps."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ PAPER = "paper"
 
 
 def variants(task: str, changes: Mapping[str, object] | None = None) -> dict[str, TrainSettings]:
-    """Return settings by name: the fast preset, it with one switch changed each, and the paper's.
+    """Return settings by name: the fast preset, variants with one switch changed, and the paper's.
 
-    They have the fast preset's budget of steps and stop when its bar is met, but
-    for the paper's, which has its own.
+    All but the paper's have the fast preset's budget of steps and stop when its bar is met.
 
     ``changes`` apply to all of them, by dotted name.
     """
@@ -46,15 +45,15 @@ def compare(
     on_variant: Callable[[str], None] | None = None,
     on_progress: OnProgress | None = None,
 ) -> dict[str, Summary]:
-    """Train every variant with every seed; what is in ``out`` already is kept or resumed.
+    """Train every variant with every seed; finished runs in ``out`` are kept, unfinished ones resumed.
 
-    ``comparison.json`` and ``comparison.md`` are written anew after each variant.
+    ``comparison.json`` and ``comparison.md`` are rewritten after each variant.
 
     Args:
         task: what is learned.
         out: a folder; each variant gets one in it.
         seeds: of each variant.
-        only: names of variants; all of them without.
+        only: names of variants; all if empty.
         changes: to every variant's settings, by dotted name.
         workers: processes.
         on_variant: called with the name of the next variant.

@@ -1,4 +1,4 @@
-"""A finished training run as a model file, with all that is known of it on the card."""
+"""Export of a finished training run as a model file with its card."""
 
 from __future__ import annotations
 

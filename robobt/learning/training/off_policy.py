@@ -1,4 +1,4 @@
-"""Learning from a replay, step by step: DDPG and what later papers changed about it."""
+"""Training from a replay buffer: DDPG and its descendants."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class OffPolicyRun(Run):
             self._replay.update_priorities(batch.rows, (errors + weight * gradients).double().numpy())
 
     def _begin(self) -> None:
-        """Fill the replay with demonstrations, and learn from them before the first step."""
+        """Fill the replay with demonstrations, and pretrain on them."""
         settings = self._settings.replay.demonstrations
         if not settings.episodes:
             return

@@ -1,4 +1,4 @@
-"""Learning from rollouts, each used up at once: PPO."""
+"""Training from rollouts: PPO."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robobt.learning.training.settings import TrainSettings, environment_of
 
 
 class OnPolicyRun(Run):
-    """A run of :class:`~robobt.learning.agents.ppo.PPO`; it advances by whole rollouts."""
+    """A run of :class:`~robobt.learning.agents.ppo.PPO`, which advances by whole rollouts."""
 
     _agent: PPO
 
@@ -67,25 +67,25 @@ class OnPolicyRun(Run):
         self._past.restore(part(arrays, "past/"), self._agent.actor.build)
 
     def _remember(self) -> None:
-        """Add the policy as it is to the past selves, and to the folder, if anybody plays against them."""
+        """Add the present policy to the past selves and to the folder, where a run has any."""
         if self._problem.later is not None:
             self._folder.keep(self._past.add(self._agent.actor, self._steps), self._steps)
 
     def _take_over(self, folder: Path) -> None:
-        """Begin with the best policy of a run that has ended; what that did not see changes nothing yet."""
+        """Begin with the best policy of a finished run; entries it did not observe get weights of 0."""
         if not (folder / ACTOR).is_file():
-            raise TrainError(f"init: {folder} is not the folder of a run that has ended")
+            raise TrainError(f"init: {folder} is not the folder of a finished run")
         given, own = load_actor(folder / ACTOR), self._agent.actor
         if given.build.get("vectors") != own.build.get("vectors"):
-            raise TrainError(f"init: the policy of {folder} was asked in another frame, see ppo.frame")
+            raise TrainError(f"init: the policy of {folder} was trained in another frame, see ppo.frame")
         seen, sees = _seen(read_settings(folder)), _seen(self._settings)
         known = [k for k, name in enumerate(sees) if name in seen]
         scale = [own.build["scale"][k] for k in known]
         if [sees[k] for k in known] != seen or given.build != {**own.build, "scale": scale}:
             raise TrainError(
-                f"init: the policy of {folder} sees {len(seen)} entries with layers of "
+                f"init: the policy of {folder} observes {len(seen)} entries with layers of "
                 f"{given.build['hidden']}, this run's {len(sees)} with {own.build['hidden']}, "
-                "or others or of other sizes"
+                "or entries of other names or scales"
             )
         weights = given.state_dict()
         for name in ("inverse_scale", "body.0.weight"):
@@ -100,13 +100,13 @@ class OnPolicyRun(Run):
         rollout = self._roll_out()
         share = self._share
         self._agent.set_learning_rates(1.0 - share)
-        self._agent.look_ahead(share)
+        self._agent.anneal_gamma(share)
         value_alone = self._steps < self._settings.ppo.critic_warmup_steps
         self._agent.update(rollout, self._rng, value_alone)
         self._steps += rollout.reward.size
 
     def _roll_out(self) -> Rollout:
-        """Let the policy play for a while."""
+        """Collect a rollout."""
         ticks, n, agent = self._settings.ppo.num_steps, self._task.n, self._agent
         sizes = self._task.observation_size, self._task.action_size
         rollout = Rollout.empty(ticks, n, *sizes)
@@ -122,14 +122,14 @@ class OnPolicyRun(Run):
             rollout.reward[t], rollout.terminated[t] = step.reward, step.terminated
             rollout.ended[t] = step.terminated | step.truncated
             if step.truncated.any():
-                rollout.next_value[t, step.truncated] = agent.worth(step.final_observation[step.truncated])
+                rollout.next_value[t, step.truncated] = agent.values(step.final_observation[step.truncated])
             self._observation = step.observation
-        # What follows where no episode has ended is the next step's.
-        following = np.concatenate((rollout.value[1:], agent.worth(self._observation)[None]))
+        # Where no episode has ended the next value is that of the next step.
+        following = np.concatenate((rollout.value[1:], agent.values(self._observation)[None]))
         rollout.next_value[~rollout.ended] = following[~rollout.ended]
         return rollout
 
 
 def _seen(settings: TrainSettings) -> list[str]:
-    """Return the names of what the policy of such a run sees."""
+    """Return the names of the observation's entries in such a run."""
     return [entry.name for entry in make_task(environment_of(settings), 1).observation.entries]

@@ -11,7 +11,7 @@ from robobt.config.yaml import read_yaml
 
 _PRESETS = Path(__file__).parent / "presets"
 SWITCHES = _PRESETS / "switches.yaml"
-"""The changes to the fast preset that comparisons are made of."""
+"""The changes to the fast preset that ``robobt bench train`` compares."""
 
 
 class SettingsError(ConfigError):
@@ -28,7 +28,9 @@ def _folders(task: str) -> tuple[Path, ...]:
 
 
 def read_preset(task: str, preset: str, seen: tuple[str, ...] = ()) -> tuple[dict[str, Any], str]:
-    """Return what a preset of a task, or a YAML file, says, and where that is; ``seen`` have extended it.
+    """Return the data of a preset or a YAML file, with what it extends, and the file's path.
+
+    ``seen`` are the presets that extend it.
 
     Raises:
         SettingsError: there is none, it cannot be read, or it extends itself.
@@ -61,7 +63,7 @@ def assign(data: dict[str, Any], path: list[str], value: object, name: str) -> N
     """Set one value in nested data.
 
     Raises:
-        SettingsError: ``path`` leads through something that is no group; ``name`` is what it is called.
+        SettingsError: a part of ``path`` is not a group; the message names the field ``name``.
     """
     *groups, last = path
     for group in groups:

@@ -1,4 +1,4 @@
-"""Where a training run stands, told now and then."""
+"""Progress reports of a training run."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _EVERY = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Where a run stands.
+    """Progress of a run.
 
     Attributes:
         seed: of the run.
-        steps, of: environment steps taken, and at most.
-        wall_s, cpu_s: spent so far, in interrupted processes too.
-        left_s: time to the last step at the present pace; an early stop comes sooner.
+        steps, of: environment steps taken and in total.
+        wall_s, cpu_s: time spent so far, in interrupted processes too.
+        left_s: estimated time to the last step, without an early stop.
         latest, best: evaluations, None before the first.
     """
 

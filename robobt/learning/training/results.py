@@ -1,4 +1,4 @@
-"""What training runs have come to: evaluations on the way, held-out figures, and several seeds together."""
+"""Results of training runs: evaluations in training, held-out figures, and summaries of several seeds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.settings import TrainSettings
 
 BARS: dict[str, tuple[float, float]] = {"go_to_ball": (0.995, 1.04), "shoot": (0.98, 0.45)}
-"""What counts as learned: share of successes, and time over the optimum or, for Shoot, to the kick [s]."""
+"""The bar for "learned": success rate, and time over the optimum or, for Shoot, until the kick [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Validation:
         success: share of the starts.
         mean_time: of the successes [s]; None without any.
         time_ratio: that time over the optimum; None where unknown.
-        mean_return: undiscounted; tells how the reward is collected, not how good the policy is.
+        mean_return: undiscounted; no measure of how good the policy is.
         cpu_s: CPU time spent on collecting and learning.
         evaluation_cpu_s: CPU time spent on evaluations.
         wall_s: time passed, that of interrupted processes included.
@@ -47,11 +47,11 @@ class Validation:
     losses: dict[str, float | None] = field(default_factory=dict)
 
     def score(self, enough: float = 1.0) -> tuple[float, float]:
-        """What policies are ranked by: successes up to ``enough``, then speed. Never by the return."""
+        """Return the key by which policies are ranked: success up to ``enough``, then speed."""
         return (min(self.success, enough), float("-inf") if self.mean_time is None else -self.mean_time)
 
     def reaches(self, success: float, time: float = float("inf")) -> bool:
-        """Return whether so many starts succeeded in that time (over the optimum where that is known)."""
+        """Return whether success rate and time (over the optimum where that is known) reach a bar."""
         taken = self.mean_time if self.time_ratio is None else self.time_ratio
         return self.success >= success and taken is not None and taken <= time
 
@@ -70,9 +70,9 @@ class HeldOutFigures(TypedDict):
 
 
 class Figures(TypedDict):
-    """What ``result.json`` holds.
+    """The content of ``result.json``.
 
-    ``best_steps`` is when the best actor was found, ``cpu_s`` the CPU time of collecting and
+    ``best_steps`` is the step at which the best actor was found, ``cpu_s`` the CPU time of collecting and
     learning, ``weights`` a hash of the agent's final weights.
     """
 
@@ -94,15 +94,15 @@ class Figures(TypedDict):
 
 @dataclass(frozen=True, slots=True)
 class TrainResult:
-    """A run that has ended.
+    """A finished run.
 
     Attributes:
         settings: of the run.
-        folder: its files.
+        folder: with its files.
         actor: the best actor by the validation starts: raw observation in SI units ->
             action in [-1, 1].
         validations: every evaluation on the validation starts.
-        figures: what ``result.json`` holds.
+        figures: the content of ``result.json``.
     """
 
     settings: TrainSettings
@@ -121,7 +121,7 @@ class Spread(TypedDict):
 
 
 class Reached(TypedDict):
-    """How many seeds reached a bar, and what it cost them; None unless all did."""
+    """How many seeds reached a bar, and at what cost; None unless all did."""
 
     reached: int
     cpu_s: Spread | None
@@ -129,10 +129,11 @@ class Reached(TypedDict):
 
 
 class Summary(TypedDict):
-    """Several seeds of a run together.
+    """Summary of several seeds of a run.
 
-    ``best_seed`` is by the validation starts; ``to_99`` is the cost to 99 % of them, ``to_bar`` that
-    to :data:`BARS`; ``success``, ``mean_time`` and ``time_ratio`` are those on the held-out starts.
+    ``best_seed`` is chosen by the validation starts; ``to_99`` is the cost of reaching 99 % of them and
+    ``to_bar`` that of reaching :data:`BARS`; ``success``, ``mean_time`` and ``time_ratio`` are on held-out
+    starts.
     """
 
     task: str
@@ -165,7 +166,7 @@ def held_out_figures(evaluation: Evaluation) -> HeldOutFigures:
 
 
 def title_of(settings: TrainSettings) -> str:
-    """Return what a run is called in pictures and tables."""
+    """Return the title of a run in pictures and tables."""
     return f"{settings.task}, {settings.preset}" if settings.preset else settings.task
 
 
@@ -194,7 +195,7 @@ def summary_of(results: Sequence[TrainResult]) -> Summary:
 
 
 def figures_of(results: Sequence[TrainResult]) -> dict[str, object]:
-    """Return every seed's figures and all of them together, for machines."""
+    """Return every seed's figures and their summary as plain data."""
     return {
         "runs": [{**result.figures, "folder": str(result.folder)} for result in results],
         "together": summary_of(results),

@@ -1,4 +1,4 @@
-"""What all training runs do: evaluate, keep the best, and be able to go on after being killed."""
+"""The base of training runs: evaluation, selection of the best actor, checkpoints and resuming."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from robobt.learning.training.settings import TrainSettings
 
 
 class TrainError(RobobtError, RuntimeError):
-    """A run cannot go on; the message is one line."""
+    """A run that cannot continue; the message is one line."""
 
 
 class Agent(Protocol):
-    """What learns."""
+    """The learner of a run."""
 
     actor: Actor
     updates: int
     diagnostics: Diagnostics
 
     def state(self) -> Arrays:
-        """Return all that it goes on from, as arrays by name."""
+        """Return its whole state, as arrays by name."""
 
     def restore(self, state: Arrays) -> None:
-        """Take over another agent's :meth:`state`."""
+        """Restore the :meth:`state` of another agent."""
 
 
 class Run(ABC):
-    """A training run; a subclass says how it collects and learns."""
+    """A training run; subclasses collect experience and learn from it."""
 
     _agent: Agent
 
@@ -74,28 +74,28 @@ class Run(ABC):
     def _advance(self) -> None:
         """Collect experience, count its steps, and learn from it."""
 
-    def _begin(self) -> None:  # noqa: B027 - most learners begin with the first step
-        """Do what comes before the first step of a new run."""
+    def _begin(self) -> None:  # noqa: B027 - most learners need nothing here
+        """Prepare a new run before its first step."""
 
     def _settle(self) -> None:  # noqa: B027
-        """Do what has to be done before the simulator is built anew."""
+        """Finish what depends on the simulator before it is rebuilt."""
 
     def _kept(self) -> Arrays:
-        """Return what a resumed run needs besides agent and evaluations, as arrays by name."""
+        """Return what a resumed run needs besides its agent and evaluations, as arrays by name."""
         return {}
 
     @property
     def _share(self) -> float:
-        """How much of the run is over, which settings that change on the way go by."""
+        """Share of the run's steps that is over, by which schedules go."""
         return self._steps / self._settings.steps
 
     @property
     def _evaluated(self) -> Actor:
-        """The actor that is evaluated and kept."""
+        """The actor that is evaluated and selected."""
         return self._agent.actor
 
     def to_end(self) -> TrainResult:
-        """Train until the last step or until it is good enough, and write what came of it."""
+        """Train until the last step or until it is good enough, and write the results."""
         stored = self._folder.stored
         if stored is None:
             self._begin()
@@ -120,7 +120,7 @@ class Run(ABC):
         return self._finish()
 
     def _rebuild(self) -> None:
-        """Build the simulator anew: which bodies are in contact is in no checkpoint."""
+        """Rebuild the simulator, since checkpoints do not have its contacts."""
         self._observation = self._task.reset(training_seed(self._settings.seed, self._steps))
 
     def _evaluate(self) -> None:

@@ -1,10 +1,10 @@
-"""The folder of a training run, and what is read back from it.
+"""The folder of a training run: writing it and reading it back.
 
 | file | what |
 | --- | --- |
 | ``settings.yaml`` | every setting of the run |
 | ``log.jsonl`` | one line per evaluation: :class:`~robobt.learning.training.results.Validation` |
-| ``checkpoint``, ``checkpoint.previous`` | all that a resumed run needs; gone once the run has ended |
+| ``checkpoint``, ``checkpoint.previous`` | the state for resuming; removed when the run ends |
 | ``actor.pt`` | the best actor's weights, and how to build it |
 | ``result.json`` | held-out figures: :class:`~robobt.learning.training.results.Figures` |
 | ``curves.png`` | success and time over steps |
@@ -64,12 +64,12 @@ _TAGS = {
 
 
 class RunFolderError(RobobtError, ValueError):
-    """A run's folder cannot be used; the message is one line that names it."""
+    """A run's folder that cannot be used; the message is one line that names it."""
 
 
 @contextmanager
 def alone_in(path: Path) -> Iterator[None]:
-    """Keep other runs out of a folder, which is made if it is not there; a run that dies lets them in."""
+    """Lock a folder, which is created if need be, against other runs; the lock ends with the process."""
     if fcntl is None or (path.exists() and not path.is_dir()):
         yield
         return
@@ -93,15 +93,15 @@ class RunFolder:
     Args:
         path: the folder; made if it is not there.
         settings: of the run.
-        resume: whether to go on with a run that is in the folder.
+        resume: whether to resume a run that is in the folder.
 
     Attributes:
-        result: of a run that has ended already, None else.
-        stored: arrays and plain data of the checkpoint to go on from; None to start.
-        warning: why an older checkpoint than the newest was taken, None where it was not.
+        result: of a run that is already finished, else None.
+        stored: arrays and plain data of the checkpoint to resume from; None to start.
+        warning: why an older checkpoint than the newest is used, else None.
 
     Raises:
-        RunFolderError: it holds a run that is not to be resumed, or was made with other settings.
+        RunFolderError: it has a run that is not to be resumed, or one with other settings.
         CheckpointError: no checkpoint can be read.
     """
 
@@ -154,7 +154,7 @@ class RunFolder:
             self._events.flush()
 
     def keep(self, actor: Actor, steps: int) -> None:
-        """Write the policy as it was after so many steps among the past selves."""
+        """Write the policy after ``steps`` to the folder of past selves."""
         (self.path / PAST).mkdir(exist_ok=True)
         save_actor(actor, self.path / PAST / f"{steps:010}.pt")
 
@@ -163,7 +163,7 @@ class RunFolder:
         checkpoint.save(self.path / CHECKPOINT, arrays, state)
 
     def finish(self, result: TrainResult) -> None:
-        """Write actor, curves and figures, the figures last: they say that the run has ended."""
+        """Write actor, curves and figures; the figures last, since they mark the run as finished."""
         save_actor(result.actor, self.path / ACTOR)
         name = f"seed {result.settings.seed}"
         draw_curves({name: result.validations}, title_of(result.settings), self.path / CURVES)
@@ -173,7 +173,7 @@ class RunFolder:
             path.unlink(missing_ok=True)
 
     def _has_begun(self) -> bool:
-        """Return whether there is anything to lose; before the first evaluation there is nothing."""
+        """Return whether there is anything to lose: results, a checkpoint or a log."""
         log = self.path / LOG
         written = any(path.exists() for path in (self.path / RESULT, *self._checkpoints()))
         return written or (log.exists() and log.stat().st_size > 0)
@@ -203,7 +203,7 @@ class RunFolder:
             self.stored = arrays, state
 
     def _kept_lines(self) -> list[str]:
-        """Return the log up to the checkpoint; a resumed run writes the lines after it again."""
+        """Return the lines of the log up to the checkpoint; a resumed run writes the others again."""
         validations = [] if self.stored is None else self.stored[1]["validations"]
         return [json.dumps(line) + "\n" for line in validations]
 
@@ -217,7 +217,7 @@ def scalars_of(validation: Validation) -> dict[str, float]:
 
 
 def load_run(folder: str | Path) -> TrainResult:
-    """Load a run that has ended."""
+    """Load a finished run."""
     path = Path(folder)
     try:
         figures: Figures = json.loads((path / RESULT).read_text(encoding="utf-8"))
@@ -242,14 +242,14 @@ def read_settings(folder: Path) -> TrainSettings:
 
 
 def save_actor(actor: Actor, path: Path) -> None:
-    """Write an actor: weights and how to build it."""
+    """Write an actor: its weights and the arguments to build it."""
     buffer = io.BytesIO()
     torch.save({"build": actor.build, "weights": actor.state_dict()}, buffer)
     write_atomically(path, buffer.getvalue())
 
 
 def load_actor(path: str | Path) -> Actor:
-    """Load an actor from its file; nothing in the file is run."""
+    """Load an actor from its file; no code in the file is run."""
     try:
         stored = torch.load(path, weights_only=True)
         actor = Actor(**stored["build"])

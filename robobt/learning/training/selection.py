@@ -1,4 +1,4 @@
-"""Which actor of a run is shipped, and when it is good enough: by the validation starts."""
+"""Selection of a run's best actor and early stopping, by the validation starts."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class Selection:
         return self.validations[-1] if self.validations else None
 
     def add(self, validation: Validation, actor: Actor) -> None:
-        """Add an evaluation, and keep its actor if it is the best yet."""
+        """Add an evaluation, and keep its actor if it is the best so far."""
         self.validations.append(validation)
         if self.best is None or self._score(validation) > self._score(self.best):
             self.best = validation
             self.weights = {key: value.numpy().copy() for key, value in actor.state_dict().items()}
 
     def is_good_enough(self) -> bool:
-        """Return whether the run may stop early: so many evaluations in a row have met its bar."""
+        """Return whether the run may stop early: the last ``stop_after`` evaluations have met its bar."""
         settings = self._settings
         if settings.stop_success is None or len(self.validations) < settings.stop_after:
             return False
@@ -63,7 +63,7 @@ class Selection:
         return [asdict(validation) for validation in self.validations]
 
     def restore(self, validations: Sequence[Mapping[str, Any]], weights: Arrays) -> None:
-        """Take over another selection's :meth:`state` and weights."""
+        """Restore another selection's :meth:`state` and weights."""
         self.validations = [Validation(**validation) for validation in validations]
         self.best = max(self.validations, key=self._score, default=None)
         self.weights = weights

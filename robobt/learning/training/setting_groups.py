@@ -1,4 +1,4 @@
-"""Groups of a run's settings: replay, collection, evaluation, and who opposes the learners when."""
+"""Groups of a run's settings: replay, collection, evaluation, self-play and stages."""
 
 from __future__ import annotations
 
@@ -98,30 +98,30 @@ class CollectionSettings(Settings):
 class EvaluationSettings(Settings):
     """How progress is evaluated: by success and time, never by the return.
 
-    A slow policy near the ball collects more reward than a fast one.
+    The return misleads: near the ball a slow policy collects more reward than a fast one.
     """
 
     every: int = Field(20_000, ge=1, description="steps between evaluations")
-    starts: int = Field(300, ge=1, le=100_000, description="fixed validation starts of each evaluation")
+    starts: int = Field(300, ge=1, le=100_000, description="number of fixed validation starts")
     held_out: int = Field(
-        1_000, ge=1, le=100_000, description="fixed starts that the best actor is evaluated on"
+        1_000, ge=1, le=100_000, description="number of fixed starts on which the best actor is evaluated"
     )
     environment: dict[str, Any] = Field(
         default_factory=dict,
-        description="changes to the environment for all evaluations, such as an opponent who stays the same",
+        description="changes to the environment in all evaluations, such as a fixed opponent",
     )
     held_out_environment: dict[str, Any] = Field(
         default_factory=dict,
-        description="further ones for the held-out starts, such as opponents never met",
+        description="further changes for the held-out starts, such as opponents not met in training",
     )
     enough: float = Field(
         1.0,
         gt=0,
         le=1,
-        description="share of successes from which on time alone says which weights are the best",
+        description="success rate above which only the mean time decides which weights are the best",
     )
     target_actor: bool = Field(
-        False, description="evaluate and ship the slow actor instead of the online one"
+        False, description="evaluate and keep the target actor instead of the online one"
     )
     stop_success: float | None = Field(
         None, ge=0, le=1, description="stop early once this share of the starts succeeds and ..."
@@ -140,32 +140,31 @@ Script = Literal["challenge", "still", "press", "mark", "wall", "attack", "pass"
 
 
 class PoolSettings(Settings):
-    """Who plays yellow's learners in a share of the arenas, where blue's alone learn; elsewhere all learn.
+    """Opponents of the learners in a share of the arenas; in the others the policy plays against itself.
 
-    For tasks with learners on both teams. Past selves are copies of the policy that learn no more and act
-    without noise; each of the pool plays in as many arenas as any other.
+    For tasks with learners on both teams. Opponents take the places of yellow's learners, so that only blue's
+    learn there. Past selves are frozen copies of the policy that act without noise; each plays in as many
+    arenas as any other.
     """
 
-    size: int = Field(8, ge=1, le=64, description="past selves, the newest")
-    every: int = Field(307_200, ge=1, description="steps between them, a multiple of rebuild_every")
-    share: float = Field(0.0, ge=0, le=1, description="of the learners that play against them")
-    scripts: tuple[Script, ...] = Field(
-        (), max_length=8, description="scripted field players in the places of yellow's learners"
-    )
-    scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
+    size: int = Field(8, ge=1, le=64, description="number of past selves; the newest are kept")
+    every: int = Field(307_200, ge=1, description="steps between past selves, a multiple of rebuild_every")
+    share: float = Field(0.0, ge=0, le=1, description="share of the learners that play against past selves")
+    scripts: tuple[Script, ...] = Field((), max_length=8, description="scripted opponents")
+    scripted: float = Field(0.0, ge=0, le=1, description="share of the learners that play against scripts")
     plays: tuple[GivenPlay, ...] = Field(
-        (), max_length=8, description="plays that move robots in those places, at their own, slow speed"
+        (), max_length=8, description="plays as opponents; they cost much computing time"
     )
-    played: float = Field(0.0, ge=0, le=1, description="share of the learners that play against those")
+    played: float = Field(0.0, ge=0, le=1, description="share of the learners that play against plays")
 
     @property
     def opponents(self) -> tuple[Script | PlaySettings, ...]:
-        """All but the past selves."""
+        """All opponents but the past selves."""
         return (*self.scripts, *self.plays)
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Of the learners: against past selves, then against each of the opponents."""
+        """Shares of the learners that play against past selves and against each of :attr:`opponents`."""
         scripted = [self.scripted / len(self.scripts) for _ in self.scripts]
         return (self.share, *scripted, *(self.played / len(self.plays) for _ in self.plays))
 
@@ -181,14 +180,14 @@ class PoolSettings(Settings):
 
 
 class StageSettings(Settings):
-    """A part of the steps in which the policy learns something else first."""
+    """A part of the run in which the environment or the pool differs: a curriculum."""
 
-    share: float = Field(gt=0, le=1, description="of the run's steps, beside the other stages'")
+    share: float = Field(gt=0, le=1, description="of the run's steps, relative to the other stages' shares")
     environment: dict[str, Any] = Field(
-        default_factory=dict, description="changes to the environment; evaluations stay in the run's own"
+        default_factory=dict, description="changes to the environment; evaluations use the run's own"
     )
     pool: dict[str, Any] = Field(
-        default_factory=dict, description="changes to the pool's shares and scripts; who is in it stays"
+        default_factory=dict, description="changes to the pool's shares and scripts; its past selves stay"
     )
 
     @model_validator(mode="after")

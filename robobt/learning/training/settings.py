@@ -1,4 +1,4 @@
-"""Settings of a training run, the environments that follow from them, and where they are loaded from."""
+"""Settings of a training run, loading them, and the environments that they describe."""
 
 from __future__ import annotations
 
@@ -27,33 +27,32 @@ _M = TypeVar("_M", bound=BaseModel)
 
 
 class TrainSettings(Settings):
-    """A training run: with a seed and a version it gives the same weights, bit for bit, on a machine."""
+    """A training run; the same settings give the same weights, bit for bit, on one machine and version."""
 
-    task: str = Field(description="what is learned, by name: go_to_ball, shoot, ...")
-    preset: str = Field("", description="where these settings come from")
-    seed: int = Field(0, ge=0, le=2**53 - 1, description="what all randomness follows from")
-    steps: int = Field(description="environment steps at most", ge=1, le=1_000_000_000)
+    task: str = Field(description="name of the task: go_to_ball, shoot, ...")
+    preset: str = Field("", description="name or file of the preset that these settings come from")
+    seed: int = Field(0, ge=0, le=2**53 - 1, description="of all random numbers of the run")
+    steps: int = Field(description="total environment steps", ge=1, le=1_000_000_000)
     environment: dict[str, Any] = Field(default_factory=dict, description="changes to the task's settings")
     worlds: tuple[dict[str, Any], ...] = Field(
         (),
         max_length=64,
-        description="changes to the environment, such as other simulators: the arenas and the validation "
-        "starts are shared evenly among these worlds; none for the environment alone",
+        description="changes to the environment, such as other simulators; arenas and validation "
+        "starts are divided evenly among these worlds; none for the environment alone",
     )
     stages: tuple[StageSettings, ...] = Field(
         (),
         max_length=16,
-        description="what is learned one after the other, by learner ppo; a stage begins when the simulator "
-        "is next built anew",
+        description="curriculum, for learner ppo; a stage begins when the simulator is next rebuilt",
     )
     init: str | None = Field(
         None,
-        description="the folder of a run that has ended, whose policy training begins with, by learner ppo; "
-        "it may have seen fewer robots",
+        description="folder of a finished run, whose policy training begins with, for learner ppo; its "
+        "observation may have fewer robots",
     )
     pool: PoolSettings = PoolSettings()
     learner: Literal["ddpg", "ppo"] = Field(
-        "ddpg", description="what learns: ddpg with the settings of agent, replay and collection, or ppo"
+        "ddpg", description="ddpg uses agent, replay and collection; ppo uses ppo and collection.num_envs"
     )
     agent: AgentSettings = AgentSettings()
     ppo: PPOSettings = PPOSettings()
@@ -63,10 +62,10 @@ class TrainSettings(Settings):
     rebuild_every: int = Field(
         20_000,
         ge=1,
-        description="steps after which the simulator is built anew and a checkpoint may be written; "
-        "fewer than a slow machine takes in a minute",
+        description="steps after which the simulator is rebuilt and a checkpoint may be written; "
+        "choose fewer than a slow machine makes in a minute",
     )
-    checkpoint_seconds: float = Field(20.0, ge=0, le=60, description="time between checkpoints at least [s]")
+    checkpoint_seconds: float = Field(20.0, ge=0, le=60, description="least time between checkpoints [s]")
     tensorboard: bool = Field(True, description="write TensorBoard events beside the log")
 
     @property
@@ -81,7 +80,7 @@ class TrainSettings(Settings):
 
     @property
     def algorithm(self) -> str:
-        """What learns, by the name of the paper whose switches are on; "ddpg" only without any of them.
+        """The algorithm, named by the papers whose switches are on; "ddpg" only without any of them.
 
         ``d4pg`` has a distributional critic, ``td3`` twin critics, a delayed actor or smoothed targets,
         ``ddpgfd`` keeps demonstrations; ``3-step ddpg`` is DDPG with 3-step returns.
@@ -213,7 +212,7 @@ def stages_of(settings: TrainSettings, source: str = "settings") -> tuple[TrainS
 
 
 def stage_after(settings: TrainSettings, steps: int) -> int:
-    """Return the index in :func:`stages_of` of what is learned after so many steps."""
+    """Return the index in :func:`stages_of` of the stage that is trained after ``steps``."""
     shares = [stage.share for stage in settings.stages]
     begun = [settings.steps * sum(shares[:index]) / sum(shares) for index in range(len(shares))]
     return max(sum(steps >= begin for begin in begun) - 1, 0)
@@ -239,7 +238,7 @@ def _check_rows(
 
 
 def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) -> None:
-    """Raise unless the pool of a stage, if there is one, can play in the run's ``environment``."""
+    """Raise unless the stage's pool, if it has one, can play in the run's ``environment``."""
     if not any(stage.pool.shares):
         return
     if not environment.two_alike:

@@ -64,7 +64,7 @@ def test_actions_are_weighed_as_a_normal_and_a_coin_are():
         taken = torch.from_numpy(action.astype(np.float32))
         normal, coin = Normal(torch.tanh(output[:, 0]), 0.7), Bernoulli(logits=output[:, 1])
         expected = normal.log_prob(taken[:, 0]) + coin.log_prob((taken[:, 1] > 0).float())
-        _, entropy = it._weigh(it._decided(torch.from_numpy(seen.astype(np.float32))), taken)
+        _, entropy = it._evaluate_actions(it._policy_output(torch.from_numpy(seen.astype(np.float32))), taken)
         assert torch.allclose(entropy, normal.entropy() + coin.entropy(), atol=1e-5)
     np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-5)
 
@@ -87,7 +87,7 @@ def test_a_first_step_follows_the_policy_gradient():
     it._update_policy(*tensors)
     weights = same._actor_adam.weights
     standard = (tensors[3] - tensors[3].mean()) / (tensors[3].std() + 1e-8)
-    log_now, _ = same._weigh(same._decided(tensors[0]), tensors[1])
+    log_now, _ = same._evaluate_actions(same._policy_output(tensors[0]), tensors[1])
     expected = torch.autograd.grad(-(standard * log_now).mean(), weights)
     for found, wanted in zip(it._actor_adam.weights, expected, strict=True):
         torch.testing.assert_close(found.grad, wanted, atol=1e-6, rtol=1e-4)
@@ -96,7 +96,7 @@ def test_a_first_step_follows_the_policy_gradient():
 def test_what_has_moved_far_enough_is_not_moved_on():
     it = agent(ent_coef=0.0)
     seen, action = torch.zeros(4, 2), torch.tensor([[0.3, -1.0], [-0.3, -1.0]] * 2)
-    now, _ = it._weigh(it._decided(seen), action)
+    now, _ = it._evaluate_actions(it._policy_output(seen), action)
     # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
     advantage = torch.tensor([1.0, -1.0] * 2)
     old = now.detach() - 0.5 * advantage
@@ -113,8 +113,8 @@ def test_the_diagnostics_of_an_update_are_what_their_names_say():
         torch.from_numpy(x.reshape(64, 2).astype(np.float32)) for x in (rollout.observation, rollout.action)
     )
     with torch.no_grad():
-        now, entropy = it._weigh(it._decided(seen), action)
-        value = it._valued(seen)
+        now, entropy = it._evaluate_actions(it._policy_output(seen), action)
+        value = it._values(seen)
     shift = torch.linspace(-0.5, 0.5, 64)
     rollout.log_probability[:] = (now - shift).reshape(8, 8).numpy()
     advantage = advantages(rollout, it.settings.gamma, it.settings.gae_lambda)
@@ -168,7 +168,7 @@ def test_a_central_value_knows_what_the_policy_does_not():
         rollout.terminated[:] = rollout.ended[:] = True
         it.update(rollout, rng)
     both = np.array([[0.3, -0.8], [0.3, 0.8]])
-    np.testing.assert_allclose(it.worth(both), [-0.8, 0.8], atol=0.15)
+    np.testing.assert_allclose(it.values(both), [-0.8, 0.8], atol=0.15)
     assert it.actor.build["scale"] == [1.0]
     first, second = (it.act(both[[k]], np.random.default_rng(9))[0] for k in range(2))
     np.testing.assert_array_equal(first, second)
@@ -196,7 +196,7 @@ def test_in_the_balls_frame_it_does_in_every_heading_what_it_does_in_one():
     for angle in (0.3, 2.0, -1.2):
         other = turned(seen, angle, (0, 3))
         np.testing.assert_allclose(policy_of(it.actor)(other), turned(plain, angle, (0,)), atol=1e-4)
-        np.testing.assert_allclose(it.worth(other), it.worth(seen), atol=1e-5)
+        np.testing.assert_allclose(it.values(other), it.values(seen), atol=1e-5)
 
 
 def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
@@ -215,7 +215,7 @@ def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
 def test_it_looks_farther_ahead_the_longer_it_has_learned(monkeypatch, share, horizon):
     rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, gae_lambda=1.0), []
     monkeypatch.setattr(patient, "_update_value", lambda _, target, report: valued.extend(target.tolist()))
-    patient.look_ahead(share)
+    patient.anneal_gamma(share)
     patient.update(rollout, np.random.default_rng(0), value_alone=True)
     expected = advantages(rollout, 1.0 - 1.0 / horizon, 1.0) + rollout.value
     np.testing.assert_allclose(sorted(set(valued)), sorted(expected.ravel()), rtol=1e-6)

@@ -144,7 +144,7 @@ def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_
     begun = train(load_settings("duel", "self_play", few), tmp_path / "begun").actor.state_dict()
     assert all(torch.equal(begun[name], weight) for name, weight in whole.actor.state_dict().items())
     nowhere = load_settings("duel", "self_play", {**few, "init": str(tmp_path)})
-    with pytest.raises(TrainError, match=r"init: .* is not the folder of a run that has ended"):
+    with pytest.raises(TrainError, match=r"init: .* is not the folder of a finished run"):
         train(nowhere, tmp_path / "nowhere")
     with pytest.raises(TrainError, match=r"init: the policy of .* sees 23 entries"):
         train(load_settings("duel", "self_play", {**few, "ppo.hidden_sizes": [7]}), tmp_path / "other")
@@ -199,5 +199,7 @@ def test_a_run_does_not_begin_with_a_policy_that_was_asked_in_another_frame(tmp_
     robot = {**TINY, "stages": [], "ppo.frame": "robot"}
     train(load_settings("go_to_ball_among_robots", "fast", robot), tmp_path / "robot")
     ball = {**robot, "ppo.frame": "ball", "init": str(tmp_path / "robot")}
-    with pytest.raises(TrainError, match=r"init: the policy of .* was asked in another frame, see ppo.frame"):
+    with pytest.raises(
+        TrainError, match=r"init: the policy of .* was trained in another frame, see ppo.frame"
+    ):
         train(load_settings("go_to_ball_among_robots", "fast", ball), tmp_path / "ball")
