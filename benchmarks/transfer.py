@@ -23,7 +23,7 @@ from robobt.experiments.compare import Difference, compare
 from robobt.match import MatchResult, load_scenario, run_trials
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario
-from robobt.models.fitting import read_fitting_model
+from robobt.models.find import read_fitting_model
 from robobt.worlds import SIM, world_from
 
 SEED = 3_000_017

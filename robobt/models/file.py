@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import re
 import stat
+import time
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
@@ -38,6 +40,8 @@ MAX_MODEL_SIZE = 16 * 2**20
 CARD = "card.json"
 """Under this name the card is in the file."""
 
+_RECENT = 1_000_000_000
+"""A file that was changed less than this ago may change again without its time telling [ns]."""
 _SEAL = 64
 _MAX_MEMBERS = 1000
 _ZIP = b"PK\x03\x04"
@@ -79,11 +83,18 @@ class ModelFile:
 def read_model_file(path: str | Path) -> ModelFile:
     """Read a model file and check everything that can be checked without running it.
 
+    A file that has not changed is read once per process.
+
     Raises:
         ModelError: it is missing, too large, no model file, cut, altered, without a card, with a
             card that is none, or not the file that the manifest beside it lists.
     """
     path = Path(path)
+    return _checked(path, _state_of(path), _state_of(path.parent / MANIFEST))
+
+
+@lru_cache(maxsize=32)
+def _checked(path: Path, _state: Hashable, _manifest: Hashable) -> ModelFile:
     data = _read(path)
     checksum = sha256(data).hexdigest()
     listed = read_manifest(path.parent).get(path.name)
@@ -211,6 +222,20 @@ def pack_onnx(content: bytes, card: str) -> bytes:
     carded = content + _metadata(CARD, card.encode())
     unsealed = carded + _metadata("sha256", bytes(_SEAL))[:-_SEAL]
     return unsealed + _seal_of(unsealed)
+
+
+def _state_of(path: Path) -> Hashable:
+    """Return what differs between two states of a file; a new object where that cannot be told."""
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError):
+        return object()
+    changed = max(status.st_mtime_ns, status.st_ctime_ns)
+    if time.time_ns() - changed < _RECENT:
+        return object()
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
 def _read(path: Path) -> bytes:

@@ -1,4 +1,4 @@
-"""Where models are found by their names."""
+"""Models found by their names, and checked to fit their use as far as can be told without running them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from pathlib import Path
 
 from robobt.config.errors import close_names
 from robobt.config.resources import models_folder
-from robobt.models.file import SUFFIXES, ModelError, UnknownModelError
+from robobt.models.card import Kind
+from robobt.models.file import SUFFIXES, ModelError, ModelFile, UnknownModelError, read_model_file
+from robobt.world.features import ObservationSpec
 
 _ENDINGS = tuple(SUFFIXES.values())
 
@@ -34,7 +36,7 @@ def find_model(name_or_path: str | Path) -> Path:
             path = folder / f"{text}{suffix}"
             if path.is_file():
                 found.setdefault(folder.resolve(), path)
-    if len({sha256(path.read_bytes()).digest() for path in found.values()}) > 1:
+    if len(found) > 1 and len({sha256(path.read_bytes()).digest() for path in found.values()}) > 1:
         several = ", ".join(map(str, found.values()))
         raise ModelError(f"several models are called {text!r}: {several}; give the path of one")
     for path in found.values():
@@ -46,6 +48,38 @@ def find_model(name_or_path: str | Path) -> Path:
     guess = f"did you mean {' or '.join(meant)}? " if meant else ""
     known = f"installed: {', '.join(there) or 'none'}; {guess}or give the path of a file"
     raise UnknownModelError(f"no model is called {text!r}; {known}")
+
+
+def read_fitting_model(
+    name_or_path: str | Path,
+    *,
+    kind: Kind | None = None,
+    skill: str | None = None,
+    observation: ObservationSpec | None = None,
+) -> ModelFile:
+    """Read a model's file and check that its card fits the use; neither torch nor onnxruntime is imported.
+
+    Args:
+        name_or_path: name of a shipped model, or a file.
+        kind: what it has to be; None for any.
+        skill: skill that will use it; None for any.
+        observation: observation that it will be given; None for any.
+
+    Raises:
+        ModelError: it cannot be read, or its card does not fit; the message names the file and says why.
+    """
+    file = read_model_file(find_model(name_or_path))
+    card = file.card
+    problem = card.observation.problem()
+    if kind is not None and card.kind != kind:
+        problem = f"is a {card.kind.replace('_', ' ')}, not a {kind.replace('_', ' ')}"
+    elif skill is not None and card.skill != skill:
+        problem = f"is a model for {card.skill}, not for {skill}"
+    elif observation is not None and card.observation.name != observation.name:
+        problem = f"takes the observation {card.observation.name!r}, not {observation.name!r}"
+    if problem is not None:
+        raise ModelError(f"{file.path}: {problem}")
+    return file
 
 
 def is_path(text: str) -> bool:

@@ -25,7 +25,7 @@ from robobt.models.file import (
     pack_archive,
     unpack_archive,
 )
-from robobt.models.fitting import read_fitting_model
+from robobt.models.find import read_fitting_model
 from robobt.world.features import ObservationSpec
 
 if TYPE_CHECKING:
@@ -102,13 +102,13 @@ class Policy:
 
 
 def load_policy(
-    name_or_path: str | Path,
+    model: str | Path | ModelFile,
     *,
     kind: Kind | None = None,
     skill: str | None = None,
     observation: ObservationSpec | None = None,
 ) -> Policy:
-    """Load a model: a shipped one by its name, any other by its path.
+    """Load a model: a shipped one by its name, any other by its path, or a file that has been read.
 
     Before it is run: size, archive, checksums, card, and that it consists of nothing
     but arithmetic (:mod:`~robobt.models.checks`). Then it is tried on zeros and on
@@ -117,7 +117,8 @@ def load_policy(
     loaded once per process. Each call runs on one thread; torch's settings stay as they are.
 
     Args:
-        name_or_path: name of a shipped model, or a file.
+        model: name of a shipped model, the path of a file, or what :func:`read_fitting_model` returned, with
+            which the use has been checked.
         kind: what it has to be; None for any.
         skill: skill that will use it; None for any.
         observation: observation that it will be given; None for any.
@@ -125,7 +126,9 @@ def load_policy(
     Raises:
         ModelError: it cannot be used; the message names the file and says why.
     """
-    file = read_fitting_model(name_or_path, kind=kind, skill=skill, observation=observation)
+    file = model
+    if not isinstance(file, ModelFile):
+        file = read_fitting_model(file, kind=kind, skill=skill, observation=observation)
     path, card = file.path, file.card
     key = (path.resolve(), file.sha256)
     if key not in _LOADED:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robobt.models.fitting import read_fitting_model
+from robobt.models.find import read_fitting_model
 from robobt.plays.base import PLAYS, first_of
 from robobt.plays.stuck import get_where_stuck
 from robobt.skills.ball.duel import Duel

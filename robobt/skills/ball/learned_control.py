@@ -13,9 +13,8 @@ from typing import TypeVar
 from robobt.config.errors import RobobtError
 from robobt.config.resources import models_folder
 from robobt.models.actions import command_of
-from robobt.models.file import ModelError, UnknownModelError
-from robobt.models.find import find_model
-from robobt.models.fitting import read_fitting_model
+from robobt.models.file import ModelError, ModelFile, UnknownModelError
+from robobt.models.find import find_model, read_fitting_model
 from robobt.models.policy import load_policy
 from robobt.motion.dribbling import carry
 from robobt.skills.store import TeamStore
@@ -51,7 +50,7 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
 
 P = TypeVar("P")
 
-_shipped: dict[Path, None] = {}
+_shipped: dict[Path, ModelFile] = {}
 """Models that ship of which a control was made; with their networks loaded only when first asked, most
 processes need no torch."""
 
@@ -89,7 +88,7 @@ class LearnedControl:
         self, model: str | Path, skill: str | None = None, observation: ObservationSpec | None = None
     ) -> None:
         file = read_fitting_model(model, skill=skill, observation=observation)
-        self.card, self._path = file.card, file.path
+        self.card, self._file = file.card, file
         if self.card.kind != "policy" or self.card.action is None:
             raise ModelError(f"{file.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
         name = self.card.observation.name
@@ -107,9 +106,9 @@ class LearnedControl:
         self._infer: Callable[[FloatArray], list[float]] | None = None
         self._scaling = self.card.action
         if file.path.parent.resolve() == models_folder().resolve():
-            _shipped[file.path] = None
+            _shipped[file.path] = file
         else:
-            self._infer = load_policy(file.path).single()
+            self._infer = load_policy(file).single()
 
     def decide(
         self, frame: Frame, me: RobotState, sketch: Sketch | None = None, barred: bool = False
@@ -128,7 +127,7 @@ class LearnedControl:
         """
         try:
             if self._infer is None:
-                self._infer = load_policy(self._path).single()
+                self._infer = load_policy(self._file).single()
             observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
             action = self._infer(observed)
         except ModelError as error:
@@ -152,10 +151,10 @@ class LearnedControl:
 
 def load_shipped_policies() -> None:
     """Load the networks that controls made so far will ask, as before a match in real time."""
-    for path in _shipped:
+    for file in _shipped.values():
         # What is wrong with one is said where it is asked.
         with suppress(ModelError):
-            load_policy(path)
+            load_policy(file)
 
 
 class PacedControl:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from robobt.models.checks.source import checked_members
 from robobt.models.file import ModelError, unpack_archive
-from robobt.models.find import find_model
-from robobt.models.fitting import read_fitting_model
+from robobt.models.find import read_fitting_model
 from robobt.world.features import ObservationSpec
 
 if TYPE_CHECKING:
@@ -18,6 +17,9 @@ if TYPE_CHECKING:
 
 _wanted: dict[tuple[str, ObservationSpec], None] = {}
 """What raters were made for; with their models loaded only when first asked, most processes need no torch."""
+
+_sound: set[str] = set()
+"""Checksums of files whose network's source has been checked."""
 
 
 @lru_cache(maxsize=32)
@@ -39,27 +41,16 @@ def load_shot_predictors() -> None:
 def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
     """Refuse a shot predictor that cannot be used, as far as can be told without importing torch.
 
-    A tree is built several times before a match, so the same file is read once.
+    A tree is built several times before a match, so what was checked is not checked again.
 
     Raises:
         ModelError: it is missing, cut, foreign or made for something else; the message names the file.
     """
     _wanted[model, observation] = None
-    path = find_model(model).absolute()
-    try:
-        status = path.stat()
-    except (OSError, ValueError):
-        # Reading it says what is wrong.
-        _check_file(str(path), None, observation)
-    else:
-        _check_file(str(path), (status.st_mtime_ns, status.st_size), observation)
-
-
-@lru_cache(maxsize=32)
-def _check_file(path: str, state: tuple[int, int] | None, observation: ObservationSpec) -> None:  # noqa: ARG001
-    file = read_fitting_model(path, kind="shot_predictor", observation=observation)
-    if file.format == "torchscript":
+    file = read_fitting_model(model, kind="shot_predictor", observation=observation)
+    if file.format == "torchscript" and file.sha256 not in _sound:
         try:
             checked_members(unpack_archive(file.content))
         except ModelError as error:
-            raise ModelError(f"{path}: {error}") from error
+            raise ModelError(f"{file.path}: {error}") from error
+        _sound.add(file.sha256)
