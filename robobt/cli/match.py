@@ -213,6 +213,7 @@ def match(
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
     from robobt.match import Match, run_trials
+    from robobt.match.runner import Recorded
     from robobt.worlds import SIM, scenario_settings
 
     loaded, referees = refereeing.of(_changed(changes.scenario(scenario), trees))
@@ -220,7 +221,7 @@ def match(
     scenario_settings(loaded)
     count = run.count(loaded)
     processes = run.processes(count, where.world != SIM or where.publish or live)
-    replay = kept.recording(loaded.name, count)
+    replay, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
     make_folders({"--replay": replay, "--out": kept.out})
     with tempfile.TemporaryDirectory() as folder:
         as_page = replay is not None and replay.name.lower().endswith(PAGES)
@@ -239,11 +240,10 @@ def match(
                 processes,
                 run.seed,
                 kept.out,
-                {} if recording is None else {kept.trial: recording},
+                {} if recording is None else {kept.trial: Recorded(recording, layers)},
                 lambda _: progress.advance(),
                 referees,
                 play,
-                layer_names(kept.record_layers),
             )
         if not played.results:
             errors.print("robobt: stopped before the first trial was finished")

@@ -6,7 +6,7 @@ import json
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from time import perf_counter, process_time, sleep, thread_time
@@ -119,26 +119,10 @@ def bench_live(
         slow = stack.enter_context(_ending(_Viewer(server, rate=1e6)))
         stalled = stack.enter_context(_ending(_Viewer(server, rest=2.0 * seconds / 3.0)))
         before = _memory()
-        busy = [0.0, 0.0]
-        late = [0, 0]
-        ticks, due, begun = 0, perf_counter(), perf_counter()
+        ticks, begun = round(seconds / period), perf_counter()
         loop_begun = thread_time()
         process_begun = process_time()
-        for tick in range(round(seconds / period)):
-            # The one that goes first finds the caches cold.
-            for which in (0, 1) if tick % 2 else (1, 0):
-                # Each has half of the period, so that both begin at times of their own.
-                due += period / 2
-                ahead = due - perf_counter()
-                if ahead > 0.0:
-                    sleep(ahead)
-                late[which] += perf_counter() > due + LATE
-                start = thread_time()
-                play[which]()
-                busy[which] += thread_time() - start
-                if perf_counter() > due + 0.25:
-                    due = perf_counter()
-            ticks += 1
+        busy, late = _in_turns(play, ticks, period)
         others = process_time() - process_begun - (thread_time() - loop_begun)
         took = perf_counter() - begun
         grown = _memory() - before
@@ -170,6 +154,29 @@ def bench_live(
         "stalled_age_ms": max(again) if again else None,
         "stalled_skipped": skipped,
     }
+
+
+def _in_turns(
+    play: tuple[Callable[[], object], Callable[[], object]], ticks: int, period: float
+) -> tuple[list[float], list[int]]:
+    """Tick two matches in turns at their pace; return the CPU time of each [s] and how often it was late."""
+    busy, late = [0.0, 0.0], [0, 0]
+    due = perf_counter()
+    for tick in range(ticks):
+        # The one that goes first finds the caches cold.
+        for which in (0, 1) if tick % 2 else (1, 0):
+            # Each has half of the period, so that both begin at times of their own.
+            due += period / 2
+            ahead = due - perf_counter()
+            if ahead > 0.0:
+                sleep(ahead)
+            late[which] += perf_counter() > due + LATE
+            start = thread_time()
+            play[which]()
+            busy[which] += thread_time() - start
+            if perf_counter() > due + 0.25:
+                due = perf_counter()
+    return busy, late
 
 
 @contextmanager

@@ -26,6 +26,14 @@ class RunError(RobobtError, RuntimeError):
     """A trial could not be played to its end; the message is one line."""
 
 
+@dataclass(slots=True, frozen=True)
+class Recorded:
+    """Where a trial is recorded to, and the layers of which what skills draw is recorded as well."""
+
+    file: str | Path | None
+    layers: Container[str] = ()
+
+
 @dataclass(slots=True)
 class Run:
     """The trials that a run has played.
@@ -57,11 +65,10 @@ def run_trials(
     workers: int = 1,
     seed: int | None = None,
     out: str | Path | None = None,
-    record: Mapping[int, str | Path] | None = None,
+    record: Mapping[int, str | Path | Recorded] | None = None,
     on_result: Callable[[MatchResult], None] | None = None,
     referee: RefereeFactory = own_referee,
     play: Callable[[Match], MatchResult] = Match.play,
-    layers: Container[str] = (),
 ) -> Run:
     """Play a scenario many times.
 
@@ -76,10 +83,9 @@ def run_trials(
         workers: number of processes; one is this process itself.
         seed: seed from which the trials' seeds follow; the scenario's by default.
         out: file to append each result to as it finishes; trials it holds already are not played again.
-        record: files to record trials to, by trial number.
+        record: files to record trials to, by trial number; with layers as :class:`Recorded`.
         on_result: called with each result as it finishes, and with those of ``out`` first.
         referee: makes the referee of each trial; by default the scenario's own.
-        layers: what skills draw in these is recorded as well.
         play: plays a match to its end; another than the usual one needs this process, and so one worker.
 
     Returns:
@@ -107,10 +113,9 @@ def run_trials(
         world_factory,
         seed,
         referee,
-        {trial: Path(path) for trial, path in record.items()},
+        {trial: to if isinstance(to, Recorded) else Recorded(to) for trial, to in record.items()},
         tuple({PLAYS[setup.play] for _, setup in scenario.robots if setup.play in PLAYS}),
         play,
-        layers,
     )
     results: dict[int, MatchResult] = {}
     interrupted = False
@@ -151,15 +156,14 @@ class _Job:
     world_factory: WorldFactory
     seed: int
     referee: RefereeFactory
-    record: Mapping[int, Path]
+    record: Mapping[int, Recorded]
     plays: tuple[Play, ...]
     conduct: Callable[[Match], MatchResult]
-    layers: Container[str]
 
     def play(self, trial: int, _report: object) -> MatchResult:
         seed = trial_seed(self.seed, trial)
-        record = self.record.get(trial)
+        record = self.record.get(trial, Recorded(None))
         match = Match(
-            self.scenario, seed, self.world_factory, record, trial, self.referee, layers=self.layers
+            self.scenario, seed, self.world_factory, record.file, trial, self.referee, layers=record.layers
         )
         return self.conduct(match)
