@@ -198,7 +198,7 @@ def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     with told_when(lambda: large(log), number):
         ended = robobt("serve", *where, *ports, "--speed", 10, "--log", log, "--json")
     assert ended.exit_code == 0
-    frames = json.loads(ended.output)["frames"]
+    frames = json.loads(ended.stdout)["frames"]
     # The last one may have been simulated and not yet sent when the signal came.
     assert frames - [record.kind for record in read_log(log)].count(4) in (0, 1)
     assert frames > 10
@@ -211,7 +211,7 @@ def test_a_logger_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     with served(served_line_up(DIVISION_B, 1), ends, speed=5.0), told_when(lambda: large(log), number):
         ended = robobt("log", log, *where, "--json")
     assert ended.exit_code == 0
-    heard = json.loads(ended.output)["vision"]
+    heard = json.loads(ended.stdout)["vision"]
     assert [record.kind for record in read_log(log)].count(4) == heard > 10
 
 
