@@ -4,34 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import Literal, cast, get_args
+from typing import Literal, get_args
 
 import numpy as np
 import pymunk
 from numpy.typing import ArrayLike
 
+from robobt.sim.arrays import arena_arrays
 from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls_of
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
-from robobt.sim.contacts.solver import Contacts
+from robobt.sim.contacts.solver import contact_arrays
 from robobt.sim.kernels import control_tick
-from robobt.sim.parameters import arena_parameters, robot_limits, wheel_parameters
-from robobt.sim.records import (
-    ARENA,
-    BODY,
-    COMMAND,
-    CONTACT,
-    DRIVE,
-    FLIGHT,
-    FRONT,
-    MOVING,
-    ROBOT,
-    SEEN_BALL,
-    ArenaArrays,
-    BoolArray,
-    IntArray,
-    RecordArray,
-    size,
-)
+from robobt.sim.records import ARENA, COMMAND, DRIVE, ROBOT, BoolArray, IntArray, RecordArray, size
 from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
@@ -96,7 +80,6 @@ class Arenas:
         self.dt = period / self.sub_steps
         count = len(limits)
         walls = walls_of(field)
-        self._contacts = Contacts(settings, count, walls, n)
         self._spaces: list[pymunk.Space] = []
         self._bodies: list[list[pymunk.Body]] = []
         if solver == "pymunk":
@@ -105,54 +88,24 @@ class Arenas:
                 space.collision_slop = SLOP
             self._bodies = [fill(space, settings, count, walls) for space in self._spaces]
         self._buffer = BodyBuffer(self._spaces, count + 1) if self._spaces else None
-        self.balls = np.zeros((n, size(SEEN_BALL)))
-        self._rows = np.zeros((n * (count + 1), ROW)) if self._buffer is None else self._buffer.rows
-        self._arena_rows[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
-        self.robots = np.zeros((n, count, size(BODY)))
-        self.flight = np.zeros((n, size(FLIGHT)))
-        self.contact: BoolArray = np.zeros((n, count), dtype=np.bool_)
-        self.kicked: BoolArray = np.zeros((n, count), dtype=np.bool_)
-        self.touch: IntArray = np.full(n, -1, dtype=np.int64)
-        self.history = np.zeros((self.sub_steps if keep_history else 0, n, count + 1, size(BODY)))
-        self._states = np.zeros((n, size(ARENA)))
-        self._state["parameters"] = arena_parameters(settings)
-        self._state["wheels"] = wheel_parameters(settings.wheels)
-        self._kept = np.zeros((n, count, size(ROBOT)))
-        self._drives = np.zeros((n, count, size(DRIVE)))
-        for i, own in enumerate(limits):
-            self.robot_parameters[:, i] = robot_limits(own or settings.limits)
-        contacts, pairs = self._contacts, self._contacts.memory.shape[1]
-        calls = NO_CALLS if self._buffer is None else self._buffer.calls
-        # The very arrays from above, whose views would become arrays of their own in a copy.
-        self._arrays = cast(
-            ArenaArrays,
-            tuple(
-                ArenaArrays(
-                    states=self._states,
-                    kept=self._kept,
-                    drives=self._drives,
-                    bodies=self._rows,
-                    robots=self.robots,
-                    balls=self.balls,
-                    flight=self.flight,
-                    contact=self.contact,
-                    kicked=self.kicked,
-                    touch=self.touch,
-                    history=self.history,
-                    walls=contacts.walls,
-                    edges=contacts.edges,
-                    parts=contacts.parts,
-                    solver=contacts.solver,
-                    masses=contacts.masses,
-                    bias=contacts.bias,
-                    memory=contacts.memory,
-                    fronts=np.zeros((count, size(FRONT))),
-                    contacts=np.zeros((pairs, size(CONTACT))),
-                    moving=np.zeros((count + 2, size(MOVING))),
-                    **calls._asdict(),
-                )
-            ),
+        self._arrays = arena_arrays(
+            settings,
+            limits,
+            self.sub_steps if keep_history else 0,
+            np.zeros((n, count + 1, ROW)) if self._buffer is None else self._buffer.rows,
+            contact_arrays(settings, count, walls, n),
+            NO_CALLS if self._buffer is None else self._buffer.calls,
         )
+        # These arrays themselves: in a copy, or unpickled, a view of them would be an array of its own.
+        self._passed = self._arrays.plain()
+        self.robots: FloatArray = self._arrays.robots
+        self.balls: FloatArray = self._arrays.balls
+        self.flight: FloatArray = self._arrays.flight
+        self.contact: BoolArray = self._arrays.contact
+        self.kicked: BoolArray = self._arrays.kicked
+        self.touch: IntArray = self._arrays.touch
+        self.history: FloatArray = self._arrays.history
+        self._arrays.bodies[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
         self.delay = settings.realism.command_delay
         if settings.wheels is None:  # which react late by themselves
             self.delay += settings.limits.reaction
@@ -163,34 +116,29 @@ class Arenas:
         self._pipeline = [np.zeros((n, count, size(COMMAND))) for _ in range(delay // self.sub_steps + 2)]
 
     @property
-    def _arena_rows(self) -> FloatArray:
-        # Not kept: in a copy, or unpickled, it would be an array of its own.
-        return self._rows.reshape(len(self.balls), -1, ROW)
+    def _states(self) -> RecordArray:
+        return self._arrays.states.view(ARENA)[..., 0]
 
     @property
-    def _state(self) -> RecordArray:
-        return self._states.view(ARENA)[..., 0]
-
-    @property
-    def _robots(self) -> RecordArray:
-        return self._kept.view(ROBOT)[..., 0]
+    def _kept(self) -> RecordArray:
+        return self._arrays.kept.view(ROBOT)[..., 0]
 
     @property
     def arena_parameters(self) -> RecordArray:
         """(n,) :class:`~robobt.sim.records.Parameters`; writing to them randomises arenas."""
-        parameters: RecordArray = self._state["parameters"]
+        parameters: RecordArray = self._states["parameters"]
         return parameters
 
     @property
     def wheel_parameters(self) -> RecordArray:
         """(n,) :class:`~robobt.sim.records.Wheels`; may be written to as well."""
-        wheels: RecordArray = self._state["wheels"]
+        wheels: RecordArray = self._states["wheels"]
         return wheels
 
     @property
     def robot_parameters(self) -> RecordArray:
         """(n, R) :class:`~robobt.sim.records.Limits`; may be written to as well."""
-        limits: RecordArray = self._robots["limits"]
+        limits: RecordArray = self._kept["limits"]
         return limits
 
     @property
@@ -199,7 +147,7 @@ class Arenas:
 
         It is the part of the command delay beyond whole periods.
         """
-        switch: IntArray = self._state["switch"]
+        switch: IntArray = self._states["switch"]
         return switch
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
@@ -215,7 +163,7 @@ class Arenas:
         poses = np.asarray(robots, dtype=np.float64)
         poses = poses.reshape(len(which), count, poses.shape[-1])
         ball = np.asarray(balls, dtype=np.float64).reshape(len(which), 4)
-        rows = self._arena_rows
+        rows = self._arrays.bodies
         self._read()
         rows[which] = 0.0
         rows[which, :count, : poses.shape[-1]] = poses
@@ -223,13 +171,13 @@ class Arenas:
         rows[which, count, 3:5] = ball[:, 2:]
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._robots["cooldown"][which] = 0.0
-        self._drives[which] = 0.0
+        self._kept["cooldown"][which] = 0.0
+        self._arrays.drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
         for commands in self._pipeline:
             commands[which] = 0.0
-        self._contacts.forget(which)
+        self._arrays.contacts.forget(which)
         self._write()
 
     def place_ball(
@@ -256,15 +204,15 @@ class Arenas:
             vz: how fast it rises [m/s].
         """
         count = self.contact.shape[1]
-        self._drives.view(DRIVE)["hinge"]["held"][arena] = 0.0
+        self._arrays.drives.view(DRIVE)["hinge"]["held"][arena] = 0.0
         self._read()
-        row = self._arena_rows[arena, count]
+        row = self._arrays.bodies[arena, count]
         row[:] = 0.0
         row[:2] = x, y
         row[3:5] = vx, vy
         self._set_ball(arena, vx, vy, rolls)
         self.flight[arena] = z, vz, 0.0
-        self._contacts.forget(arena)
+        self._arrays.contacts.forget(arena)
         self._write()
 
     def place_robot(self, arena: int | IntArray, robot: int | IntArray, state: ArrayLike) -> None:
@@ -276,15 +224,15 @@ class Arenas:
             state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s]; likewise (m, 6).
         """
         self._read()
-        self._arena_rows[arena, robot] = state
-        self._robots["cooldown"][arena, robot] = 0.0
-        self._drives[arena, robot] = 0.0
-        self._contacts.forget(arena)
+        self._arrays.bodies[arena, robot] = state
+        self._kept["cooldown"][arena, robot] = 0.0
+        self._arrays.drives[arena, robot] = 0.0
+        self._arrays.contacts.forget(arena)
         self._write()
 
     def weigh(self, arena: int, mass: float) -> None:
         """Give the robots of one arena another mass [kg]."""
-        self._contacts.weigh(arena, mass)
+        self._arrays.contacts.weigh(arena, mass)
         if self._bodies:
             for body in self._bodies[arena][:-1]:
                 body.mass = mass
@@ -306,7 +254,7 @@ class Arenas:
             oldest[..., :-1] = commands
             oldest[..., -1] = 0.0
         self._pipeline.append(oldest)
-        control_tick(self._arrays, self._pipeline[0], self._pipeline[1], self.sub_steps, self.dt)
+        control_tick(self._passed, self._pipeline[0], self._pipeline[1], self.sub_steps, self.dt)
 
     def step_bare(self) -> None:
         """Step pymunk's spaces alone, by its own call: what benchmarks compare with."""
@@ -321,11 +269,11 @@ class Arenas:
     def _write(self) -> None:
         if self._buffer is not None:
             self._buffer.write()
-        report(self._arrays)
+        report(self._passed)
 
     def _set_ball(
         self, arenas: IntArray | int, vx: FloatArray | float, vy: FloatArray | float, rolls: bool
     ) -> None:
-        balls = self._state["ball"]
+        balls = self._states["ball"]
         balls["vx"][arenas], balls["vy"][arenas], balls["twist"][arenas] = vx, vy, 0.0
         balls["spin_x"][arenas], balls["spin_y"][arenas] = (vx, vy) if rolls else (0.0, 0.0)

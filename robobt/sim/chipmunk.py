@@ -25,7 +25,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
-from robobt.sim.records import BODY, Body, Records, size
+from robobt.sim.records import BODY, Body, IntArray, Records, record, size
 from robobt.world.compiled import compiled_lean
 
 ROW = size(BODY)
@@ -138,26 +138,38 @@ def store_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
         store(place + np.uint64(_SPIN), body.omega)
 
 
+class Functions:
+    """Addresses of the C library's functions: a step, a visit of each body, what writes a visited one."""
+
+    step: int
+    each: int
+    write: int
+
+
+class Handle:
+    """Addresses of a space and of its batch descriptor."""
+
+    space: int
+    batch: int
+
+
+FUNCTIONS, HANDLE = record(Functions), record(Handle)
+
+
 class Calls(NamedTuple):
-    """What compiled code needs to call pymunk.
+    """What compiled code needs to call pymunk."""
 
-    Attributes:
-        calls: the addresses of step, each-body and the writing callback.
-        handles: (spaces, 2) the addresses of each space and its batch descriptor.
-        places: (spaces, bodies) the addresses of the bodies.
-        cursors: (spaces, k) where in its rows a space's next batched call starts is the first number of a
-            row, to be set to 0 before each.
-    """
-
-    calls: NDArray[np.uint64]
-    handles: NDArray[np.uint64]
-    places: NDArray[np.uint64]
+    functions: IntArray  # (1, size(FUNCTIONS))
+    handles: IntArray  # (spaces, size(HANDLE))
+    places: NDArray[np.uint64]  # (spaces, bodies) addresses of the bodies
+    # (spaces, k): where in its rows a space's next batched call starts is the first number of a row, to be
+    # set to 0 before each.
     cursors: NDArray[np.int32]
 
 
 NO_CALLS = Calls(
-    np.zeros(0, dtype=np.uint64),
-    np.zeros((0, 2), dtype=np.uint64),
+    np.zeros((1, size(FUNCTIONS)), dtype=np.int64),
+    np.zeros((0, size(HANDLE)), dtype=np.int64),
     np.zeros((0, 0), dtype=np.uint64),
     np.zeros((0, 1), dtype=np.int32),
 )
@@ -172,7 +184,7 @@ class BodyBuffer:
         bodies: how many each of them has.
 
     Attributes:
-        rows: (spaces * stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
+        rows: (spaces, stride, 6) x, y, angle, vx, vy, angular velocity of each space's bodies in
             the order in which they were added, then spare rows [m, rad, m/s, rad/s].
         stride: rows of a space.
         calls: what compiled code needs to call pymunk.
@@ -184,7 +196,7 @@ class BodyBuffer:
         # never reallocates memory that numpy owns.
         self.stride = bodies + 2
         count = len(spaces)
-        self.rows: NDArray[np.float64] = np.zeros((count * self.stride, ROW))
+        self.rows: NDArray[np.float64] = np.zeros((count, self.stride, ROW))
         self._spaces, self._bodies = list(spaces), bodies
         self._floats = ffi.new("pmFloatArray[]", count)
         self._ints = ffi.new("pmIntArray *")
@@ -200,20 +212,13 @@ class BodyBuffer:
             batch.intArray = self._ints
         every = np.frombuffer(ffi.buffer(self._floats), dtype=np.int32)
         self._cursors: NDArray[np.int32] = every.reshape(count, -1)
-        functions: NDArray[np.uint64] = np.array(
-            [
-                _address(ffi.addressof(lib, "cpSpaceStep")),
-                _address(ffi.addressof(lib, "cpSpaceEachBody")),
-                _address(ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")),
-            ],
-            dtype=np.uint64,
-        )
+        names = "cpSpaceStep", "cpSpaceEachBody", "pmSpaceBodySetIteratorFuncBatched"
+        functions: IntArray = np.array([[_address(ffi.addressof(lib, name)) for name in names]])
         places: NDArray[np.uint64] = np.array(
             [[_address(body._body) for body in space.bodies] for space in spaces], dtype=np.uint64
         )
-        handles: NDArray[np.uint64] = np.array(
-            [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)],
-            dtype=np.uint64,
+        handles: IntArray = np.array(
+            [[_address(space._space), _address(self._batches + k)] for k, space in enumerate(spaces)]
         )
         self.calls = Calls(functions, handles, places, self._cursors)
         self._check_order()
@@ -234,11 +239,10 @@ class BodyBuffer:
 
     def _check_order(self) -> None:
         self.read()
-        rows = self.rows.reshape(len(self._spaces), self.stride, ROW)
         for k, space in enumerate(self._spaces):
             found = self._cursors[k, 0] // ROW
-            expected = [tuple(body.position) for body in space.bodies]
-            if found != self._bodies + 1 or [tuple(row[:2]) for row in rows[k, : self._bodies]] != expected:
+            expected = [list(body.position) for body in space.bodies]
+            if found != self._bodies + 1 or self.rows[k, : self._bodies, :2].tolist() != expected:
                 raise RuntimeError(
                     f"pymunk {pymunk.version} visits {found} bodies in another order than they were added: "
                     "its batch interface has changed"

@@ -11,8 +11,17 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.chipmunk import call_each_body, call_step, load_bodies, store_bodies
-from robobt.sim.contacts.solver import Solving, collide
+from robobt.sim.arrays import ArenaArrays
+from robobt.sim.chipmunk import (
+    FUNCTIONS,
+    HANDLE,
+    Calls,
+    call_each_body,
+    call_step,
+    load_bodies,
+    store_bodies,
+)
+from robobt.sim.contacts.solver import ContactArrays, Solving, collide
 from robobt.sim.contacts.touching import Shapes
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
@@ -34,16 +43,15 @@ from robobt.sim.records import (
     PART,
     ROBOT,
     SOLVER,
+    TOUCH,
     WALL,
     Arena,
-    ArenaArrays,
-    Ball,
     Body,
     Command,
     Records,
     Solver,
 )
-from robobt.sim.reports import report, toucher
+from robobt.sim.reports import note_touch, report
 from robobt.sim.roller import roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
@@ -75,28 +83,31 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
         dt: length of each [s].
     """
     arrays = ArenaArrays(*arrays_)
-    states = arrays.states.view(ARENA)[..., 0]
+    states, flights = arrays.states.view(ARENA)[..., 0], arrays.flight.view(FLIGHT)[..., 0]
     kept, drives = arrays.kept.view(ROBOT)[..., 0], arrays.drives.view(DRIVE)[..., 0]
-    bodies, flights = arrays.bodies.view(BODY)[..., 0], arrays.flight.view(FLIGHT)[..., 0]
-    masses, bias = arrays.masses.view(MASSES)[..., 0], arrays.bias.view(BIAS)[..., 0]
-    memory, fronts = arrays.memory.view(MEMORY)[..., 0], arrays.fronts.view(FRONT)[..., 0]
-    contacts, moving = arrays.contacts.view(CONTACT)[..., 0], arrays.moving.view(MOVING)[..., 0]
+    bodies, touch = arrays.bodies.view(BODY)[..., 0], arrays.touch.view(TOUCH)
+    history, fronts = arrays.history.view(BODY)[..., 0], arrays.fronts.view(FRONT)[..., 0]
     old, new = old_.view(COMMAND)[..., 0], new_.view(COMMAND)[..., 0]
-    history, walls = arrays.history.view(BODY)[..., 0], arrays.walls.view(WALL)[..., 0]
-    solver: Solver = arrays.solver.view(SOLVER)[0]
-    shapes = Shapes(walls, arrays.edges.view(EDGE)[..., 0], arrays.parts.view(PART)[..., 0], solver)
-    robots, stride = arrays.contact.shape[1], len(bodies) // len(states)
-    by_pymunk = len(arrays.handles) > 0
+    known = ContactArrays(*arrays.contacts)
+    masses, bias = known.masses.view(MASSES)[..., 0], known.bias.view(BIAS)[..., 0]
+    memory, contacts = known.memory.view(MEMORY)[..., 0], known.contacts.view(CONTACT)[..., 0]
+    walls, edges = known.walls.view(WALL)[..., 0], known.edges.view(EDGE)[..., 0]
+    parts, moving = known.parts.view(PART)[..., 0], known.moving.view(MOVING)[..., 0]
+    shapes = Shapes(walls, edges, parts, known.solver.view(SOLVER)[0, 0])
+    calls = Calls(*arrays.calls)
+    functions, handles = calls.functions.view(FUNCTIONS)[0, 0], calls.handles.view(HANDLE)[..., 0]
+    robots, by_pymunk = arrays.contact.shape[1], len(handles) > 0
     arrays.kicked[:] = False
     for a in range(len(states)):
-        own: Records[Body] = bodies[a * stride : a * stride + robots + 1]
-        state, body, air = states[a], own[robots], flights[a]
-        ball: Ball = state.ball
+        state = states[a]
+        own: Records[Body] = bodies[a, : robots + 1]
         arena = Arena(
+            bodies=own,
             robots=own[:robots],
-            body=body,
-            ball=ball,
-            air=air,
+            body=own[robots],
+            ball=state.ball,
+            air=flights[a],
+            touch=touch[a],
             parameters=state.parameters,
             wheels=state.wheels,
             kept=kept[a],
@@ -109,37 +120,21 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
         high = False
         for step in range(sub_steps):
             _act(arena, new[a] if step >= state.switch else old[a], dt)
-            if ball.kicker >= 0:
-                arrays.touch[a] = ball.kicker
-            high = _move_ball(arena, solver, dt)
-            x, y = body.x, body.y
-            if high:
-                # It passes over everything.
-                body.x, body.y = _ELSEWHERE, _ELSEWHERE
-                ball.move_x = ball.move_y = 0.0
-            body.vx, body.vy = ball.move_x, ball.move_y
+            high = _move_ball(arena, shapes.solver, dt)
+            x, y = _put_ball(arena, high)
             if by_pymunk:
-                store_bodies(arrays.places[a], own)
-                call_step(arrays.calls[0], arrays.handles[a, 0], dt)
-                load_bodies(arrays.places[a], own)
+                store_bodies(calls.places[a], own)
+                call_step(functions.step, handles[a].space, dt)
+                load_bodies(calls.places[a], own)
             else:
                 collide(own, shapes, solving, dt)
-            if high:
-                body.x, body.y, body.vx, body.vy = x, y, ball.vx, ball.vy
-            else:
-                # What contacts did to the mean velocity, they did to the velocity.
-                ball.vx += body.vx - ball.move_x
-                ball.vy += body.vy - ball.move_y
-                if air.z < ROBOT_HEIGHT:
-                    found = toucher(arena, arrays.touch[a])
-                    if found >= 0:
-                        arrays.touch[a] = found
+            _take_ball(arena, high, x, y)
             if len(history) > 0:
-                _note(history[step, a], own, arena)
+                _note(history[step, a], arena)
         if high and by_pymunk:
             # Its body is still elsewhere.
-            arrays.cursors[a, 0] = 0
-            call_each_body(arrays.calls[1], arrays.handles[a, 0], arrays.calls[2], arrays.handles[a, 1])
+            calls.cursors[a, 0] = 0
+            call_each_body(functions.each, handles[a].space, functions.write, handles[a].batch)
     report(arrays_)
 
 
@@ -183,6 +178,7 @@ def _kicks(arena: Arena, i: int, command: Command, dt: float) -> bool:
     arena.kept[i].cooldown = p.kicker.recharge
     arena.drives[i].hinge.held = 0.0
     ball.kicker, ball.carrier = i, -1
+    arena.touch.robot = i
     ball.held = 0
     ball.pull_x = ball.pull_y = 0.0
     return True
@@ -283,11 +279,37 @@ def _carry(arena: Arena, dt: float) -> None:
         ball.carrier = -1
 
 
+@compiled_inline
+def _put_ball(arena: Arena, high: bool) -> tuple[float, float]:
+    """Put the ball's body where it has contacts, for the length of a step; return where it is."""
+    body, ball = arena.body, arena.ball
+    x, y = body.x, body.y
+    if high:
+        body.x, body.y = _ELSEWHERE, _ELSEWHERE
+        ball.move_x = ball.move_y = 0.0
+    body.vx, body.vy = ball.move_x, ball.move_y
+    return x, y
+
+
+@compiled_inline
+def _take_ball(arena: Arena, high: bool, x: float, y: float) -> None:
+    """Let the ball take what contacts did to its body in a step; one that was high goes on from (x, y)."""
+    body, ball = arena.body, arena.ball
+    if high:
+        body.x, body.y, body.vx, body.vy = x, y, ball.vx, ball.vy
+        return
+    # What contacts did to the mean velocity, they did to the velocity.
+    ball.vx += body.vx - ball.move_x
+    ball.vy += body.vy - ball.move_y
+    if arena.air.z < ROBOT_HEIGHT:
+        note_touch(arena)
+
+
 @compiled_lean
-def _note(history: Records[Body], bodies: Records[Body], arena: Arena) -> None:
+def _note(history: Records[Body], arena: Arena) -> None:
     """Note an arena's bodies after a step; of the ball what it is, not what the contacts saw."""
-    for i in range(len(bodies)):
-        body, seen = bodies[i], history[i]
+    for i in range(len(arena.bodies)):
+        body, seen = arena.bodies[i], history[i]
         seen.x, seen.y, seen.heading = body.x, body.y, body.heading
         seen.vx, seen.vy, seen.omega = body.vx, body.vy, body.omega
     seen = history[len(arena.robots)]

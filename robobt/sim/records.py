@@ -27,7 +27,6 @@ from pydantic import BaseModel
 from robobt.sim.robot_settings import BodySettings, DribblerSettings, KickerSettings
 from robobt.sim.settings import BallSettings, ContactSettings
 from robobt.world.compiled import numbers_dtype, numbers_of
-from robobt.world.geometry import FloatArray
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -106,6 +105,12 @@ class Flight:
     z: float
     vz: float
     hops: float
+
+
+class Touch:
+    """The last robot to touch a ball, -1 before the first."""
+
+    robot: int
 
 
 class SeenBall:
@@ -409,6 +414,7 @@ class Front:
 COMMAND = record(Command)
 BODY = record(Body)
 FLIGHT = record(Flight)
+TOUCH = record(Touch)
 SEEN_BALL = record(SeenBall)
 LIMITS = record(Limits)
 ROBOT = record(Robot)
@@ -428,92 +434,19 @@ MOVING = record(Moving)
 FRONT = record(Front)
 
 
-class ArenaArrays(NamedTuple):
-    """The arrays of ``n`` arenas with R robots each, as numbers.
-
-    They are passed as a plain tuple, which numba looks at in half the time.
-
-    Attributes:
-        states: (n, size(ARENA)) kept between calls.
-        kept: (n, R, size(ROBOT)) of robots, kept between calls.
-        drives: (n, R, size(DRIVE)) of robots with wheels, kept between calls.
-        bodies: (n * stride, size(BODY)) robots and ball of an arena, then those of the next.
-        robots: (n, R, size(BODY)) out.
-        balls: (n, size(SEEN_BALL)) out.
-        flight: (n, size(FLIGHT)) kept between calls.
-        contact: (n, R) out: ball in the mouth.
-        kicked: (n, R) out: kicks fired in this period.
-        touch: (n,) last robot to touch the ball, -1 before the first.
-        history: (sub_steps or 0, n, R + 1, size(BODY)) out: bodies after every sub-step; a ball's has its
-            height and the rate of that where a robot's has the heading and its rate.
-        walls: of :class:`~robobt.sim.contacts.solver.Contacts`, as are those up to ``memory``.
-        edges: of a hull.
-        parts: of a hull.
-        solver: its numbers.
-        masses: of the arenas' bodies.
-        bias: of bodies.
-        memory: of pairs.
-        fronts: (R, size(FRONT)) scratch.
-        contacts: (pairs, size(CONTACT)) scratch.
-        moving: (R + 2, size(MOVING)) scratch.
-        calls: of the :class:`~robobt.sim.chipmunk.BodyBuffer`, as are those that follow.
-        handles: none if no pymunk is to be called, and the solver takes its place.
-        places: of the bodies.
-        cursors: of the batches.
-    """
-
-    states: FloatArray
-    kept: FloatArray
-    drives: FloatArray
-    bodies: FloatArray
-    robots: FloatArray
-    balls: FloatArray
-    flight: FloatArray
-    contact: BoolArray
-    kicked: BoolArray
-    touch: IntArray
-    history: FloatArray
-    walls: FloatArray
-    edges: FloatArray
-    parts: FloatArray
-    solver: FloatArray
-    masses: FloatArray
-    bias: FloatArray
-    memory: FloatArray
-    fronts: FloatArray
-    contacts: FloatArray
-    moving: FloatArray
-    calls: NDArray[np.uint64]
-    handles: NDArray[np.uint64]
-    places: NDArray[np.uint64]
-    cursors: NDArray[np.int32]
-
-
 class Arena(NamedTuple):
-    """One arena as the kernels see it.
+    """One arena with R robots as the kernels see it."""
 
-    Attributes:
-        robots: (R,) bodies.
-        body: of the ball.
-        ball: how it moves.
-        air: its flight.
-        parameters: of the arena.
-        wheels: of its robots.
-        kept: (R,) what else is kept of the robots.
-        drives: (R,) what is kept of their wheels.
-        kicked: (R,) which of them kicked in this period.
-        fronts: (R,) scratch.
-        walls: (W,) relative to the arena's centre.
-    """
-
-    robots: Records[Body]
-    body: Body
+    bodies: Records[Body]  # (R + 1,), the ball's last
+    robots: Records[Body]  # (R,) of those bodies
+    body: Body  # the ball's
     ball: Ball
     air: Flight
+    touch: Touch
     parameters: Parameters
     wheels: Wheels
-    kept: Records[Robot]
-    drives: Records[Drive]
-    kicked: BoolArray
-    fronts: Records[Front]
-    walls: Records[Wall]
+    kept: Records[Robot]  # (R,)
+    drives: Records[Drive]  # (R,)
+    kicked: BoolArray  # (R,) who kicked in this period
+    fronts: Records[Front]  # (R,) scratch
+    walls: Records[Wall]  # (W,) relative to the arena's centre

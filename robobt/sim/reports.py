@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
+from robobt.sim.arrays import ArenaArrays
 from robobt.sim.mouth import in_mouth
-from robobt.sim.records import ARENA, BODY, FLIGHT, SEEN_BALL, Arena, ArenaArrays, Body
-from robobt.world.compiled import compiled_lean
+from robobt.sim.records import ARENA, BODY, FLIGHT, SEEN_BALL, Arena, Body
+from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_RADIUS
 
 _TOUCH = 2e-3
 """Gap between ball and robot that still counts as a touch [m]."""
 
 
-@compiled_lean
-def toucher(arena: Arena, before: int) -> int:
-    """Return who touches the ball, else -1; of several, one that is not the one that touched it before."""
+@compiled_inline
+def note_touch(arena: Arena) -> None:
+    """Remember who touches the ball; of several, one that did not touch it before."""
     body, ahead = arena.body, arena.parameters.front + BALL_RADIUS + _TOUCH
     found = -1
     for i in range(len(arena.robots)):
@@ -26,9 +27,10 @@ def toucher(arena: Arena, before: int) -> int:
             continue
         if cos(robot.heading) * px + sin(robot.heading) * py > ahead:
             continue
-        if found < 0 or found == before:
+        if found < 0 or found == arena.touch.robot:
             found = i
-    return found
+    if found >= 0:
+        arena.touch.robot = found
 
 
 @compiled_lean
@@ -54,16 +56,13 @@ def report(arrays_: ArenaArrays) -> None:
     bodies, states = arrays.bodies.view(BODY)[..., 0], arrays.states.view(ARENA)[..., 0]
     robots, balls = arrays.robots.view(BODY)[..., 0], arrays.balls.view(SEEN_BALL)[..., 0]
     flights, contact = arrays.flight.view(FLIGHT)[..., 0], arrays.contact
-    stride = len(bodies) // len(states)
+    count = contact.shape[1]
     for a in range(len(states)):
-        first = a * stride
-        state, body = states[a], bodies[first + contact.shape[1]]
-        p = state.parameters
-        for i in range(contact.shape[1]):
-            robot = bodies[first + i]
-            near = flights[a].z < RECEIVED_HEIGHT and in_mouth(body, robot, p, p.body.sensor_depth)
-            contact[a, i] = near
+        state, body, ball = states[a], bodies[a, count], balls[a]
+        low, p = flights[a].z < RECEIVED_HEIGHT, state.parameters
+        for i in range(count):
+            robot = bodies[a, i]
+            contact[a, i] = low and in_mouth(body, robot, p, p.body.sensor_depth)
             _report(robot, robots[a, i])
-        ball = balls[a]
         ball.x, ball.y = body.x, body.y
         ball.vx, ball.vy = state.ball.vx, state.ball.vy

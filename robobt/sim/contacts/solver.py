@@ -24,8 +24,10 @@ from robobt.sim.bodies import SLOP, Box, disc_material, material_of, moment_of_i
 from robobt.sim.contacts.touching import Shapes, find
 from robobt.sim.records import (
     BIAS,
+    CONTACT,
     MASSES,
     MEMORY,
+    MOVING,
     SOLVER,
     Bias,
     Body,
@@ -41,6 +43,7 @@ from robobt.sim.records import (
 )
 from robobt.sim.settings import SimSettings
 from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.geometry import FloatArray
 
 _SETTLED = 1e-12
 """After a pass over the contacts that changed no impulse by more than this there is no other [N s]."""
@@ -48,55 +51,18 @@ _SETTLED = 1e-12
 _LONG_AGO = -1e9
 
 
-class Contacts:
-    """What the solver knows of ``n`` arenas with ``robots`` each.
+class ContactArrays(NamedTuple):
+    """What the solver knows of ``n`` arenas with R robots each, as numbers."""
 
-    Attributes:
-        solver: numbers of the :class:`~robobt.sim.records.Solver`.
-        walls: (W, size(WALL)).
-        edges: (E, size(EDGE)) of all parts of a hull.
-        parts: (P, size(PART)) of a hull.
-        masses: (n, size(MASSES)) of the arenas' bodies.
-        bias: (n, R + 1, size(BIAS)) of bodies, for the next step.
-        memory: (n, pairs, size(MEMORY)) of pairs that may touch.
-    """
-
-    def __init__(self, settings: SimSettings, robots: int, walls: Sequence[tuple[Box, str]], n: int) -> None:
-        materials = material_of(settings.contact)
-        self.walls = np.array([(*box, *materials[kind]) for box, kind in walls])
-        hull = outlines(settings)
-        edges: list[tuple[float, float, float, float]] = []
-        parts = []
-        for part in hull:
-            ends = [*part.corners[1:], part.corners[0]]
-            begin = len(edges)
-            edges += [(*a, *b) for a, b in zip(part.corners, ends, strict=True)]
-            parts.append((begin, len(edges), part.rounding, *part.material))
-        self.edges = np.array(edges)
-        self.parts = np.array(parts, dtype=np.float64)
-        space = pymunk.Space()
-        bounce, friction = disc_material(settings.contact)
-        solver = filled(
-            SOLVER,
-            space,
-            bias=space.collision_bias,
-            allowed=SLOP,
-            persistence=space.collision_persistence,
-            bounce=bounce,
-            friction=friction,
-            # No wall is nearer to the centre of the field than this, along either axis.
-            clear_x=min(abs(x) for (x0, _, x1, _), _ in walls if not x0 < 0.0 < x1 for x in (x0, x1)),
-            clear_y=min(abs(y) for (x0, y0, x1, y1), _ in walls if x0 < 0.0 < x1 for y in (y0, y1)),
-            reach=max(sqrt(x * x + y * y) + part.rounding for part in hull for x, y in part.corners),
-        )
-        self.solver = solver.reshape(1).view(np.float64)
-        self.masses = np.zeros((n, size(MASSES)))
-        self.masses.view(MASSES)["ball"] = 1.0 / settings.ball.mass
-        self.weigh(slice(None), settings.body.mass)
-        self.bias = np.zeros((n, robots + 1, size(BIAS)))
-        pairs = (robots + 1) * len(walls) + robots * (robots + len(hull))
-        self.memory = np.zeros((n, pairs, size(MEMORY)))
-        self.forget(slice(None))
+    walls: FloatArray  # (W, size(WALL))
+    edges: FloatArray  # (E, size(EDGE)) of all parts of a hull
+    parts: FloatArray  # (P, size(PART)) of a hull
+    solver: FloatArray  # (1, size(SOLVER))
+    masses: FloatArray  # (n, size(MASSES))
+    bias: FloatArray  # (n, R + 1, size(BIAS)) of bodies, for the next step
+    memory: FloatArray  # (n, pairs, size(MEMORY)) of pairs that may touch
+    contacts: FloatArray  # (pairs, size(CONTACT)) scratch
+    moving: FloatArray  # (R + 2, size(MOVING)) scratch
 
     def forget(self, arenas: IntArray | int | slice) -> None:
         """Forget what touched in these arenas: bodies have been put elsewhere."""
@@ -110,22 +76,60 @@ class Contacts:
         masses["robot_turn"][arenas] = 1.0 / moment_of_inertia(mass)
 
 
-class Solving(NamedTuple):
-    """What the solver works with in one arena.
+def contact_arrays(
+    settings: SimSettings, robots: int, walls: Sequence[tuple[Box, str]], n: int
+) -> ContactArrays:
+    """Return the solver's arrays of ``n`` arenas with so many ``robots``, before anything touches."""
+    materials = material_of(settings.contact)
+    hull = outlines(settings)
+    edges: list[tuple[float, float, float, float]] = []
+    parts = []
+    for part in hull:
+        ends = [*part.corners[1:], part.corners[0]]
+        begin = len(edges)
+        edges += [(*a, *b) for a, b in zip(part.corners, ends, strict=True)]
+        parts.append((begin, len(edges), part.rounding, *part.material))
+    space = pymunk.Space()
+    bounce, friction = disc_material(settings.contact)
+    solver = filled(
+        SOLVER,
+        space,
+        bias=space.collision_bias,
+        allowed=SLOP,
+        persistence=space.collision_persistence,
+        bounce=bounce,
+        friction=friction,
+        # No wall is nearer to the centre of the field than this, along either axis.
+        clear_x=min(abs(x) for (x0, _, x1, _), _ in walls if not x0 < 0.0 < x1 for x in (x0, x1)),
+        clear_y=min(abs(y) for (x0, y0, x1, y1), _ in walls if x0 < 0.0 < x1 for y in (y0, y1)),
+        reach=max(sqrt(x * x + y * y) + part.rounding for part in hull for x, y in part.corners),
+    )
+    pairs = (robots + 1) * len(walls) + robots * (robots + len(hull))
+    made = ContactArrays(
+        walls=np.array([(*box, *materials[kind]) for box, kind in walls]),
+        edges=np.array(edges),
+        parts=np.array(parts, dtype=np.float64),
+        solver=solver.reshape(1).view(np.float64).reshape(1, -1),
+        masses=np.zeros((n, size(MASSES))),
+        bias=np.zeros((n, robots + 1, size(BIAS))),
+        memory=np.zeros((n, pairs, size(MEMORY))),
+        contacts=np.zeros((pairs, size(CONTACT))),
+        moving=np.zeros((robots + 2, size(MOVING))),
+    )
+    made.masses.view(MASSES)["ball"] = 1.0 / settings.ball.mass
+    made.weigh(slice(None), settings.body.mass)
+    made.forget(slice(None))
+    return made
 
-    Attributes:
-        masses: of its bodies.
-        bias: (R + 1,) of bodies, changed.
-        memory: (pairs,) changed.
-        contacts: (pairs,) scratch.
-        moving: (R + 2,) scratch.
-    """
+
+class Solving(NamedTuple):
+    """What the solver works with in one arena."""
 
     masses: Masses
-    bias: Records[Bias]
-    memory: Records[Memory]
-    contacts: Records[Contact]
-    moving: Records[Moving]
+    bias: Records[Bias]  # (R + 1,)
+    memory: Records[Memory]  # (pairs,)
+    contacts: Records[Contact]  # (pairs,) scratch
+    moving: Records[Moving]  # (R + 2,) scratch
 
 
 @compiled_lean

@@ -11,18 +11,11 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
 class Shapes(NamedTuple):
-    """What bodies can touch, the same in all arenas.
+    """What bodies can touch, the same in all arenas."""
 
-    Attributes:
-        walls: (W,) relative to an arena's centre.
-        edges: (E,) of all parts of a hull.
-        parts: (P,) of a hull.
-        solver: its numbers.
-    """
-
-    walls: Records[Wall]
-    edges: Records[Edge]
-    parts: Records[Part]
+    walls: Records[Wall]  # (W,) relative to an arena's centre
+    edges: Records[Edge]  # (E,) of all parts of a hull
+    parts: Records[Part]  # (P,) of a hull
     solver: Solver
 
 
