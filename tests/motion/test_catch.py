@@ -1,15 +1,16 @@
 from __future__ import annotations
 
-from math import pi
+from math import hypot, pi
 
 import pytest
 
 from robobt.motion.catch import catch
 from robobt.skills.base import Skill
 from robobt.tree import Status
-from robobt.world.rules import has_ball
+from robobt.world import BallState
+from robobt.world.rules import CARRY_DISTANCE, has_ball
 from tests.simulation import Trial, blue
-from tests.skills.fixed_world import robot
+from tests.skills.fixed_world import moved, robot
 
 
 class Catch(Skill):
@@ -48,3 +49,13 @@ def test_it_gives_way_only_as_the_ball_comes_near() -> None:
         command = trial.stores[blue(1)].command
         # Backwards in its own frame: away from the ball, which it faces.
         assert (command.vx < -0.04) is gives_way
+
+
+def test_it_gives_way_no_faster_than_it_can_stop_with_the_ball_within_the_rules() -> None:
+    me, fastest = robot(1.0, 0.0, pi), 0.0
+    for tick in range(60):
+        ball = BallState(tick * 6.0 / 60, 0.0, 6.0, 0.0)
+        me = moved(me, catch(me, ball, me.limits, 1 / 60), 1 / 60)
+        fastest = max(fastest, hypot(me.vx, me.vy))
+    assert 1.0 < fastest
+    assert fastest**2 / (2.0 * me.limits.hold_acceleration) < CARRY_DISTANCE

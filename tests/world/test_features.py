@@ -184,6 +184,13 @@ def test_the_scene_of_a_shot_is_seen_along_the_shot() -> None:
     assert tuple(scene[f"opponent_2_{name}"] for name in ("along", "across", "v_along", "v_across")) == ABSENT
 
 
+def test_who_stands_beyond_the_target_comes_after_who_is_nearer_to_the_way_there() -> None:
+    beyond, behind = (1.0, 5.0, 0.0, 0.0, 0.0, 0.0), (1.0, 0.2, 0.0, 0.0, 0.0, 0.0)
+    scene = scene_of([1.0, 1.0, 0.0, 0.0], [beyond, behind, *OPPONENTS])
+    places = [(scene[f"opponent_{i}_along"], scene[f"opponent_{i}_across"]) for i in range(4)]
+    assert places == [pytest.approx(place) for place in ((2.0, 0.4), (-0.8, 0.0), (4.0, 0.0), (2.0, -3.0))]
+
+
 def test_of_many_opponents_the_nearest_to_the_shot_stay_in_the_scene() -> None:
     far = [(x, -2.0, 0.0, 0.0, 0.0, 0.0) for x in np.linspace(-4.0, 0.0, 7)]
     scene = scene_of([1.0, 1.0, 0.0, 0.0], far + OPPONENTS)

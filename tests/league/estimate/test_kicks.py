@@ -152,14 +152,25 @@ def test_a_ball_that_rolls_past_is_not_kicked() -> None:
         assert scene.kicks == []
 
 
-def test_a_robot_that_brakes_behind_the_ball_has_not_kicked_it() -> None:
+@pytest.mark.parametrize("braking", [4.0, 8.0, 12.0])
+def test_a_robot_that_brakes_behind_the_ball_has_not_kicked_it(braking: float) -> None:
+    """Not even where it brakes so hard that the ball leaves it as fast as one that was kicked."""
     scene = Scene()
     x = ball = 0.0
     speed = 2.5
     for i in range(61):
-        speed = max(0.0, speed - (4.0 * PERIOD if i > 20 else 0.0))
+        speed = max(0.0, speed - (braking * PERIOD if i > 20 else 0.0))
         x += speed * PERIOD
-        ball += (2.5 if i > 20 else speed) * PERIOD
+        ball += (2.5 + 0.01 * (i - 20) if i > 20 else speed) * PERIOD
         scene.pose = (x, 0.0, 0.0)
         scene.see(i * PERIOD, MOUTH + ball - x)
     assert scene.kicks == []
+
+
+def test_a_ball_seen_in_the_mouth_once_more_after_a_kick_was_kicked_once() -> None:
+    """As by a second camera, which is late."""
+    scene = Scene(sent=[(0.0, KICK)])
+    for i in range(61):
+        away = 6.0 * max(0.0, (i - 20) * PERIOD)
+        scene.see(i * PERIOD, MOUTH + (0.0 if i == 22 else away))
+    assert len(scene.kicks) == 1

@@ -8,7 +8,7 @@ from robobt.skills import KickToTarget
 from robobt.skills.ball.kick_to_target import MAX_CHIP_SPEED, SHOT_SPEED
 from robobt.skills.store import Pass, Shot
 from robobt.tree import Status
-from robobt.world import Frame, KickTrigger, Team
+from robobt.world import Frame, KickTrigger, RobotLimits, Team
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import wrap_angle
@@ -57,6 +57,14 @@ def test_off_its_aim_it_turns_with_the_ball_and_does_not_kick() -> None:
     assert alone.command.kick_speed == 0.0
     assert alone.command.omega < 0.0
     assert alone.command.dribbler
+
+
+def test_a_ball_that_comes_is_kicked_softer_by_what_the_kicker_returns_of_its_speed() -> None:
+    me = robot(contact=True, limits=RobotLimits(kick_rebound=0.2))
+    for vx, speed in ((-2.0, 3.1), (0.0, 3.5), (1.0, 3.5)):
+        alone = Alone(KickToTarget(target=GOAL, kick_speed=3.5))
+        alone.tick(frame(me, ball=(*held(me), vx, 0.0)))
+        assert alone.command.kick_speed == pytest.approx(speed)
 
 
 def test_a_wide_shot_is_taken_sooner_than_a_narrow_one() -> None:
