@@ -50,6 +50,7 @@ class ArenaTask(ABC):
         played_by: the skill that a model of it is for.
         timed: which of an episode's times says how fast a success was.
         central: whether a central critic can learn it.
+        terms: the record of the reward's terms, one number each.
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
         robots: in an arena.
@@ -64,6 +65,7 @@ class ArenaTask(ABC):
     played_by: ClassVar[str] = "LearnedSkill"
     timed: ClassVar[Literal["time", "kick_time"]] = "time"
     central: ClassVar[bool] = False
+    terms: ClassVar[np.dtype[np.void]] = np.dtype([])
     observation: ObservationSpec
     robots: int = 1
     blue: int = 1
@@ -189,6 +191,10 @@ class ArenaTask(ABC):
     def _progress_rows(self) -> FloatArray:
         # Not kept: in a copy, or unpickled, it would be an array of its own.
         return self._progress.view(np.float64).reshape(self.n, -1)
+
+    @property
+    def _term_rows(self) -> FloatArray:
+        return self._terms.view(np.float64).reshape(self.n, -1)
 
     @property
     def ticks(self) -> FloatArray:
@@ -321,6 +327,7 @@ class ArenaTask(ABC):
         self._commands = np.zeros((n, robots, size(COMMAND)))
         self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
+        self._terms: NDArray[np.void] = np.zeros(n, dtype=self.terms)
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)
         self.ended = None
@@ -335,6 +342,7 @@ class ArenaTask(ABC):
         self.arenas.place(robots, balls, which)
         self._starting(rows, which)
         self._progress[which] = progress_at(balls)
+        self._terms[which] = np.zeros(len(which), dtype=self.terms)
         self._optimal_time[which] = self._optimum(rows, which)
         seen = self._perception.start(self.arenas.robots, self.arenas.balls, which)
         self._announce(seen, which)
@@ -352,6 +360,7 @@ class ArenaTask(ABC):
             optimum=self._optimal_time[which],
             kick_time=np.where(kick < 0, np.nan, kick * period),
             total_reward=progress["total_reward"],
+            terms=self._terms[which],
         )
 
     def _check_starts(self, rows: FloatArray) -> None:

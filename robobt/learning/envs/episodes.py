@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 
@@ -38,6 +38,7 @@ class Episodes:
         kick_time: start to the end of the tick in which the kicker first fired
             [s]; nan without a kick.
         total_reward: undiscounted.
+        terms: what each term of the reward contributed to it, a record with their names.
     """
 
     start: IntArray
@@ -48,6 +49,7 @@ class Episodes:
     optimum: FloatArray
     kick_time: FloatArray
     total_reward: FloatArray
+    terms: NDArray[np.void]
 
     def __len__(self) -> int:
         return len(self.start)

@@ -183,7 +183,8 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         """Let one control period pass; the last step's info holds what became of the episode.
 
         Its keys: ``is_success``, ``time`` [s], ``optimum`` (the straight line's
-        time [s], nan without one), ``kick_time`` (nan without a kick [s]).
+        time [s], nan without one), ``kick_time`` (nan without a kick [s]) and, for each term of the reward,
+        ``reward/NAME``, its sum over the episode.
 
         Raises:
             ResetNeeded: no episode has begun, or it is over.
@@ -200,7 +201,7 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
             float(result.reward[0]),
             bool(result.terminated[0]),
             bool(result.truncated[0]),
-            {} if ended is None else {key: getattr(ended, name)[0].item() for key, name in _INFO.items()},
+            {} if ended is None else {key: values[0].item() for key, values in _told(ended).items()},
         )
 
     def render(self) -> Picture | None:
@@ -320,10 +321,15 @@ def _start_of(options: Mapping[str, Any] | None) -> ArrayLike | None:
     return (options or {}).get("start")
 
 
+def _told(episodes: Episodes) -> dict[str, NDArray[Any]]:
+    """Return what infos say of episodes that have ended."""
+    terms = {f"reward/{name}": episodes.terms[name] for name in episodes.terms.dtype.names or ()}
+    return {key: getattr(episodes, name) for key, name in _INFO.items()} | terms
+
+
 def _spread(episodes: Episodes, ended: BoolArray) -> Info:
     info: Info = {}
-    for key, name in _INFO.items():
-        values = getattr(episodes, name)
+    for key, values in _told(episodes).items():
         whole = np.zeros(len(ended), dtype=values.dtype)
         whole[ended] = values
         info[key] = whole

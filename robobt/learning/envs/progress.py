@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.envs.task import FloatArray
+from robobt.world.compiled import record_dtype
 
 
 class Progress(Protocol):
@@ -38,7 +39,7 @@ class Progress(Protocol):
     potential: float
 
 
-PROGRESS = np.dtype([(name, np.float64) for name in Progress.__annotations__])
+PROGRESS = record_dtype(Progress)
 """How an episode has gone so far; see :class:`Progress`."""
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +25,14 @@ class Evaluation:
         times: (n,) until the moment that is timed [s]; NaN where it never came.
         optimum: (n,) shortest possible times [s]; NaN where unknown.
         returns: (n,) undiscounted sums of rewards.
+        terms: what each term of the reward contributed to them in the mean, by its name.
     """
 
     success: NDArray[np.bool_]
     times: FloatArray
     optimum: FloatArray
     returns: FloatArray
+    terms: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def rate(self) -> float:

@@ -132,6 +132,6 @@ def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, star
         task = make_task(world, min(_ARENAS, share))
         parts.append(run_starts(task, task.jointly(policy), task.sample_starts(seed, share), seed))
     episodes = Episodes.joined(parts)
-    return Evaluation(
-        episodes.success, getattr(episodes, task.timed), episodes.optimum, episodes.total_reward
-    )
+    times, rewards = getattr(episodes, task.timed), episodes.total_reward
+    terms = {name: float(episodes.terms[name].mean()) for name in episodes.terms.dtype.names or ()}
+    return Evaluation(episodes.success, times, episodes.optimum, rewards, terms)

@@ -32,6 +32,7 @@ class Validation:
         steps_per_second: environment steps by wall time since the last evaluation, evaluations not counted.
         losses: means since the last evaluation of what the learner reports (losses, gradient norms,
             approximate KL and so on, by name); None for a figure that is not finite, {} without updates.
+        terms: mean contribution of each term of the reward to ``mean_return``, by its name.
     """
 
     steps: int
@@ -45,6 +46,7 @@ class Validation:
     wall_s: float
     steps_per_second: float
     losses: dict[str, float | None] = field(default_factory=dict)
+    terms: dict[str, float] = field(default_factory=dict)
 
     def score(self, enough: float = 1.0) -> tuple[float, float]:
         """Return the key by which policies are ranked: success up to ``enough``, then speed."""

@@ -145,6 +145,7 @@ class Run(ABC):
             wall_s=round(self._clock.wall_s, 3),
             steps_per_second=round(pace, 1),
             losses={name: value if np.isfinite(value) else None for name, value in losses.items()},
+            terms=dict(figures.terms),
         )
         for name, value in validation.losses.items():
             if value is None and name.endswith("_loss"):

@@ -213,6 +213,7 @@ def scalars_of(validation: Validation) -> dict[str, float]:
     figures = asdict(validation)
     found: dict[str, float | None] = {tag: figures[name] for name, tag in _TAGS.items()}
     found |= {f"losses/{name}": value for name, value in validation.losses.items()}
+    found |= {f"reward/{name}": value for name, value in validation.terms.items()}
     return {tag: value for tag, value in found.items() if value is not None}
 
 

@@ -9,7 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
+from robobt.learning import TASKS
 from robobt.learning.training import checkpoint
 from robobt.learning.training.problems import problem_of, split_seed, training_seed
 from robobt.learning.training.run_folder import CHECKPOINT, RunFolderError, load_actor, load_run
@@ -360,7 +362,6 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
         "evaluation.starts": 10,
         "evaluation.held_out": 10,
         "rebuild_every": 640,
-        "tensorboard": False,
     }
     result = train(load_settings(task, changes=changes), tmp_path)
     assert result.settings.environment["period"] == 0.03
@@ -369,6 +370,13 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
     again = load_run(tmp_path)
     assert again.figures == result.figures
     assert again.settings == result.settings
+    assert again.validations == result.validations
+    events = EventAccumulator(str(tmp_path / "tensorboard")).Reload()
+    for each in again.validations:
+        assert set(each.terms) == set(TASKS[task].terms.names)
+        assert sum(each.terms.values()) == pytest.approx(each.mean_return)
+    for name, value in again.validations[-1].terms.items():
+        assert events.Scalars(f"reward/{name}")[-1].value == pytest.approx(value)
 
 
 def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):

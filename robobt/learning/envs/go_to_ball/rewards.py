@@ -1,11 +1,13 @@
 """The reward of Go-To-Ball: what a weight is called and what it weighs.
 
-For a new term add its weight to :class:`GoToBallReward` and the term to :func:`reward`.
+For a new term add its weight to :class:`GoToBallReward`, its name to :class:`GoToBallTerms` and the term to
+:func:`reward`.
 """
 
 from __future__ import annotations
 
 from math import exp, hypot, pi, sqrt
+from typing import Protocol
 
 from pydantic import Field
 
@@ -43,6 +45,18 @@ class GoToBallReward(Settings):
     )
 
 
+class GoToBallTerms(Protocol):
+    """What each term has brought since an episode began, by the name of its weight."""
+
+    distance: float
+    orientation: float
+    closing: float
+    time: float
+    near: float
+    touched: float
+    contact: float
+
+
 @compilable
 def reward(
     weights: GoToBallReward,
@@ -50,11 +64,11 @@ def reward(
     ball: FloatArray,
     action: FloatArray,  # noqa: ARG001 - for terms to come
     reached: bool,
-    place_x: float,
-    place_y: float,
+    place: tuple[float, float],
     facing: float,
     gap: float,
     touched: bool,
+    terms: GoToBallTerms,
 ) -> float:
     """Compute the reward of a step.
 
@@ -64,23 +78,34 @@ def reward(
         ball: (4,) x, y, vx, vy after it.
         action: (3,) in [-1, 1], taken in it.
         reached: whether the robot has reached the ball.
-        place_x: where it is to drive [m]: the ball, or behind it in order to shoot.
-        place_y: its other coordinate.
+        place: where it is to drive [m]: the ball, or behind it in order to shoot.
         facing: direction in which it is to face [rad].
         gap: hull to hull of the nearest other robot, infinite without any [m].
         touched: whether it has touched one.
+        terms: of the episode, added to.
     """
-    distance = hypot(place_x - robot[0], place_y - robot[1])
+    dx, dy = place[0] - robot[0], place[1] - robot[1]
+    distance = hypot(dx, dy)
     angle = abs(wrap_angle(facing - robot[2]))
-    total = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
-    total += weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
+    near_it = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
+    towards_it = weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
+    terms.distance += near_it
+    terms.orientation += towards_it
+    total = near_it + towards_it
     if distance > 0.0:
         # Relative to the ball: who pushes it along comes no closer.
-        closing = (place_x - robot[0]) * (robot[3] - ball[2]) + (place_y - robot[1]) * (robot[4] - ball[3])
-        total += weights.closing * closing / distance
-    total -= weights.time + weights.near * max(1.0 - gap / _NEAR, 0.0)
+        closing = dx * (robot[3] - ball[2]) + dy * (robot[4] - ball[3])
+        closing = weights.closing * closing / distance
+        terms.closing += closing
+        total += closing
+    crowded = weights.near * max(1.0 - gap / _NEAR, 0.0)
+    terms.time -= weights.time
+    terms.near -= crowded
+    total -= weights.time + crowded
     if touched:
+        terms.touched -= weights.touched
         total -= weights.touched
     if reached:
+        terms.contact += weights.contact
         total += weights.contact  # Eq. 7
     return total

@@ -10,7 +10,7 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask, Policy
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.episodes import straight_line_time
-from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, reward
+from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, GoToBallTerms, reward
 from robobt.learning.envs.go_to_ball.settings import (
     ContactRule,
     GoToBallAmongRobotsSettings,
@@ -25,7 +25,7 @@ from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
@@ -45,12 +45,13 @@ _FROM_POST = 0.15
 TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are nearer touch [m]: contact is seen once a tick."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
-_WEIGHTS = numbers_dtype(GoToBallReward)
+_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record_dtype(GoToBallTerms)
 
 
 class GoToBallTask(ArenaTask):
     """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
 
+    terms = _TERMS
     Settings = GoToBallSettings
     played_by = "GoToBall"
     observation: ObservationSpec = GO_TO_BALL
@@ -150,6 +151,7 @@ class GoToBallTask(ArenaTask):
             arenas.balls,
             arenas.contact,
             self._progress_rows,
+            self._term_rows,
             rewards,
             ends,
         )
@@ -200,13 +202,14 @@ def _judge(
     balls: FloatArray,
     in_mouth: BoolArray,
     progress: FloatArray,
+    terms_: FloatArray,
     rewards: FloatArray,
     ends: BoolArray,
 ) -> bool:
     settings: GoToBallSettings = settings_.view(_SETTINGS)[0]
     contact: ContactRule = contact_.view(_CONTACT)[0]
     weights: GoToBallReward = weights_.view(_WEIGHTS)[0]
-    episodes = progress.view(PROGRESS)
+    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
     any_ended = False
     for i in range(len(balls)):
         if is_over(ends, i):
@@ -240,7 +243,8 @@ def _judge(
         touched = nearest < TOUCHING
         reached = reached and not touched
         gap = nearest - 2.0 * ROBOT_RADIUS
-        earned = reward(weights, robot, ball, actions[i], reached, place_x, place_y, facing, gap, touched)
+        place = place_x, place_y
+        earned = reward(weights, robot, ball, actions[i], reached, place, facing, gap, touched, terms[i, 0])
         if end_tick(episode, earned, reached, touched, settings.time_limit, i, rewards, ends):
             any_ended = True
     return any_ended

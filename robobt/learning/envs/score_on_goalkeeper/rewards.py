@@ -1,11 +1,13 @@
 """The reward of Score-On-Goalkeeper: what a weight is called and what it weighs.
 
-For a new term add its weight to :class:`ScoreReward` and the term to :func:`reward`.
+For a new term add its weight to :class:`ScoreReward`, its name to :class:`ScoreTerms` and the term to
+:func:`reward`.
 """
 
 from __future__ import annotations
 
 from math import atan2, cos, hypot, isnan, nan
+from typing import Protocol
 
 from pydantic import Field
 
@@ -50,28 +52,39 @@ class ScoreReward(Settings):
     )
 
 
+class ScoreTerms(Protocol):
+    """What each term has brought since an episode began.
+
+    ``kick`` is what ``aimed``, ``unreached`` and ``miss`` weigh, ``potential`` what ``approach``,
+    ``advance`` and ``facing`` do; the others have the names of their weights.
+    """
+
+    goal: float
+    lost: float
+    time: float
+    kick: float
+    potential: float
+
+
 @compilable
 def reward(
     weights: ScoreReward,
-    goal_x: float,
-    post_y: float,
-    robot: FloatArray,
-    keeper: FloatArray,
+    posts: tuple[float, float],
+    robots: FloatArray,
     ball: FloatArray,
     held: bool,
     fired: bool,
     goal: bool,
     lost: bool,
     progress: Progress,
+    terms: ScoreTerms,
 ) -> float:
     """Compute the reward of a tick.
 
     Args:
         weights: of the terms.
-        goal_x: where the attacked goal's line is [m].
-        post_y: distance of its posts from the field's long axis [m].
-        robot: (6,) x, y, heading, vx, vy, omega of the attacker after the tick.
-        keeper: (6,) of the goalkeeper.
+        posts: where the attacked goal's line is, and how far its posts are from the field's long axis [m].
+        robots: (2, 6) x, y, heading, vx, vy, omega of attacker and goalkeeper after the tick.
         ball: (4,) x, y, vx, vy after it.
         held: whether the ball lies in the attacker's mouth.
         fired: whether the attacker's kicker fired in it.
@@ -79,10 +92,14 @@ def reward(
         lost: whether the episode ended otherwise.
         progress: of the episode; keeps the potential, which pays for what the state is worth more than
             the one before.
+        terms: of the episode, added to.
     """
+    (goal_x, post_y), robot, keeper = posts, robots[0], robots[1]
+    terms.time -= weights.time
     total = -weights.time
     if fired:
         earned = kicked(weights, goal_x, post_y, keeper, ball)
+        terms.kick += earned
         total += earned
         progress.kick_rewarded = 1.0 if earned > 0.0 else 0.0
     elif held or hypot(ball[2], ball[3]) < _SLOW:
@@ -96,11 +113,15 @@ def reward(
         # Who shoots at the goal gives the ball away, and shall not pay for that.
         potential = nan
     elif not isnan(progress.potential):
-        total += potential - progress.potential
+        gained = potential - progress.potential
+        terms.potential += gained
+        total += gained
     progress.potential = potential
     if goal:
+        terms.goal += weights.goal
         total += weights.goal
     elif lost:
+        terms.lost -= weights.lost
         total -= weights.lost
     return total
 

@@ -10,12 +10,12 @@ from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, reward
+from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, reward
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.keepers import TRAITS, Keepers
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
@@ -24,12 +24,13 @@ from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
 from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ScoreOnGoalkeeperSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS = numbers_dtype(ScoreReward)
+_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record_dtype(ScoreTerms)
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):
     """Get the ball and score; :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification."""
 
+    terms = _TERMS
     Settings = ScoreOnGoalkeeperSettings
     played_by = "Score"
     observation: ObservationSpec = SCORE_ON_GOALKEEPER
@@ -103,6 +104,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             arenas.touch,
             self._keepers.kept,
             self._progress_rows,
+            self._term_rows,
             rewards,
             ends,
         )
@@ -124,13 +126,14 @@ def _judge(
     touch: IntArray,
     kept: BoolArray,
     progress: FloatArray,
+    terms_: FloatArray,
     rewards: FloatArray,
     ends: BoolArray,
 ) -> bool:
     settings: ScoreOnGoalkeeperSettings = settings_.view(_SETTINGS)[0]
     field: FieldGeometry = field_.view(_FIELD)[0]
     weights: ScoreReward = weights_.view(_WEIGHTS)[0]
-    episodes = progress.view(PROGRESS)
+    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     depth, width = field.defense_depth, field.defense_width
     any_ended = False
@@ -156,9 +159,8 @@ def _judge(
             way = hypot(ball[0] - episode.carried_x, ball[1] - episode.carried_y)
             lost = lost or way > settings.dribbling
         lost = lost and not goal
-        earned = reward(
-            weights, half_length, post, robot, robots[i, 1], ball, held, fired, goal, lost, episode
-        )
+        posts = half_length, post
+        earned = reward(weights, posts, robots[i], ball, held, fired, goal, lost, episode, terms[i, 0])
         if end_tick(episode, earned, goal, lost, settings.time_limit, i, rewards, ends):
             any_ended = True
     return any_ended

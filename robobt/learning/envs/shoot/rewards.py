@@ -1,12 +1,13 @@
 """The reward of Shoot-Towards-Goal: what a weight is called and what it weighs.
 
-For a new term add its weight to :class:`ShootReward` and the term to :func:`reward`.
+For a new term add its weight to :class:`ShootReward`, its name to :class:`ShootTerms` and the term to
+:func:`reward`.
 """
 
 from __future__ import annotations
 
 from math import atan2, hypot
-from typing import Literal
+from typing import Literal, Protocol
 
 from pydantic import Field
 
@@ -45,40 +46,48 @@ SHOOT_REWARDS: dict[str, ShootReward] = {
 """Rewards by name: the authors' code, the paper's equations alone, Eq. 12 and the goal, the goal and time."""
 
 
+class ShootTerms(Protocol):
+    """What each term has brought since an episode began, by the name of its weight."""
+
+    face_goal: float
+    kick: float
+    waiting: float
+    goal: float
+    time: float
+
+
 @compilable
 def reward(
     weights: ShootReward,
-    firing_counts: bool,
     goal_x: float,
     post_y: float,
     robot: FloatArray,
     ball: FloatArray,
-    action: FloatArray,
-    fired: bool,
+    kick: bool,
     goal: bool,
     out: bool,
     progress: Progress,
+    terms: ShootTerms,
 ) -> float:
     """Compute the reward of a step.
 
     Args:
         weights: of the terms.
-        firing_counts: whether a kick is the kicker's firing, not the first kick action.
         goal_x: where the attacked goal's line is [m].
         post_y: distance of its posts from the field's long axis [m].
         robot: (6,) x, y, heading, vx, vy, omega after the step.
         ball: (4,) x, y, vx, vy after it.
-        action: (2,) in [-1, 1], taken in it.
-        fired: whether the kicker fired in it.
+        kick: whether there was a kick in it, by what counts as one.
         goal: whether a goal was scored.
         out: whether the episode ended out of play.
         progress: of the episode; keeps whether there was a kick.
+        terms: of the episode, added to.
     """
-    kick = fired if firing_counts else action[1] > 0.0
     first_kick = kick and progress.kick_rewarded == 0.0
     if kick:
         progress.kick_rewarded = 1.0
     if goal:
+        terms.goal += weights.goal
         return weights.goal
     if out:
         return 0.0
@@ -88,11 +97,18 @@ def reward(
     beta = max(abs(wrap_angle(upper - robot[2])), abs(wrap_angle(lower - robot[2])))
     facing = alpha >= beta
     speed = hypot(ball[2], ball[3])
-    total = weights.face_goal * (alpha - beta) * speed - weights.time  # Eq. 12
+    turned = weights.face_goal * (alpha - beta) * speed  # Eq. 12
+    terms.face_goal += turned
+    terms.time -= weights.time
+    total = turned - weights.time
     if facing:
-        total -= weights.face_goal * (1.0 - weights.inside_share) * (alpha - beta) * speed
+        inside = weights.face_goal * (1.0 - weights.inside_share) * (alpha - beta) * speed
+        terms.face_goal -= inside
+        total -= inside
         if first_kick:
+            terms.kick += weights.kick
             total += weights.kick  # Eq. 13
     if not facing or progress.kick_rewarded == 0.0:
+        terms.waiting -= weights.waiting
         total -= weights.waiting  # Eq. 13
     return total

@@ -12,20 +12,20 @@ from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import turn_and_kick
-from robobt.learning.envs.shoot.rewards import ShootReward, reward
+from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS = numbers_dtype(ShootReward)
+_WEIGHTS, _TERMS = numbers_dtype(ShootReward), record_dtype(ShootTerms)
 
 _CAREFUL = 0.9
 """Share of what the dribbler can hold that the script turns with."""
@@ -36,6 +36,7 @@ _ROBOT_BACK_LIMIT = -0.2
 class ShootTask(ArenaTask):
     """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
 
+    terms = _TERMS
     Settings = ShootSettings
     played_by = "Shoot"
     timed = "kick_time"
@@ -94,6 +95,7 @@ class ShootTask(ArenaTask):
             arenas.balls,
             arenas.kicked,
             self._progress_rows,
+            self._term_rows,
             rewards,
             ends,
         )
@@ -114,13 +116,14 @@ def _judge(
     balls: FloatArray,
     kicked: BoolArray,
     progress: FloatArray,
+    terms_: FloatArray,
     rewards: FloatArray,
     ends: BoolArray,
 ) -> bool:
     settings: ShootSettings = settings_.view(_SETTINGS)[0]
     field: FieldGeometry = field_.view(_FIELD)[0]
     weights: ShootReward = weights_.view(_WEIGHTS)[0]
-    episodes = progress.view(PROGRESS)
+    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     any_ended = False
     for i in range(len(balls)):
@@ -136,9 +139,8 @@ def _judge(
         out = out or in_area(robot[0], robot[1], half_length, field.defense_depth, field.defense_width)
         if settings.lost_distance is not None and episode.kick_tick < 0:
             out = out or hypot(ball[0] - robot[0], ball[1] - robot[1]) > settings.lost_distance
-        earned = reward(
-            weights, firing_counts, half_length, post, robot, ball, actions[i], fired, goal, out, episode
-        )
+        kick = fired if firing_counts else actions[i, 1] > 0.0
+        earned = reward(weights, half_length, post, robot, ball, kick, goal, out, episode, terms[i, 0])
         if end_tick(episode, earned, goal, out, settings.time_limit, i, rewards, ends):
             any_ended = True
     return any_ended

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.soccer.rewards import SoccerReward, own_reward, sent, team_reward
+from robobt.learning.envs.soccer.rewards import SoccerReward, SoccerTerms, own_reward, sent, team_reward
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
-from robobt.world.compiled import compilable, compiled_lean, numbers_dtype
+from robobt.world.compiled import compilable, compiled_lean, numbers_dtype, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import KEPT_GAP, in_area, is_out
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -31,6 +31,8 @@ OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
 
 _SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
 _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
+TERMS = record_dtype(SoccerTerms)
+"""Names of the reward's terms."""
 _WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
 
 
@@ -56,6 +58,7 @@ def judge(
     owns: FloatArray,
     shares: FloatArray,
     progress: FloatArray,
+    terms_: FloatArray,
     rewards: FloatArray,
     ends: BoolArray,
 ) -> bool:
@@ -84,6 +87,7 @@ def judge(
         owns: (L,) scratch.
         shares: (n, L) rewards of the learners, added to.
         progress: (n, ...) rows of ``PROGRESS``.
+        terms_: (n, ...) rows of ``TERMS``, added to.
         rewards: (n,) added to.
         ends: (3, n) filled.
     """
@@ -91,9 +95,9 @@ def judge(
     field: FieldGeometry = field_.view(_FIELD)[0]
     weights: SoccerReward = weights_.view(_WEIGHTS)[0]
     rules: SoccerRules = rules_.view(_RULES)[0]
-    episodes = progress.view(PROGRESS)
+    episodes, terms = progress.view(PROGRESS), terms_.view(TERMS)
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
-    any_ended = False
+    any_ended, part = False, 1.0 / max(len(who), 1)
     for i in range(len(balls)):
         if is_over(ends, i):
             any_ended = True
@@ -167,10 +171,14 @@ def judge(
                 kicked[i, who[k]],
                 sqrt(nearest) - 2.0 * ROBOT_RADIUS,
                 before[i, k],
+                terms[i, 0],
+                part,
             )
             if weights.sent > 0.0 and kicked[i, who[k]]:
                 first, last = (0, blue) if team == 0 else (blue, robots.shape[1])
-                owns[k] += weights.sent * sent(ball, robots[i], first, last, rules.pass_length)
+                aimed = weights.sent * sent(ball, robots[i], first, last, rules.pass_length)
+                terms[i, 0].sent += part * aimed
+                owns[k] += aimed
             if team == 0:
                 of_blue += owns[k]
                 blues += 1
@@ -190,6 +198,8 @@ def judge(
                 holds,
                 ball_to_goal[team],
                 before[i, k],
+                terms[i, 0],
+                part,
             )
             mean_own = of_blue / blues if team == 0 else of_yellow / yellows
             earned += (1.0 - weights.shared) * owns[k] + weights.shared * mean_own

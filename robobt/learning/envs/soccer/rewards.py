@@ -1,12 +1,13 @@
 """The reward of tasks of several robots: what a weight is called and what it weighs.
 
-For a new term add its weight to :class:`SoccerReward`, and the term to :func:`team_reward` or
-:func:`own_reward`.
+For a new term add its weight to :class:`SoccerReward`, its name to :class:`SoccerTerms`, and the term to
+:func:`team_reward` or :func:`own_reward`.
 """
 
 from __future__ import annotations
 
 from math import hypot, isnan
+from typing import Protocol
 
 from pydantic import Field
 
@@ -62,6 +63,21 @@ class SoccerReward(Settings):
     )
 
 
+class SoccerTerms(Protocol):
+    """What each term has brought since an episode began, by the name of its weight: the learners' mean."""
+
+    goal: float
+    fault: float
+    passed: float
+    holding: float
+    advance: float
+    time: float
+    approach: float
+    shot: float
+    sent: float
+    crash: float
+
+
 @compilable
 def team_reward(
     weights: SoccerReward,
@@ -71,6 +87,8 @@ def team_reward(
     holding: bool,
     ball_to_goal: float,
     before: FloatArray,
+    terms: SoccerTerms,
+    part: float,
 ) -> float:
     """Compute the team's terms of a tick, seen from one of its robots.
 
@@ -83,14 +101,24 @@ def team_reward(
         ball_to_goal: distance from the ball to the attacked goal [m].
         before: (3,) that of the tick before, nan at first, which is replaced, the robot's to the ball, and
             how often it has shot.
+        terms: of the episode, added to.
+        part: of one learner in the mean of all.
     """
-    total = weights.goal * goal - weights.fault * fault - weights.time
+    scored, faulty = weights.goal * goal, weights.fault * fault
+    terms.goal += part * scored
+    terms.fault -= part * faulty
+    terms.time -= part * weights.time
+    total = scored - faulty - weights.time
     if passed:
+        terms.passed += part * weights.passed
         total += weights.passed
     if holding:
+        terms.holding += part * weights.holding
         total += weights.holding
     if not isnan(before[0]):
-        total += weights.advance * (before[0] - ball_to_goal)
+        nearer = weights.advance * (before[0] - ball_to_goal)
+        terms.advance += part * nearer
+        total += nearer
     before[0] = ball_to_goal
     return total
 
@@ -105,6 +133,8 @@ def own_reward(
     fired: bool,
     gap: float,
     before: FloatArray,
+    terms: SoccerTerms,
+    part: float,
 ) -> float:
     """Compute a robot's own terms of a tick.
 
@@ -117,19 +147,25 @@ def own_reward(
         fired: whether its kicker fired in it.
         gap: from its hull to the nearest one [m].
         before: as for :func:`team_reward`; the second entry is replaced, the third counts shots.
+        terms: of the episode, added to.
+        part: of one learner in the mean of all.
     """
     total = 0.0
     far = max(hypot(ball[0] - robot[0], ball[1] - robot[1]) - ROBOT_RADIUS - BALL_RADIUS, 0.0)
     if not isnan(before[1]):
-        total += weights.approach * (before[1] - far)
+        nearer = weights.approach * (before[1] - far)
+        terms.approach += part * nearer
+        total += nearer
     before[1] = far
     shots = 0.0 if isnan(before[SHOTS]) else before[SHOTS]
     if fired and shots < _REWARDED and (goal_x - ball[0]) * ball[2] > 0.0:
         crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
         if abs(crosses) < post_y - BALL_RADIUS:
+            terms.shot += part * weights.shot
             total += weights.shot
             before[SHOTS] = shots + 1.0
     if gap < 0.005:
+        terms.crash -= part * weights.crash
         total -= weights.crash
     return total
 

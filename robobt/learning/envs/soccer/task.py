@@ -16,6 +16,7 @@ from robobt.learning.envs.soccer.judge import (
     MIND,
     TAKEN_X,
     TAKEN_Y,
+    TERMS,
     YELLOW_TICKS,
     judge,
 )
@@ -45,6 +46,7 @@ class SoccerTask(ArenaTask):
     :class:`~robobt.learning.envs.per_robot.PerRobot` has a row for each learner instead.
     """
 
+    terms = TERMS
     Settings: ClassVar[type[SoccerSettings]] = SoccerSettings
     central = True
     settings: SoccerSettings
@@ -235,6 +237,7 @@ class SoccerTask(ArenaTask):
             self._owns,
             self._shares,
             self._progress_rows,
+            self._term_rows,
             rewards,
             ends,
         )
