@@ -118,7 +118,7 @@ def test_a_ball_that_is_back_exactly_where_it_was_kicked_has_not_flown() -> None
 
 
 class Chip:
-    """A ball that is chipped from the origin along x, as one of two cameras sees it without noise, and a watch."""
+    """A ball that is chipped from the origin along x, seen without noise by one of two cameras; a watch."""
 
     def __init__(self, noise: float = 0.002, speed: float = 2.0, rise: float = 2.0) -> None:
         self.camera, self.tick = CameraPlace(2.25, 1.5, 4.0), 0
