@@ -146,7 +146,7 @@ def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_
     nowhere = load_settings("duel", "self_play", {**few, "init": str(tmp_path)})
     with pytest.raises(TrainError, match=r"init: .* is not the folder of a finished run"):
         train(nowhere, tmp_path / "nowhere")
-    with pytest.raises(TrainError, match=r"init: the policy of .* sees 23 entries"):
+    with pytest.raises(TrainError, match=r"init: the policy of .* observes 23 entries"):
         train(load_settings("duel", "self_play", {**few, "ppo.hidden_sizes": [7]}), tmp_path / "other")
     # One who sees more robots does at first as if it saw but those.
     changes = {**few, "ppo.critic": "own", "environment.opponents": 3}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robobt.models.file import ModelError
+from robobt.models.file import ModelError, ModelFile
 from robobt.models.policy import Policy, load_policy
 from robobt.skills import Score
 from robobt.skills.ball import learned_control
@@ -62,9 +62,9 @@ def test_a_model_that_ships_is_loaded_when_it_is_needed_and_any_other_at_once(
 ) -> None:
     loaded: list[str] = []
 
-    def load(path: Path) -> Policy:
-        loaded.append(path.stem)
-        return load_policy(path)
+    def load(file: ModelFile) -> Policy:
+        loaded.append(file.path.stem)
+        return load_policy(file)
 
     monkeypatch.setattr(learned_control, "load_policy", load)
     monkeypatch.setattr(learned_control, "_shipped", {})
@@ -81,8 +81,8 @@ def test_a_model_that_ships_is_loaded_when_it_is_needed_and_any_other_at_once(
 
 
 def test_one_that_cannot_be_loaded_fails_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    def load(path: Path) -> Policy:
-        raise ModelError(f"{path.name}: needs torch to run")
+    def load(file: ModelFile) -> Policy:
+        raise ModelError(f"{file.path.name}: needs torch to run")
 
     monkeypatch.setattr(learned_control, "load_policy", load)
     alone = Alone(Score(policy="score_on_goalkeeper_ppo"))
