@@ -1,4 +1,4 @@
-"""How good a policy is: by success and time, never by the return."""
+"""Evaluation of policies by success and time, never by the return."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Policy = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """What a policy did from each of a set of starts, once and without noise.
+    """Results of a policy from a set of starts, each played once and without noise.
 
     Attributes:
         success: (n,) whether the episode ended in success.
-        times: (n,) until the moment that is timed [s]; NaN where it never came.
+        times: (n,) until the timed moment [s]; NaN where it never came.
         optimum: (n,) shortest possible times [s]; NaN where unknown.
         returns: (n,) undiscounted sums of rewards.
         terms: what each term of the reward contributed to them in the mean, by its name.

@@ -1,4 +1,4 @@
-"""Policies, scripts and plays against each other in a task in which both teams learn."""
+"""Encounters of policies, scripts and plays in tasks in which both teams learn."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from robobt.learning.training.setting_groups import Script
 from robobt.learning.training.settings import environment_of
 
 _ARENAS = 128
-"""Side by side in a meeting."""
+"""Arenas side by side in an encounter."""
 
 
 class MeetingError(RobobtError, ValueError):
-    """Who is to meet cannot; the message is one line."""
+    """Contenders that cannot meet; the message is one line."""
 
 
 @dataclass(frozen=True)
 class Contender:
-    """Who plays in the places of a team's learners: a policy, scripted robots of a role, or a play's."""
+    """A policy, scripted robots of a role, or a play's robots, in the places of a team's learners."""
 
     name: str
     plays: Actor | Opponent
@@ -42,7 +42,7 @@ class Contender:
 
 @dataclass(frozen=True)
 class Encounter:
-    """Two against each other: from each of ``starts`` starts both on either side, goals the first one's."""
+    """Two contenders from ``starts`` starts, each played on both sides; ``won`` are goals of the first."""
 
     first: str
     second: str
@@ -53,7 +53,7 @@ class Encounter:
 
     @property
     def scores(self) -> list[float]:
-        """The first one's, of each episode: 1 for its goal, 0 for one against it, 0.5 without one."""
+        """The first one's score in each episode: 1 for its goal, 0 for one against it, 0.5 without."""
         return [1.0] * self.won + [0.5] * self.drawn + [0.0] * self.lost
 
 
@@ -70,7 +70,7 @@ def script(role: str) -> Contender:
 
 
 def play(text: str, name: str, params: Mapping[str, object]) -> Contender:
-    """Return robots that a play moves as a contender, called ``text``.
+    """Return a play's robots as a contender, called ``text``.
 
     Raises:
         MeetingError: there is no such play, or it has no such parameters.
@@ -112,10 +112,10 @@ def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettin
 def encounters(
     settings: SoccerSettings, contenders: Sequence[Contender], starts: int, seed: int
 ) -> list[Encounter]:
-    """Let everybody meet everybody, each two from starts of their own; ``seed`` decides on these.
+    """Let every two contenders meet, from starts that follow from ``seed`` and the pair.
 
     Raises:
-        MeetingError: a policy sees something else than the robots of the environment do.
+        MeetingError: a policy has another observation than the environment.
     """
     size = SoccerTask(settings, 1).observation.size
     for one in contenders:
@@ -136,7 +136,7 @@ def encounters(
 def _goals(
     settings: SoccerSettings, blue: Contender, yellow: Contender, starts: int, seed: int
 ) -> NDArray[np.int64]:
-    """Return from each start 1 where blue scores, -1 where yellow does, 0 else."""
+    """Return 1 for each start from which blue scores, -1 where yellow does, else 0."""
     made = settings
     if not isinstance(yellow.plays, Actor):
         made = against(made, yellow.plays)

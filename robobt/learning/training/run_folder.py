@@ -61,6 +61,8 @@ _TAGS = {
     "wall_s": "charts/wall_s",
 }
 """TensorBoard's tags of the scalar fields of :class:`Validation`."""
+_GROUPS = {"losses": "losses", "terms": "reward"}
+"""Fields of :class:`Validation` that hold figures by name, and how the tags of those begin."""
 
 
 class RunFolderError(RobobtError, ValueError):
@@ -212,8 +214,8 @@ def scalars_of(validation: Validation) -> dict[str, float]:
     """Return the figures of an evaluation by the tags that they have in TensorBoard."""
     figures = asdict(validation)
     found: dict[str, float | None] = {tag: figures[name] for name, tag in _TAGS.items()}
-    found |= {f"losses/{name}": value for name, value in validation.losses.items()}
-    found |= {f"reward/{name}": value for name, value in validation.terms.items()}
+    for group, prefix in _GROUPS.items():
+        found |= {f"{prefix}/{name}": value for name, value in figures[group].items()}
     return {tag: value for tag, value in found.items() if value is not None}
 
 

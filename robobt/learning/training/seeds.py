@@ -1,4 +1,4 @@
-"""Several seeds of one run side by side."""
+"""Training with several seeds side by side."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ def train_seeds(
 ) -> list[TrainResult]:
     """Train with every seed, each in a folder ``seed_N`` of its own.
 
-    A seed's result is the same whatever runs beside it. ``result.json`` and
-    ``curves.png`` of all seeds together are in ``out`` when the last has ended.
+    A seed's result does not depend on the others. ``result.json`` and
+    ``curves.png`` of all seeds together are written to ``out`` at the end.
 
     Args:
-        settings: but for the seed.
+        settings: of all runs; the seed is replaced.
         seeds: at least one.
         out: the folder.
         workers: processes, of one thread each; 1 is this process itself.
-        resume: go on with runs that were interrupted, and keep those that have ended.
+        resume: continue interrupted runs, and keep finished ones.
         on_progress: called now and then, in this process.
-        problem: makes a run's problem of its settings in place of the usual one; with one worker.
+        problem: makes a run's problem from its settings instead of the usual one; with one worker.
 
     Raises:
         TrainError: a run failed; the message is its own.

@@ -1,4 +1,4 @@
-"""Train an agent: the settings say which learner."""
+"""Train an agent with the learner that the settings name."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def train(
 ) -> TrainResult:
     """Train an agent, from scratch or from where a run was interrupted.
 
-    What the run writes to its folder is described in :mod:`robobt.learning.training.run_folder`.
+    The files of a run are described in :mod:`robobt.learning.training.run_folder`.
     The result follows from the settings alone: a run that was killed and resumed ends
-    with the same weights as one that was not, bit for bit, because both build the
-    simulator anew every ``rebuild_every`` steps, and checkpoints are written only there.
+    with the same weights as one that was not, bit for bit, because both rebuild the
+    simulator every ``rebuild_every`` steps, and checkpoints are written only then.
 
     Args:
         settings: of the run.
         out: its folder.
-        resume: go on with the run in the folder; without one there, start it.
+        resume: continue the run in the folder; start one if there is none.
         on_progress: called now and then.
         problem: the task to learn in place of the one the settings name.
 

@@ -1,4 +1,4 @@
-"""A policy in the live page, whenever training evaluates it."""
+"""Evaluations of a training run in the live page."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from robobt.world.game import Team
 from robobt.world.state import BallState, Frame, RobotState
 
 SHOWN = 5
-"""Starts that are shown of each evaluation."""
+"""Number of starts shown of each evaluation."""
 
 _LOOK = 0.05
-"""How often somebody who has paused is looked for [s]."""
+"""Period of looking for input while paused [s]."""
 
 
 def watched_problem(server: Server, settings: TrainSettings) -> Problem:
-    """Return the problem of a run, whose evaluations a server's viewers are shown in real time.
+    """Return the problem of a run, which shows its evaluations to a server's viewers in real time.
 
-    Training waits meanwhile, as long as somebody watches; what it learns is the same.
+    Training waits while somebody watches; what it learns is the same.
     """
     problem = problem_for(settings)
     shows = _Shows(server, settings)
@@ -54,7 +54,7 @@ class _Shows:
         self._controls.tell()
 
     def play(self, policy: Policy, split: Split, figures: str) -> None:
-        """Play a policy from some starts, at the speed that viewers ask for."""
+        """Play a policy from some starts, at the viewers' speed."""
         task = make_task(environment_of(self._settings), 1)
         capture = Capture(_header_of(task, f"{self._settings.task}: {figures}"))
         self._server.show(Stream(capture))
