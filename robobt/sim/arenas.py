@@ -120,10 +120,6 @@ class Arenas:
         return self._arrays.states.view(ARENA)[..., 0]
 
     @property
-    def _kept(self) -> RecordArray:
-        return self._arrays.kept.view(ROBOT)[..., 0]
-
-    @property
     def arena_parameters(self) -> RecordArray:
         """(n,) :class:`~robobt.sim.records.Parameters`; writing to them randomises arenas."""
         parameters: RecordArray = self._states["parameters"]
@@ -138,7 +134,7 @@ class Arenas:
     @property
     def robot_parameters(self) -> RecordArray:
         """(n, R) :class:`~robobt.sim.records.Limits`; may be written to as well."""
-        limits: RecordArray = self._kept["limits"]
+        limits: RecordArray = self._arrays.kept.view(ROBOT)["limits"][..., 0]
         return limits
 
     @property
@@ -171,7 +167,7 @@ class Arenas:
         rows[which, count, 3:5] = ball[:, 2:]
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._kept["cooldown"][which] = 0.0
+        self._arrays.kept.view(ROBOT)["cooldown"][which] = 0.0
         self._arrays.drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
@@ -225,7 +221,7 @@ class Arenas:
         """
         self._read()
         self._arrays.bodies[arena, robot] = state
-        self._kept["cooldown"][arena, robot] = 0.0
+        self._arrays.kept.view(ROBOT)["cooldown"][arena, robot] = 0.0
         self._arrays.drives[arena, robot] = 0.0
         self._arrays.contacts.forget(arena)
         self._write()
@@ -269,7 +265,8 @@ class Arenas:
     def _write(self) -> None:
         if self._buffer is not None:
             self._buffer.write()
-        report(self._passed)
+        arrays = self._arrays
+        report(arrays.states, arrays.bodies, self.flight, self.contact, self.robots, self.balls)
 
     def _set_ball(
         self, arenas: IntArray | int, vx: FloatArray | float, vy: FloatArray | float, rolls: bool

@@ -74,8 +74,11 @@ def arena_arrays(
     states, kept = np.zeros((n, size(ARENA))), np.zeros((n, robots, size(ROBOT)))
     states.view(ARENA)["parameters"] = arena_parameters(settings)
     states.view(ARENA)["wheels"] = wheel_parameters(settings.wheels)
+    each = kept.view(ROBOT)["limits"]
+    each[:] = robot_limits(settings.limits)
     for i, own in enumerate(limits):
-        kept.view(ROBOT)["limits"][:, i] = robot_limits(own or settings.limits)
+        if own is not None:
+            each[:, i] = robot_limits(own)
     return ArenaArrays(
         states=states,
         kept=kept,

@@ -60,6 +60,7 @@ def _crowded(side: int, n: int, seconds: float) -> float:
     angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(2 * side) * pi / side
     starts = np.stack([0.8 * np.cos(angles), 0.8 * np.sin(angles), angles + pi], axis=-1)
     commands = np.zeros((n, 2 * side, size(COMMAND)))
+    told = commands.view(COMMAND)[..., 0]
     spent: list[float] = []
     second = round(1.0 / TRAINING_PERIOD)
     while sum(spent) < seconds:
@@ -67,10 +68,10 @@ def _crowded(side: int, n: int, seconds: float) -> float:
         for step in range(3 * second):
             gap = arenas.balls[:, None, :2] - arenas.robots[..., :2]
             error = np.arctan2(gap[..., 1], gap[..., 0]) - arenas.robots[..., 2]
-            commands[..., 0], commands[..., 1] = 2.0 * np.cos(error), 2.0 * np.sin(error)
-            commands[..., 2] = 5.0 * np.sin(error)
-            commands[..., 3] = np.where(arenas.contact, 2.0, 0.0)
-            commands[..., 5] = 1.0
+            told["vx"], told["vy"] = 2.0 * np.cos(error), 2.0 * np.sin(error)
+            told["omega"] = 5.0 * np.sin(error)
+            told["kick_speed"] = np.where(arenas.contact, 2.0, 0.0)
+            told["dribbler"] = 1.0
             begin = process_time()
             arenas.step(commands)
             if step >= second:

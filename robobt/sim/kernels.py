@@ -135,7 +135,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
             # Its body is still elsewhere.
             calls.cursors[a, 0] = 0
             call_each_body(functions.each, handles[a].space, functions.write, handles[a].batch)
-    report(arrays_)
+    report(arrays.states, arrays.bodies, arrays.flight, arrays.contact, arrays.robots, arrays.balls)
 
 
 @compiled_inline

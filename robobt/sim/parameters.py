@@ -11,16 +11,18 @@ from robobt.sim.records import LIMITS, PARAMETERS, WHEELS, RecordArray, filled
 from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
 from robobt.world.ball_model import GRAVITY
+from robobt.world.compiled import numbers_of
 from robobt.world.limits import RobotLimits
 
 
 def arena_parameters(settings: SimSettings) -> RecordArray:
     """Return an arena's :class:`~robobt.sim.records.Parameters`."""
     dribbler, jaws, shell = settings.dribbler, settings.body.jaws, settings.shell
-    share = settings.ball.switch_share
+    share, parts = settings.ball.switch_share, ("ball", "body", "dribbler", "kicker", "contact")
     return filled(
         PARAMETERS,
-        settings,
+        None,
+        **{part: tuple(numbers_of(getattr(settings, part))) for part in parts},
         # So that a ball without spin rolls at switch_share of its speed.
         spin_gain=share / (1.0 - share),
         half_mouth=settings.body.mouth_width / 2,

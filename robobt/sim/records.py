@@ -26,7 +26,7 @@ from pydantic import BaseModel
 
 from robobt.sim.robot_settings import BodySettings, DribblerSettings, KickerSettings
 from robobt.sim.settings import BallSettings, ContactSettings
-from robobt.world.compiled import numbers_dtype, numbers_of
+from robobt.world.compiled import numbers_dtype
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -69,11 +69,10 @@ def size(kind: np.dtype[np.void]) -> int:
 
 def filled(kind: np.dtype[np.void], source: object, **others: object) -> RecordArray:
     """Return a record: each field from ``others``, or from what ``source`` calls the same."""
-    fields: RecordArray = np.zeros((), kind)
-    for name in kind.names or ():
-        value = others[name] if name in others else getattr(source, name)
-        fields[name] = tuple(numbers_of(value)) if isinstance(value, BaseModel) else value
-    return fields
+    names = kind.names or ()
+    return np.array(
+        tuple([others[name] if name in others else getattr(source, name) for name in names]), kind
+    )
 
 
 class Command:

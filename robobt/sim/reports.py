@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from robobt.sim.arrays import ArenaArrays
 from robobt.sim.mouth import in_mouth
-from robobt.sim.records import ARENA, BODY, FLIGHT, SEEN_BALL, Arena, Body
+from robobt.sim.records import ARENA, BODY, FLIGHT, SEEN_BALL, Arena, Body, BoolArray
 from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_RADIUS
 
 _TOUCH = 2e-3
@@ -50,12 +50,18 @@ def _report(robot: Body, out: Body) -> None:
 
 
 @compiled_lean
-def report(arrays_: ArenaArrays) -> None:
-    """Fill in what arenas tell of robots and balls, from their bodies."""
-    arrays = ArenaArrays(*arrays_)
-    bodies, states = arrays.bodies.view(BODY)[..., 0], arrays.states.view(ARENA)[..., 0]
-    robots, balls = arrays.robots.view(BODY)[..., 0], arrays.balls.view(SEEN_BALL)[..., 0]
-    flights, contact = arrays.flight.view(FLIGHT)[..., 0], arrays.contact
+def report(
+    states_: FloatArray,
+    bodies_: FloatArray,
+    flight: FloatArray,
+    contact: BoolArray,
+    robots_: FloatArray,
+    balls_: FloatArray,
+) -> None:
+    """Fill in ``contact``, robots and balls; all of them as in :class:`~robobt.sim.arrays.ArenaArrays`."""
+    states, bodies = states_.view(ARENA)[..., 0], bodies_.view(BODY)[..., 0]
+    robots, balls = robots_.view(BODY)[..., 0], balls_.view(SEEN_BALL)[..., 0]
+    flights = flight.view(FLIGHT)[..., 0]
     count = contact.shape[1]
     for a in range(len(states)):
         state, body, ball = states[a], bodies[a, count], balls[a]

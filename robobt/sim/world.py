@@ -264,7 +264,9 @@ def robot_states(
     """Return robots by their numbers and limits, rows of x, y, heading, vx, vy, omega and mouths."""
     return tuple(
         [
-            RobotState(number, row[0], row[1], row[2], row[3], row[4], row[5], touching, limits)
-            for (number, limits), row, touching in zip(known, rows, contact, strict=True)
+            RobotState(number, x, y, heading, vx, vy, omega, touching, limits)
+            for (number, limits), (x, y, heading, vx, vy, omega), touching in zip(
+                known, rows, contact, strict=True
+            )
         ]
     )

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from math import inf
 from typing import Any, TypeVar, cast, get_type_hints
 
@@ -106,6 +107,7 @@ def compilable(function: Function) -> Function:
     return register_jitable(function)
 
 
+@cache
 def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
     """Return the record of a settings model's numbers, as which compiled code reads :func:`numbers_of`.
 
