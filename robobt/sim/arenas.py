@@ -15,7 +15,7 @@ from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.contacts.solver import contact_arrays
 from robobt.sim.kernels import control_tick
-from robobt.sim.records import ARENA, COMMAND, DRIVE, ROBOT, BoolArray, IntArray, RecordArray, size
+from robobt.sim.records import ARENA, COMMAND, DRIVE, KEPT, BoolArray, IntArray, RecordArray, size
 from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
@@ -134,7 +134,7 @@ class Arenas:
     @property
     def robot_parameters(self) -> RecordArray:
         """(n, R) :class:`~robobt.sim.records.Limits`; may be written to as well."""
-        limits: RecordArray = self._arrays.kept.view(ROBOT)["limits"][..., 0]
+        limits: RecordArray = self._arrays.kept.view(KEPT)["limits"][..., 0]
         return limits
 
     @property
@@ -167,7 +167,7 @@ class Arenas:
         rows[which, count, 3:5] = ball[:, 2:]
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._arrays.kept.view(ROBOT)["cooldown"][which] = 0.0
+        self._arrays.kept.view(KEPT)["cooldown"][which] = 0.0
         self._arrays.drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
@@ -221,7 +221,7 @@ class Arenas:
         """
         self._read()
         self._arrays.bodies[arena, robot] = state
-        self._arrays.kept.view(ROBOT)["cooldown"][arena, robot] = 0.0
+        self._arrays.kept.view(KEPT)["cooldown"][arena, robot] = 0.0
         self._arrays.drives[arena, robot] = 0.0
         self._arrays.contacts.forget(arena)
         self._write()

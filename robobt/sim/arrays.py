@@ -16,7 +16,7 @@ from robobt.sim.records import (
     DRIVE,
     FLIGHT,
     FRONT,
-    ROBOT,
+    KEPT,
     SEEN_BALL,
     BoolArray,
     IntArray,
@@ -31,7 +31,7 @@ class ArenaArrays(NamedTuple):
     """The arrays of ``n`` arenas with R robots each, as numbers."""
 
     states: FloatArray  # (n, size(ARENA))
-    kept: FloatArray  # (n, R, size(ROBOT))
+    kept: FloatArray  # (n, R, size(KEPT))
     drives: FloatArray  # (n, R, size(DRIVE))
     bodies: FloatArray  # (n, R + 1 or more, size(BODY)) the robots', the ball's, and spare ones
     flight: FloatArray  # (n, size(FLIGHT))
@@ -71,10 +71,10 @@ def arena_arrays(
         calls: of pymunk.
     """
     n, robots = len(bodies), len(limits)
-    states, kept = np.zeros((n, size(ARENA))), np.zeros((n, robots, size(ROBOT)))
+    states, kept = np.zeros((n, size(ARENA))), np.zeros((n, robots, size(KEPT)))
     states.view(ARENA)["parameters"] = arena_parameters(settings)
     states.view(ARENA)["wheels"] = wheel_parameters(settings.wheels)
-    each = kept.view(ROBOT)["limits"]
+    each = kept.view(KEPT)["limits"]
     each[:] = robot_limits(settings.limits)
     for i, own in enumerate(limits):
         if own is not None:

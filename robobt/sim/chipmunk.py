@@ -25,8 +25,8 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
-from robobt.sim.records import BODY, Body, IntArray, Records, record, size
-from robobt.world.compiled import compiled_lean
+from robobt.sim.records import BODY, Body, IntArray, Records, size
+from robobt.world.compiled import Index, compiled_lean, record_dtype
 
 ROW = size(BODY)
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
@@ -141,19 +141,19 @@ def store_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
 class Functions:
     """Addresses of the C library's functions: a step, a visit of each body, what writes a visited one."""
 
-    step: int
-    each: int
-    write: int
+    step: Index
+    each: Index
+    write: Index
 
 
 class Handle:
     """Addresses of a space and of its batch descriptor."""
 
-    space: int
-    batch: int
+    space: Index
+    batch: Index
 
 
-FUNCTIONS, HANDLE = record(Functions), record(Handle)
+FUNCTIONS, HANDLE = record_dtype(Functions), record_dtype(Handle)
 
 
 class Calls(NamedTuple):

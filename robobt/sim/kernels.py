@@ -37,11 +37,11 @@ from robobt.sim.records import (
     EDGE,
     FLIGHT,
     FRONT,
+    KEPT,
     MASSES,
     MEMORY,
     MOVING,
     PART,
-    ROBOT,
     SOLVER,
     TOUCH,
     WALL,
@@ -84,7 +84,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
     """
     arrays = ArenaArrays(*arrays_)
     states, flights = arrays.states.view(ARENA)[..., 0], arrays.flight.view(FLIGHT)[..., 0]
-    kept, drives = arrays.kept.view(ROBOT)[..., 0], arrays.drives.view(DRIVE)[..., 0]
+    kept, drives = arrays.kept.view(KEPT)[..., 0], arrays.drives.view(DRIVE)[..., 0]
     bodies, touch = arrays.bodies.view(BODY)[..., 0], arrays.touch.view(TOUCH)
     history, fronts = arrays.history.view(BODY)[..., 0], arrays.fronts.view(FRONT)[..., 0]
     old, new = old_.view(COMMAND)[..., 0], new_.view(COMMAND)[..., 0]

@@ -2,36 +2,35 @@
 
 The arrays themselves hold plain numbers: numba takes twice as long to look at the type of a record array
 when Python calls it. ``numbers.view(BODY)[..., 0]`` sees the last axis as records, in numpy as in compiled
-code, and shares the memory. A class here tells readers and mypy what a record's fields are; :func:`record`
-makes numpy's type of it.
+code, and shares the memory. A class here tells readers and mypy what a record's fields are;
+:func:`~robobt.world.compiled.record_dtype` makes numpy's type of it.
 """
 
 from __future__ import annotations
 
 from typing import (
     Annotated,
-    Any,
     NamedTuple,
     Protocol,
     TypeVar,
-    get_args,
-    get_origin,
-    get_type_hints,
     overload,
 )
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel
 
 from robobt.sim.robot_settings import BodySettings, DribblerSettings, KickerSettings
 from robobt.sim.settings import BallSettings, ContactSettings
-from robobt.world.compiled import numbers_dtype
+from robobt.world.compiled import Index, record_dtype
+from robobt.world.records import BALL, ROBOT, Robot
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 RecordArray = NDArray[np.void]
 Record = TypeVar("Record", covariant=True)
+
+Body = Robot
+"""What the solver moves: a robot, or the ball along the ground."""
 
 
 class Records(Protocol[Record]):
@@ -42,24 +41,6 @@ class Records(Protocol[Record]):
     def __getitem__(self, index: int) -> Record: ...
     @overload
     def __getitem__(self, index: slice) -> Records[Record]: ...
-
-
-_NUMBERS: dict[type, np.dtype[Any]] = {float: np.dtype(np.float64), int: np.dtype(np.int64)}
-
-
-def record(fields: type) -> np.dtype[np.void]:
-    """Return the type of records with a class's fields: floats, integers, records, or several of those."""
-    hints = get_type_hints(fields, include_extras=True)
-    return np.dtype([(name, _kind(hint)) for name, hint in hints.items()], align=True)
-
-
-def _kind(hint: type) -> np.dtype[Any]:
-    if get_origin(hint) is Annotated:
-        several, count = get_args(hint)
-        return np.dtype((_kind(*get_args(several)), (count,)))
-    if hint in (float, int):
-        return _NUMBERS[hint]
-    return numbers_dtype(hint) if issubclass(hint, BaseModel) else record(hint)
 
 
 def size(kind: np.dtype[np.void]) -> int:
@@ -87,17 +68,6 @@ class Command:
     kick_angle: float
 
 
-class Body:
-    """A robot, or the ball along the ground [m, rad, m/s, rad/s]."""
-
-    x: float
-    y: float
-    heading: float
-    vx: float
-    vy: float
-    omega: float
-
-
 class Flight:
     """A ball's height above where it lies, how fast it rises, its touch-downs since the kick [m, m/s]."""
 
@@ -109,16 +79,7 @@ class Flight:
 class Touch:
     """The last robot to touch a ball, -1 before the first."""
 
-    robot: int
-
-
-class SeenBall:
-    """A ball as arenas report it [m, m/s]."""
-
-    x: float
-    y: float
-    vx: float
-    vy: float
+    robot: Index
 
 
 class Ball:
@@ -138,10 +99,10 @@ class Ball:
     move_y: float
     pull_x: float
     pull_y: float
-    carrier: int
-    kicker: int
-    held: int
-    shared: int
+    carrier: Index
+    kicker: Index
+    held: Index
+    shared: Index
 
 
 class Limits:
@@ -177,7 +138,7 @@ class Hinge:
     aside: float
 
 
-class Robot:
+class Kept:
     """What is kept of a robot beside its body: its limits, and the time until its kicker is ready [s]."""
 
     limits: Limits
@@ -262,7 +223,7 @@ class Parameters:
 class ArenaState:
     """What is kept of an arena; a command is in force from the sub-step ``switch`` on."""
 
-    switch: int
+    switch: Index
     ball: Ball
     parameters: Parameters
     wheels: Wheels
@@ -323,7 +284,7 @@ class Masses:
     robot: float
     robot_turn: float
     ball: float
-    clock: int
+    clock: Index
 
 
 class Bias:
@@ -365,9 +326,9 @@ class Contact:
     tangent: float
     lift: float
     warm: float
-    one: int
-    other: int
-    pair: int
+    one: Index
+    other: Index
+    pair: Index
 
 
 class Moving:
@@ -410,27 +371,26 @@ class Front:
     rubs: Annotated[Records[Rub], 3]
 
 
-COMMAND = record(Command)
-BODY = record(Body)
-FLIGHT = record(Flight)
-TOUCH = record(Touch)
-SEEN_BALL = record(SeenBall)
-LIMITS = record(Limits)
-ROBOT = record(Robot)
-DRIVE = record(Drive)
-WHEELS = record(Wheels)
-PARAMETERS = record(Parameters)
-ARENA = record(ArenaState)
-WALL = record(Wall)
-EDGE = record(Edge)
-PART = record(Part)
-SOLVER = record(Solver)
-MASSES = record(Masses)
-BIAS = record(Bias)
-MEMORY = record(Memory)
-CONTACT = record(Contact)
-MOVING = record(Moving)
-FRONT = record(Front)
+COMMAND = record_dtype(Command)
+BODY, SEEN_BALL = ROBOT, BALL
+FLIGHT = record_dtype(Flight)
+TOUCH = record_dtype(Touch)
+LIMITS = record_dtype(Limits)
+KEPT = record_dtype(Kept)
+DRIVE = record_dtype(Drive)
+WHEELS = record_dtype(Wheels)
+PARAMETERS = record_dtype(Parameters)
+ARENA = record_dtype(ArenaState)
+WALL = record_dtype(Wall)
+EDGE = record_dtype(Edge)
+PART = record_dtype(Part)
+SOLVER = record_dtype(Solver)
+MASSES = record_dtype(Masses)
+BIAS = record_dtype(Bias)
+MEMORY = record_dtype(Memory)
+CONTACT = record_dtype(Contact)
+MOVING = record_dtype(Moving)
+FRONT = record_dtype(Front)
 
 
 class Arena(NamedTuple):
@@ -444,7 +404,7 @@ class Arena(NamedTuple):
     touch: Touch
     parameters: Parameters
     wheels: Wheels
-    kept: Records[Robot]  # (R,)
+    kept: Records[Kept]  # (R,)
     drives: Records[Drive]  # (R,)
     kicked: BoolArray  # (R,) who kicked in this period
     fronts: Records[Front]  # (R,) scratch

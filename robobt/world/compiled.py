@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from math import inf
-from typing import Any, TypeVar, cast, get_type_hints
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numba import njit
@@ -118,10 +118,29 @@ def numbers_dtype(model: type[BaseModel]) -> np.dtype[np.void]:
     return np.dtype([(name, "f8") for name, field in model.model_fields.items() if field.annotation in kinds])
 
 
-def record_dtype(kind: type, **inner: np.dtype[np.record]) -> np.dtype[np.record]:
-    """Return the record with a class's annotated fields: numbers, but for the records named in ``inner``."""
-    fields = [(name, inner.get(name, np.dtype(np.float64))) for name in get_type_hints(kind)]
+def record_dtype(kind: type) -> np.dtype[np.record]:
+    """Return the record with a class's annotated fields: numbers, other records, and settings' numbers.
+
+    ``Annotated[Sequence[X], 4]`` are four of them, and an :data:`Index` is stored as an integer.
+    """
+    hints = get_type_hints(kind, include_extras=True)
+    fields = [(name, _field_dtype(hint)) for name, hint in hints.items()]
     return cast("np.dtype[np.record]", np.dtype((np.record, fields)))
+
+
+Index = Annotated[int, np.int64]
+"""A record's field that is stored as an integer; other numbers are stored as floats."""
+
+
+def _field_dtype(hint: Any) -> np.dtype[Any]:
+    if hint == Index:
+        return np.dtype(np.int64)
+    if get_origin(hint) is Annotated:
+        several, count = get_args(hint)
+        return np.dtype((_field_dtype(*get_args(several)), (count,)))
+    if hint in (float, int, bool):
+        return np.dtype(np.float64)
+    return numbers_dtype(hint) if issubclass(hint, BaseModel) else record_dtype(hint)
 
 
 @compilable

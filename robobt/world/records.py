@@ -142,7 +142,7 @@ class Trip(Protocol):
 
 ROBOT, BALL, LIMITS = record_dtype(Robot), record_dtype(Ball), record_dtype(Limits)
 MOVER, MEETING = record_dtype(Mover), record_dtype(Meeting)
-SCENE, TRIP = record_dtype(Scene, ball=BALL), record_dtype(Trip, me=ROBOT)
+SCENE, TRIP = record_dtype(Scene), record_dtype(Trip)
 
 ROBOT_SIZE, MOVER_SIZE = len(ROBOT.names or ()), len(MOVER.names or ())
 """How many numbers they are."""

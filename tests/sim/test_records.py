@@ -12,9 +12,9 @@ import pytest
 from pydantic import BaseModel
 
 from robobt.sim import Arenas, preset
-from robobt.sim.records import Records, filled, record, size
+from robobt.sim.records import Records, filled, size
 from robobt.world import DIVISION_B
-from robobt.world.compiled import numbers_of
+from robobt.world.compiled import Index, numbers_of, record_dtype
 
 COPIES: dict[str, Callable[[Arenas], Arenas]] = {
     "pickled": lambda arenas: pickle.loads(pickle.dumps(arenas)),
@@ -30,7 +30,7 @@ class Spring(BaseModel):
 
 class Hand:
     angle: float
-    turns: int
+    turns: Index
 
 
 class Clock:
@@ -45,7 +45,7 @@ class Made:
 
 
 def test_a_record_has_the_numbers_of_settings_and_of_other_records() -> None:
-    numbers = filled(record(Clock), Made(), hands=[(0.5, 1), (1.5, 2)])
+    numbers = filled(record_dtype(Clock), Made(), hands=[(0.5, 1), (1.5, 2)])
     assert numbers["spring"]["stiffness"] == 2.0
     assert numbers["spring"]["longest"] == np.inf
     assert numbers["hands"]["angle"].tolist() == [0.5, 1.5]
@@ -54,14 +54,14 @@ def test_a_record_has_the_numbers_of_settings_and_of_other_records() -> None:
 
 
 def test_an_array_viewed_as_records_is_the_same_array() -> None:
-    numbers = np.zeros((3, size(record(Clock))))
-    numbers.view(record(Clock))["weight"][1] = 7.0
+    numbers = np.zeros((3, size(record_dtype(Clock))))
+    numbers.view(record_dtype(Clock))["weight"][1] = 7.0
     assert numbers[:, -1].tolist() == [0.0, 7.0, 0.0]
 
 
 def test_a_field_that_nothing_fills_is_an_error() -> None:
     with pytest.raises(AttributeError, match="hands"):
-        filled(record(Clock), Made())
+        filled(record_dtype(Clock), Made())
 
 
 @pytest.mark.parametrize("how", COPIES)
