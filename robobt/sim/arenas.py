@@ -133,7 +133,7 @@ class Arenas:
 
     @property
     def robot_parameters(self) -> RecordArray:
-        """(n, R) :class:`~robobt.sim.records.Limits`; may be written to as well."""
+        """(n, R) :class:`~robobt.world.records.Limits`; may be written to as well."""
         limits: RecordArray = self._arrays.kept.view(KEPT)["limits"][..., 0]
         return limits
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from robobt.sim.chipmunk import Calls
 from robobt.sim.contacts.solver import ContactArrays
-from robobt.sim.parameters import arena_parameters, robot_limits, wheel_parameters
+from robobt.sim.parameters import arena_parameters, wheel_parameters
 from robobt.sim.records import (
     ARENA,
     BODY,
@@ -25,6 +25,7 @@ from robobt.sim.records import (
 from robobt.sim.settings import SimSettings
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
+from robobt.world.records import LIMITS, limits_of
 
 
 class ArenaArrays(NamedTuple):
@@ -75,10 +76,8 @@ def arena_arrays(
     states.view(ARENA)["parameters"] = arena_parameters(settings)
     states.view(ARENA)["wheels"] = wheel_parameters(settings.wheels)
     each = kept.view(KEPT)["limits"]
-    each[:] = robot_limits(settings.limits)
     for i, own in enumerate(limits):
-        if own is not None:
-            each[:, i] = robot_limits(own)
+        each[:, i] = limits_of(own or settings.limits).view(LIMITS)
     return ArenaArrays(
         states=states,
         kept=kept,

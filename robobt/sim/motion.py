@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-from robobt.sim.records import Ball, Body, Command, Limits, Parameters
+from robobt.sim.records import Ball, Body, Command, Parameters
 from robobt.world.compiled import compiled_lean
+from robobt.world.records import Limits
 
 _SURE = 1.0 - 1e-9
 """Rounding may not make more of a change of velocity than it is."""

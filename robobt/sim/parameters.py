@@ -1,4 +1,4 @@
-"""The parameters of arenas and robots, as records from settings."""
+"""The parameters of arenas, as records from settings."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from math import radians
 import numpy as np
 
 from robobt.sim.bodies import SOFT
-from robobt.sim.records import LIMITS, PARAMETERS, WHEELS, RecordArray, filled
+from robobt.sim.records import PARAMETERS, WHEELS, RecordArray, filled
 from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
 from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import numbers_of
-from robobt.world.limits import RobotLimits
 
 
 def arena_parameters(settings: SimSettings) -> RecordArray:
@@ -61,8 +60,3 @@ def wheel_parameters(wheels: WheelSettings | None) -> RecordArray:
         gyro=wheels.wheel_mass / 2 * wheels.radius / (wheels.mass * wheels.height),
         each=list(zip(cos, sin, loads, moved * ahead, moved * aside, strict=True)),
     )
-
-
-def robot_limits(limits: RobotLimits) -> RecordArray:
-    """Return a robot's :class:`~robobt.sim.records.Limits`."""
-    return filled(LIMITS, limits)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from robobt.sim.robot_settings import BodySettings, DribblerSettings, KickerSettings
 from robobt.sim.settings import BallSettings, ContactSettings
 from robobt.world.compiled import Index, record_dtype
-from robobt.world.records import BALL, ROBOT, Robot
+from robobt.world.records import BALL, ROBOT, Limits, Robot
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -103,18 +103,6 @@ class Ball:
     kicker: Index
     held: Index
     shared: Index
-
-
-class Limits:
-    """What a robot can do, as :class:`robobt.world.limits.RobotLimits`."""
-
-    max_speed: float
-    acceleration: float
-    braking: float
-    lateral_acceleration: float
-    lateral_braking: float
-    max_turn: float
-    turn_acceleration: float
 
 
 class Rim:
@@ -375,7 +363,6 @@ COMMAND = record_dtype(Command)
 BODY, SEEN_BALL = ROBOT, BALL
 FLIGHT = record_dtype(Flight)
 TOUCH = record_dtype(Touch)
-LIMITS = record_dtype(Limits)
 KEPT = record_dtype(Kept)
 DRIVE = record_dtype(Drive)
 WHEELS = record_dtype(Wheels)

@@ -19,8 +19,9 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.records import Body, Command, Drive, Limits, Records, Rim, Wheels
+from robobt.sim.records import Body, Command, Drive, Records, Rim, Wheels
 from robobt.world.compiled import compiled_lean
+from robobt.world.records import Limits
 
 _WHEELS = 4
 
