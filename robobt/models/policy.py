@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -16,7 +15,6 @@ from robobt.config.errors import one_line
 from robobt.models.card import Kind, ModelCard
 from robobt.models.checks.limits import BATCH
 from robobt.models.checks.onnx_file import check_onnx
-from robobt.models.checks.operations import check_frozen, check_loaded
 from robobt.models.checks.source import checked_members
 from robobt.models.file import (
     Format,
@@ -158,25 +156,15 @@ class _TorchScript:
         with _telling("needs torch to run (pip install torch)"):
             import torch
 
-        from robobt.models.checks.arguments import check_arguments
-        from robobt.models.checks.bounds import Bounds
+        from robobt.models.checks.torchscript import load_frozen, run_bounded
 
         archive = pack_archive(checked_members(unpack_archive(file.content)))
         size = file.card.observation.size
         with quiet():
             with _telling("torch cannot load it"):
-                loaded = torch.jit.load(BytesIO(archive), map_location="cpu")  # type: ignore[no-untyped-call]
-                loaded.eval()
-                check_loaded(loaded.inlined_graph)
-                check_arguments(loaded._c)
-                # Freezing runs whatever does not depend on the input.
-                with Bounds(BATCH):
-                    module = torch.jit.freeze(loaded)
-                constants = check_frozen(module.inlined_graph)
-            with _telling(f"fails on an observation of {size} entries"), torch.inference_mode():
-                for count in (BATCH, 1):
-                    with Bounds(count, constants):
-                        module(torch.zeros(count, size))
+                module, constants = load_frozen(archive)
+            with _telling(f"fails on an observation of {size} entries"):
+                run_bounded(module, constants, size)
         self.module = module
         self._torch = torch
         self._size = size
