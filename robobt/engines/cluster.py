@@ -14,10 +14,11 @@ from collections.abc import Callable, Generator, Iterable
 from contextlib import suppress
 from itertools import islice
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 from urllib.parse import parse_qsl
 
 import robobt
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line
 from robobt.config.resources import models_folder, scenarios_folder
 from robobt.config.telling import tell_warnings
@@ -37,7 +38,7 @@ class ClusterError(RobobtError, RuntimeError):
     """A Ray cluster cannot be used; the message is one line."""
 
 
-class RayEngine:
+class RayEngine(Closing):
     """Runs tasks on a Ray cluster. A context manager; the cluster is left at its end.
 
     A task whose worker or node is lost is done again, elsewhere.
@@ -78,12 +79,6 @@ class RayEngine:
             if "connection timeout" in problem:
                 problem += '; is it the client port of a head that has "ray[client]"?'
             raise ClusterError(f"{address}: {problem}") from error
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Leave the cluster; one that was started for this engine ends."""

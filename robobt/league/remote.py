@@ -8,8 +8,9 @@ from __future__ import annotations
 import socket
 import subprocess
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, TypeVar
 
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line
 from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import (
@@ -45,7 +46,7 @@ class RemoteError(RobobtError, RuntimeError):
     """The game controller is not there, or refuses; the message has its reason."""
 
 
-class _Connection:
+class _Connection(Closing):
     """A registered connection; every message is answered before the next. A context manager.
 
     With a ``key``, a file with the private RSA key whose public one the controller trusts, messages are
@@ -67,12 +68,6 @@ class _Connection:
         except BaseException:
             self.close()
             raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the connection; the controller forgets the advantage choice of a team."""

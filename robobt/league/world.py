@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.league.claims import Claims
 from robobt.league.connection import Connection
 from robobt.league.feed import ALL_CAMERAS
@@ -43,7 +43,7 @@ _SLOWEST = 0.25
 """Rate of a match's time while it waits for a field's clock that stood still."""
 
 
-class LeagueWorld(World):
+class LeagueWorld(World, Closing):
     """Implements :class:`robobt.world.World` over SSL-Vision and a simulator's ports.
 
     Frames are predicted from the last capture to now with the commands sent since.
@@ -232,12 +232,6 @@ class LeagueWorld(World):
             for _ in range(3):
                 self._link.send(stop, self._feed.now())
             self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _commanded(self) -> list[RobotId]:
         """Return the robots that this world may command."""

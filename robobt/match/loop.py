@@ -7,10 +7,10 @@ from collections.abc import Callable, Container, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import Self
 
 import numpy as np
 
+from robobt.config.closing import Closing
 from robobt.config.process import OwnProcess
 from robobt.match.capture import MatchCapture
 from robobt.match.ends import EndJudge, Outcome
@@ -44,7 +44,7 @@ WorldFactory = Callable[[Scenario], World]
 """Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
 
 
-class Match:
+class Match(Closing):
     """A match that is played tick by tick.
 
     Args:
@@ -152,12 +152,6 @@ class Match:
         before.stop()
         before.shutdown()
         self._captured.change_tree(before, player, play)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Let go of the referee, finish the recording and shut the trees down; or use it in ``with``."""

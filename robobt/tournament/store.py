@@ -17,8 +17,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import fields
 from pathlib import Path
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line, short_repr
 from robobt.tournament.entrants import Entrant
 from robobt.tournament.fixtures import Fixture
@@ -62,7 +62,7 @@ CREATE TABLE matches ({", ".join(_kinds())}, PRIMARY KEY (blue, yellow, round));
 )
 
 
-class Store:
+class Store(Closing):
     """An open store. A context manager.
 
     Args:
@@ -98,12 +98,6 @@ class Store:
         except BaseException:
             self.close()
             raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the file."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import socket
 from collections.abc import Collection, Mapping
 from contextlib import ExitStack
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.league.programs.program import SHOWN
 from robobt.league.wire.endpoints import REFEREE_GROUP, VISION_GROUP
 from robobt.league.wire.grsim import read_grsim
@@ -26,7 +26,7 @@ _TOLERATED = 60 * MOST_PACKETS
 """Packets beyond these that are tolerated, as when many come at once; they are forgotten as slowly."""
 
 
-class MatchPorts:
+class MatchPorts(Closing):
     """Ports that no other match on this machine has. A context manager.
 
     What is sent goes over the loopback to multicast groups that are this match's alone as well. Every team
@@ -61,12 +61,6 @@ class MatchPorts:
                 for kind in ("grsim", "protocol", "control"):
                     self._receivers[team, kind] = opened.enter_context(Receiver(LOOPBACK, 0))
             self._opened = opened.pop_all()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Release all ports."""

@@ -13,9 +13,10 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Self
+from typing import IO
 from uuid import uuid4
 
+from robobt.config.closing import Closing
 from robobt.config.errors import one_line
 from robobt.signals import uninterrupted
 
@@ -61,7 +62,7 @@ def is_there(program: str, folder: Path) -> bool:
     return shutil.which(program, path=os.environ.get("PATH")) is not None or (folder / program).is_file()
 
 
-class TeamProcess:
+class TeamProcess(Closing):
     """A running program. A context manager, at whose end it and all its children are gone.
 
     Args:
@@ -97,12 +98,6 @@ class TeamProcess:
         assert self._process.stdout is not None
         self._reader = threading.Thread(target=self._keep, args=(self._process.stdout,), daemon=True)
         self._reader.start()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def ended(self, wait: bool = False) -> str | None:
         """Return how it ended, with its last words; None while it runs.

@@ -16,8 +16,8 @@ import time
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line
 from robobt.config.systems import need_posix
 from robobt.league.wire.sockets import LOOPBACK
@@ -87,7 +87,7 @@ def check_game_controller(program: Path) -> None:
     GameControllerProcess(program).close()
 
 
-class GameControllerProcess:
+class GameControllerProcess(Closing):
     """The program in its simulation mode, in a fresh folder, publishing nothing. A context manager.
 
     Args:
@@ -112,12 +112,6 @@ class GameControllerProcess:
         except BaseException:
             self._end()
             raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """End the program and remove its folder."""

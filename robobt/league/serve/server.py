@@ -8,11 +8,12 @@ import time as clocks
 from collections.abc import Callable
 from contextlib import ExitStack
 from itertools import count
-from typing import Literal, Self
+from typing import Literal
 from uuid import UUID
 
 import numpy as np
 
+from robobt.config.closing import Closing
 from robobt.league.log.files import LogKind, LogWriter
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.pace import ServingPace
@@ -32,7 +33,7 @@ Clock = Literal["sim", "unix"]
 """What timestamps count from: the start of the simulation, as grSim's, or 1970."""
 
 
-class SimServer:
+class SimServer(Closing):
     """Serves a field over the league's protocols.
 
     Args:
@@ -194,12 +195,6 @@ class SimServer:
     def close(self) -> None:
         """Release all ports."""
         self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _send(self, due: float, sender: Sender, data: bytes) -> None:
         with uninterrupted:

@@ -13,8 +13,8 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.messages import RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse
 from robobt.league.wire.packets import decode
@@ -46,7 +46,7 @@ class _Client:
     request: SimulationSyncRequest | None = None
 
 
-class StepServer:
+class StepServer(Closing):
     """Steps a server's field by ``SimulationSyncRequest``; a context manager that releases its ports.
 
     Clients connect by TCP to ports for teleports and for the control of blue and yellow robots. Once every
@@ -80,12 +80,6 @@ class StepServer:
             }
             self._opened = opened.pop_all()
         self.ports: dict[str, int] = {name: sock.getsockname()[1] for name, sock in self._listening.items()}
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close all connections and release the ports."""

@@ -12,8 +12,8 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from ipaddress import IPv4Address
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError
 from robobt.league.wire.packets import MAX_PACKET, PacketCounts
 from robobt.league.wire.senders import Address
@@ -45,7 +45,7 @@ class Packet:
     sender: Address
 
 
-class _UdpSocket:
+class _UdpSocket(Closing):
     """A non-blocking UDP socket that works as a context manager."""
 
     def __init__(self, longest: int = MAX_PACKET) -> None:
@@ -56,12 +56,6 @@ class _UdpSocket:
     def close(self) -> None:
         """Release the port."""
         self._socket.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _read(self) -> Iterator[tuple[bytes, list[tuple[int, int, bytes]], int, tuple[str, int]]]:
         """Yield data, ancillary data, flags and sender of the waiting datagrams, at most a batch."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import socket
 import time
-from typing import Self
 
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError
 
 MAX_MESSAGE = 1 << 20
@@ -25,7 +25,7 @@ class StreamError(RobobtError, OSError):
     """The other side closed the connection or sends what is no stream of messages."""
 
 
-class MessageStream:
+class MessageStream(Closing):
     """The messages of one connection; a context manager that closes it.
 
     ``peer`` is what error messages call the other side.
@@ -36,12 +36,6 @@ class MessageStream:
         # A step is one short message each way: waiting to fill a packet would cost more than all the rest.
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._buffer = bytearray()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the connection."""

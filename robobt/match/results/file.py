@@ -9,12 +9,13 @@ import hashlib
 import json
 import logging
 from pathlib import Path
-from typing import Generic, Protocol, Self, TextIO, TypeVar
+from typing import Generic, Protocol, TextIO, TypeVar
 
 from pydantic import TypeAdapter
 
 from robobt import __version__
 from robobt.config.atomic import write_atomically
+from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, naming
 from robobt.match.results.results import MatchResult, result_from
 from robobt.match.scenario.scenario import Scenario
@@ -43,7 +44,7 @@ class TrialResult(Protocol):
 R = TypeVar("R", bound=TrialResult)
 
 
-class TrialsFile(Generic[R]):
+class TrialsFile(Closing, Generic[R]):
     """A file of results of one kind that is open for appending. A context manager.
 
     A file that exists is continued when it holds the same scenario, seed, world, referee and
@@ -103,12 +104,6 @@ class TrialsFile(Generic[R]):
             except OSError:
                 self.close()
                 raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the file."""

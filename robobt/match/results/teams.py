@@ -15,7 +15,6 @@ from pydantic import ConfigDict
 from robobt.match.referee.events import EventKind
 from robobt.match.referee.touches import Touches
 from robobt.match.referee.verdicts import FOULS
-from robobt.skills.aim.raters import RATERS
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.world.game import GameState, Restart, Team
 from robobt.world.geometry import Point, distance, line_crossing_x
@@ -114,7 +113,7 @@ class TeamStatistics:
         self._cards = dict.fromkeys(Team, 0)
         self._owner: Team | None = None
         self._owned = dict.fromkeys(Team, 0)
-        self._rater = RATERS["expected_goal"]()
+        self._rater = ExpectedGoal()
 
     def update(self, frame: Frame, game: GameState, events: Iterable[ReportedEvent] = ()) -> None:
         """Take in the next frame, the state of the game as of it and what happened in it."""
@@ -246,7 +245,6 @@ class TeamStatistics:
         self._flight = _Flight(kicker, frame.ball.position, _is_pass(seen, me))
 
     def _chance(self, view: Frame, me: RobotState, y: float) -> float:
-        assert isinstance(self._rater, ExpectedGoal)
         points = np.array([[view.field.half_length, y]])
         chances = self._rater.chances(view, view.ball.position, me, points)
         return 0.0 if chances is None else float(chances[0])

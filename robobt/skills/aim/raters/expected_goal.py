@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import hypot
 
 import numpy as np
-from pydantic import Field, field_validator
+from pydantic import Field
 
-from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater, best_first
+from robobt.skills.aim.raters.base import RATERS, Chances, best_first
 from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, normal_cdf, runs
 from robobt.skills.aim.raters.openings import goal_mouth
-from robobt.skills.aim.raters.shot_predictor import check_shot_predictor, shot_predictor
+from robobt.skills.aim.raters.shot_predictor import LearnedRater, shot_predictor
 from robobt.skills.store import Shot
 from robobt.world.features import SCENE_OPPONENTS, SHOT_SCENE, shot_scene
 from robobt.world.geometry import FloatArray, Point
@@ -18,7 +18,7 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 
 @RATERS.register("expected_goal")
-class ExpectedGoal(ShotRater):
+class ExpectedGoal(LearnedRater):
     """The probability of a goal for every target point, from the state of everyone at once.
 
     The predictor sees where all robots are and how they move, in one call for the
@@ -31,6 +31,8 @@ class ExpectedGoal(ShotRater):
     shooter do not count, team-mates ahead of it count as opponents do.
     """
 
+    observation = SHOT_SCENE
+
     model: str = Field(
         "shot_expected",
         validate_default=True,
@@ -40,16 +42,6 @@ class ExpectedGoal(ShotRater):
     keep: float = Field(0.9, gt=0, le=1, description="share of the best probability that still counts as it")
     kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
-
-    @field_validator("model")
-    @classmethod
-    def _usable(cls, model: str) -> str:
-        check_shot_predictor(model, SHOT_SCENE)
-        return model
-
-    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
-        """See :meth:`ShotRater.rate_all`."""
-        return self.judge(frame, origin, me, delay=delay)[0]
 
     def judge(
         self,

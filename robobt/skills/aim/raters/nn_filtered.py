@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from pydantic import Field, field_validator
+from pydantic import Field
 
-from robobt.skills.aim.raters.base import RATERS, Chances, ShotRater
+from robobt.skills.aim.raters.base import RATERS, Chances
 from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, shots_at_groups
-from robobt.skills.aim.raters.shot_predictor import check_shot_predictor, shot_predictor
+from robobt.skills.aim.raters.shot_predictor import LearnedRater, shot_predictor
 from robobt.skills.store import Shot
 from robobt.world.features import SHOT, shot_features
 from robobt.world.geometry import FloatArray, Point
@@ -15,7 +15,7 @@ from robobt.world.state import Frame, RobotState
 
 
 @RATERS.register("nn_filtered")
-class NNFiltered(ShotRater):
+class NNFiltered(LearnedRater):
     """A clear target point is good when the predictor gives it a chance past each robot by itself.
 
     As :class:`~robobt.skills.aim.raters.SegmentClearance`, but robots behind the ball are
@@ -27,6 +27,8 @@ class NNFiltered(ShotRater):
     AttackNN, with its tolerance and threshold.
     """
 
+    observation = SHOT
+
     model: str = Field(
         "shot_nn",
         validate_default=True,
@@ -35,16 +37,6 @@ class NNFiltered(ShotRater):
     threshold: float = Field(0.5, ge=0, le=1, description="least chance that a robot has to leave")
     tolerance: float = Field(0.3645, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
-
-    @field_validator("model")
-    @classmethod
-    def _usable(cls, model: str) -> str:
-        check_shot_predictor(model, SHOT)
-        return model
-
-    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
-        """See :meth:`ShotRater.rate_all`."""
-        return self.judge(frame, origin, me, delay=delay)[0]
 
     def judge(
         self,

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from contextlib import suppress
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
+
+from pydantic import field_validator
 
 from robobt.models.checks.source import checked_members
 from robobt.models.file import ModelError, unpack_archive
 from robobt.models.find import read_fitting_model
+from robobt.skills.aim.raters.base import ShotRater
+from robobt.skills.store import Shot
 from robobt.world.features import ObservationSpec
+from robobt.world.geometry import Point
+from robobt.world.state import Frame, RobotState
 
 if TYPE_CHECKING:
     from robobt.models.policy import Policy
@@ -54,3 +60,21 @@ def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
         except ModelError as error:
             raise ModelError(f"{file.path}: {error}") from error
         _sound.add(file.sha256)
+
+
+class LearnedRater(ShotRater):
+    """A rater that asks a shot predictor, ``model``, about what it observes of a scene."""
+
+    observation: ClassVar[ObservationSpec]
+
+    model: str
+
+    @field_validator("model")
+    @classmethod
+    def _usable(cls, model: str) -> str:
+        check_shot_predictor(model, cls.observation)
+        return model
+
+    def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
+        """See :meth:`ShotRater.rate_all`."""
+        return self.judge(frame, origin, me, delay=delay)[0]
