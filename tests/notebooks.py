@@ -13,6 +13,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from robobt.tree import Behaviour
+from robobt.tree.svg import last_tick_svg
+
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"
 NOTEBOOKS = ROOT / "docs" / "tutorials"
@@ -44,6 +47,8 @@ def run(code: str, scope: dict[str, Any], name: str = "cell") -> list[dict[str, 
         outputs.append({"output_type": "stream", "name": "stdout", "text": text})
     if shown is not None:
         data = {kind: getattr(shown, method)() for kind, method in KINDS.items() if hasattr(shown, method)}
+        if isinstance(shown, Behaviour):
+            data["image/svg+xml"] = last_tick_svg(shown)
         outputs.append(
             {"output_type": "display_data", "metadata": {}, "data": data or {"text/plain": repr(shown)}}
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import dataclass, field
 from html import escape
 
@@ -133,10 +134,20 @@ def _xml(text: str) -> str:
     return escape(printable(text))
 
 
-def _show_in_notebook(root: Behaviour) -> str:
+def show_in_notebooks() -> None:
+    """Let a notebook show any tree as a picture, with the statuses of its last tick once it was ticked.
+
+    Composites are py_trees' own, so that IPython is told, where it runs, how a node is shown.
+    """
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is not None:
+        shell.display_formatter.formatters["image/svg+xml"].for_type(Behaviour, last_tick_svg)
+
+
+def last_tick_svg(root: Behaviour) -> str:
     """Return the tree as a picture, with the statuses of its last tick once it was ticked."""
     return tree_svg(root, statuses=root.status is not Status.INVALID)
 
 
-# Notebooks ask a node for this method, and composites are py_trees' own.
-type.__setattr__(Behaviour, "_repr_svg_", _show_in_notebook)
+show_in_notebooks()

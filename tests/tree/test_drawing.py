@@ -1,5 +1,8 @@
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +11,7 @@ from hypothesis import strategies as st
 from py_trees.common import ParallelPolicy
 
 from robobt.tree import (
+    Behaviour,
     FailureIsSuccess,
     Inverter,
     Leaf,
@@ -20,7 +24,7 @@ from robobt.tree import (
     preorder,
 )
 from robobt.tree.drawing import describe, tree_dot, tree_text
-from robobt.tree.svg import tree_svg
+from robobt.tree.svg import show_in_notebooks, tree_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -186,12 +190,26 @@ def test_graphviz_colours_follow_the_statuses() -> None:
     assert tree_dot(ticked(striker()), statuses=True).count('"#dd4b41"') == 2
 
 
-def test_a_tree_shows_itself_in_a_notebook_with_its_statuses_once_it_was_ticked() -> None:
+def test_a_tree_shows_itself_in_a_notebook_with_its_statuses_once_it_was_ticked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     tree = Sequence("go", memory=False, children=[Drive(), HasBall()])
-    show = tree._repr_svg_  # type: ignore[attr-defined]
-    assert show() == tree_svg(tree)
+    shown: dict[type, Callable[[Behaviour], str]] = {}
+    formatters = {"image/svg+xml": SimpleNamespace(for_type=shown.__setitem__)}
+    shell = SimpleNamespace(display_formatter=SimpleNamespace(formatters=formatters))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    show_in_notebooks()
+    show = shown[Behaviour]
+    assert show(tree) == tree_svg(tree)
     TreeRunner(tree, None).tick()
-    assert show() == tree_svg(tree, statuses=True) != tree_svg(tree)
+    assert show(tree) == tree_svg(tree, statuses=True) != tree_svg(tree)
+
+
+def test_without_a_notebook_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: None))
+    show_in_notebooks()
+    monkeypatch.delitem(sys.modules, "IPython")
+    show_in_notebooks()
 
 
 def test_its_style_sheet_leaves_the_rest_of_a_page_alone() -> None:
