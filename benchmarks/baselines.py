@@ -121,7 +121,7 @@ def train_cell(task: str, algorithm: str, seed: int, given: argparse.Namespace) 
         ``curve`` is explained at :class:`Curve`, ``held_out`` is as on the model's card.
     """
     kind = find_task(TASKS[task])
-    environment = kind.Settings.default()
+    environment = kind.Settings()
     judged = against(environment, "attack") if isinstance(environment, SoccerSettings) else environment
     problem = problem_of(environment, held_out=judged, validated=(judged,))
     curve = Curve(problem, given.cpu_seconds, given.parts, given.validation)

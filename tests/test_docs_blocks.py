@@ -21,6 +21,7 @@ import robobt.skills
 import robobt.skills.tactics
 from robobt.cli import app
 from robobt.config.yaml import parse_marked
+from robobt.learning import TASKS
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.soccer.settings import SoccerSettings
@@ -157,7 +158,7 @@ def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytes
     for old, new in REPLACED.get(page, {}).items():
         assert old in text
         text = text.replace(old, new)
-    with temporarily(PLAYS), temporarily(SKILLS):
+    with temporarily(PLAYS), temporarily(SKILLS), temporarily(TASKS):
         exec(compile(text, page, "exec"), scope)
 
 
@@ -196,7 +197,7 @@ def test_the_yaml_of_a_page_is_read(page: str) -> None:
         # Two lines with one key are two ways to write it.
         ways = block.splitlines() if block.count("keepers: ") > 1 else [block]
         for way in ways:
-            if page != "tree_files":
+            if page not in ("tree_files", "own_tasks"):
                 CHECKED[page](parse_marked(way, page).plain())
 
 
@@ -272,7 +273,19 @@ def own_plays() -> Mapping[str, object]:
     return {}
 
 
-FILES = {"learning": models, "recording": a_recording, "tournament": entrants, "trees": own_plays}
+def own_task() -> Mapping[str, object]:
+    Path("my_task.py").write_text(blocks("own_tasks", "python")[0])
+    Path("my_play.yaml").write_text(blocks("own_tasks", "yaml")[0])
+    return {}
+
+
+FILES = {
+    "learning": models,
+    "own_tasks": own_task,
+    "recording": a_recording,
+    "tournament": entrants,
+    "trees": own_plays,
+}
 """By page, what puts the files there that its commands read."""
 
 
@@ -286,7 +299,11 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
     monkeypatch.chdir(tmp_path)
     FILES.get(page, dict)()
     monkeypatch.setattr("robobt.match.load_scenario", lambda source: load_scenario(source).lasting(2.0))
-    with temporarily(PLAYS), temporarily(SKILLS):  # one file's plays are registered once in a process
+    with (
+        temporarily(PLAYS),
+        temporarily(SKILLS),
+        temporarily(TASKS),
+    ):  # one file's plays are registered once in a process
         for line in lines(page):
             shorter = line
             for long, short in LESS.items():

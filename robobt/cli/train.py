@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 Task = Annotated[
     str,
-    typer.Argument(help="What to learn: go_to_ball, shoot, score_on_goalkeeper, duel, ..."),
+    typer.Argument(help="What to learn: go_to_ball, shoot, duel, ..., or my_task.py:MyTask."),
 ]
 Changes = Annotated[
     list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")
@@ -99,7 +99,7 @@ def train(
     from robobt.learning.training.seeds import train_seeds
 
     settings = _settings(task, preset, changes or [])
-    folder = out or Path("runs") / f"{task}-{Path(preset).stem}"
+    folder = out or Path("runs") / f"{task.rpartition(':')[2]}-{Path(preset).stem}"
     make_folders({"--out": folder}, folders=True)
     chosen = seeds.of(settings)
     if live and (len(chosen) > 1 or workers not in (None, 1)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from typing import Any, TypeVar
@@ -102,7 +103,7 @@ class Tasks(Registry[type[Any]]):
         before = self._entries.get(name)
         if before is None:
             return False
-        files = [getattr(import_module(one.__module__), "__file__", None) for one in (before, task)]
+        files = [getattr(sys.modules.get(one.__module__), "__file__", None) for one in (before, task)]
         return files[0] is not None and files[0] == files[1] and before.__qualname__ == task.__qualname__
 
 

@@ -9,6 +9,7 @@ from contextlib import redirect_stdout
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 from zlib import crc32
 
 from robobt.config.process import users_code
@@ -17,6 +18,11 @@ from robobt.plays.sources import PythonFileError, read_python
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
+from robobt.tree import Registry
+from robobt.world.observation import OWN_OBSERVATIONS
+
+REGISTRIES: list[Registry[Any]] = [PLAYS, SKILLS, RATERS, POLICIES]
+"""What a file may enter things in; when it raises, they are taken out again."""
 
 _imported: dict[Path, ModuleType] = {}
 
@@ -57,7 +63,7 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
     if str(path.parent) not in sys.path:
         sys.path.append(str(path.parent))
     sys.modules[module.__name__] = module
-    undo = [registry.undo_point() for registry in (PLAYS, SKILLS, RATERS, POLICIES)]
+    undo, observations = [registry.undo_point() for registry in REGISTRIES], dict(OWN_OBSERVATIONS)
     try:
         # What it prints must not end up among a command's figures.
         with redirect_stdout(sys.stderr), users_code(shown):
@@ -66,6 +72,8 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
         del sys.modules[module.__name__]
         for take_back in undo:
             take_back()
+        OWN_OBSERVATIONS.clear()
+        OWN_OBSERVATIONS.update(observations)
         raise problem_of(error, path, shown) from error
     return module
 

@@ -19,8 +19,8 @@ import numpy as np
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.observation import OWN_OBSERVATIONS, Row, entries, kinematics, motion
 from robobt.world.observation import ObservationSpec as ObservationSpec
-from robobt.world.observation import Row, entries, kinematics, motion
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
 from robobt.world.team_view import places_of, team_view
@@ -110,7 +110,9 @@ OBSERVATIONS = {
 def find_observation(name: str) -> ObservationSpec | None:
     """Return the observation of that name, those of robots in a team included; None: there is none."""
     places = places_of(name)
-    return OBSERVATIONS.get(name) if places is None else team_view(*places)
+    if places is not None:
+        return team_view(*places)
+    return OBSERVATIONS.get(name) or OWN_OBSERVATIONS.get(name)
 
 
 @compiled

@@ -2,14 +2,70 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.state import Frame, RobotState
 
 Row = FloatArray | tuple[float, ...]
 """Numbers in a fixed order: a robot's x, y, heading, vx, vy, omega or a ball's x, y, vx, vy."""
+
+BODY = np.dtype([(name, "f8") for name in ("x", "y", "heading", "vx", "vy", "omega")])
+"""A robot by the names of its numbers [m, rad, m/s, rad/s]."""
+
+BALL = np.dtype([(name, "f8") for name in ("x", "y", "vx", "vy")])
+"""A ball by the names of its numbers [m, m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What an observation is made of, in many arenas or in one frame.
+
+    The robots' team attacks towards +x.
+
+    Attributes:
+        robots: (n, R) records :data:`BODY`: the one that observes, its team-mates, the opponents.
+        balls: (n,) records :data:`BALL`.
+        own: how many robots, the first, are of the observer's team.
+        field: on which they play.
+    """
+
+    robots: NDArray[np.void]
+    balls: NDArray[np.void]
+    own: int
+    field: FieldGeometry
+
+    @property
+    def me(self) -> NDArray[np.void]:
+        """The robots that observe, (n,)."""
+        return self.robots[:, 0]
+
+    @property
+    def mates(self) -> NDArray[np.void]:
+        """The others of their teams, (n, M)."""
+        return self.robots[:, 1 : self.own]
+
+    @property
+    def opponents(self) -> NDArray[np.void]:
+        """The other teams, (n, K)."""
+        return self.robots[:, self.own :]
+
+    def in_frame_of_me(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return vectors (n,) of the field as those who observe see them: ahead, and to their left."""
+        c, s = np.cos(self.me["heading"]), np.sin(self.me["heading"])
+        return c * x + s * y, c * y - s * x
+
+
+def seen(robots: FloatArray, balls: FloatArray, own: int, field: FieldGeometry) -> Seen:
+    """Return arrays (n, R, 6) and (n, 4) by the names of their numbers; the rest is as for :class:`Seen`."""
+    bodies, rolling = np.ascontiguousarray(robots), np.ascontiguousarray(balls)
+    return Seen(bodies.view(BODY)[..., 0], rolling.view(BALL)[..., 0], own, field)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +106,57 @@ class ObservationSpec:
     def size(self) -> int:
         """Length of the vector."""
         return len(self.entries)
+
+
+@dataclass(frozen=True)
+class Observation(ObservationSpec):
+    """An observation with the function that makes it, for training as for a robot in a match.
+
+    ``rows`` takes what is :class:`Seen` and returns the vectors, (n, size).
+    """
+
+    rows: Callable[[Seen], FloatArray] = lambda _: np.zeros((0, 0))
+
+    def of(self, frame: Frame, robot: RobotState) -> FloatArray:
+        """Compute the vector of one robot in a frame, (size,)."""
+        team = [robot, *(mate for mate in frame.own if mate.id != robot.id)]
+        robots = np.array([[kinematics(each) for each in (*team, *frame.opponents)]])
+        row: FloatArray = self.rows(seen(robots, np.array([motion(frame)]), len(team), frame.field))[0]
+        return row
+
+
+OWN_OBSERVATIONS: dict[str, Observation] = {}
+"""Those that :func:`observation` has registered, by their names."""
+
+
+def observation(
+    name: str, version: int, *vector: Entry
+) -> Callable[[Callable[[Seen], FloatArray]], Observation]:
+    """Return a decorator that registers a function as the one that makes an observation of one's own.
+
+    Args:
+        name: which model cards say.
+        version: to be changed with the meaning of any entry.
+        vector: its entries.
+
+    Raises:
+        ValueError: another function makes an observation of that name.
+    """
+
+    def register(rows: Callable[[Seen], FloatArray]) -> Observation:
+        before = OWN_OBSERVATIONS.get(name)
+        # A file may be run again, as an imported module say.
+        if before is not None and _place(before.rows) != _place(rows):
+            raise ValueError(f"observation {name!r} is registered twice; give one of them another name")
+        made = Observation(name, version, vector, rows=rows)
+        OWN_OBSERVATIONS[name] = made
+        return made
+
+    return register
+
+
+def _place(function: Callable[..., object]) -> tuple[object, str]:
+    return getattr(function, "__globals__", {}).get("__file__"), function.__qualname__
 
 
 def entries(

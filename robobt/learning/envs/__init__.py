@@ -1,7 +1,6 @@
-"""The environments in which skills are trained: Go-To-Ball, Shoot-Towards-Goal and Score-On-Goalkeeper.
+"""The tasks that skills are trained on, and what a task of one's own is made of.
 
-A learner steps many arenas at once (:class:`GoToBallTask` and its like);
-Gymnasium's interface is over the same.
+A learner steps many arenas at once (:class:`ArenaTask`); Gymnasium's interface is over the same.
 """
 
 from robobt.learning.envs.arena_task import ArenaTask as ArenaTask
@@ -31,3 +30,5 @@ from robobt.learning.envs.shoot.task import ShootTask as ShootTask
 from robobt.learning.envs.starts import START_COLUMNS as START_COLUMNS
 from robobt.learning.envs.task import StepResult as StepResult
 from robobt.learning.envs.task import VectorTask as VectorTask
+from robobt.learning.envs.tick import TaskError as TaskError
+from robobt.learning.envs.tick import Tick as Tick

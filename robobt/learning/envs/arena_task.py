@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import ClassVar, Literal
 
 import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.envs.bounds import bounded
+from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
 from robobt.learning.envs.central import BALL, EACH, states_of
 from robobt.learning.envs.episodes import Episodes
+from robobt.learning.envs.judging import count, goals
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
-from robobt.learning.envs.starts import START_COLUMNS, StartPool
-from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
+from robobt.learning.envs.starts import START_COLUMNS, StartPool, columns_of
+from robobt.learning.envs.task import (
+    SUCCESS,
+    TERMINATED,
+    TRUNCATED,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    StepResult,
+)
+from robobt.learning.envs.tick import Tick, call, checked_ends, checked_terms
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
@@ -26,6 +36,8 @@ from robobt.skills.base import Skill
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
+from robobt.world.observation import Observation, seen
+from robobt.world.state import ROBOT_RADIUS
 
 Policy = Callable[[FloatArray], FloatArray]
 """Observations (n, O) to actions (n, A)."""
@@ -34,11 +46,14 @@ _TASKS: dict[type[TaskSettings], type[ArenaTask]] = {}
 """The task that settings of each class belong to."""
 
 
-class ArenaTask(ABC):
+class ArenaTask:
     """``n`` arenas with a ball and a learner's robot; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    The learner's robot is the first; the others, if a task has any, do what :meth:`_oppose` decides. Where a
-    task has several learners their observations, and their actions, stand one after the other.
+    A task is a subclass with five parts, each of which a subclass of that can replace alone: what is observed
+    (:attr:`observation`), where episodes start (:meth:`sample`), what is rewarded (:meth:`reward`), how they
+    end (:meth:`ends`), and what the robots do that do not learn (:meth:`oppose`).
+
+    Where a task has several learners their observations, and their actions, stand one after the other.
 
     ``settings`` are the task's. ``seed`` is that of everything drawn from the first ``reset`` on; None
     for another each time. Each arena draws with generators of its own: what happens in it follows from
@@ -53,7 +68,7 @@ class ArenaTask(ABC):
         terms: the record of the reward's terms, one number each.
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
-        robots: in an arena.
+        robots: in an arena; a start's first six columns for each are its state.
         blue: how many of them, the first, are the learner's team.
         learners: indices of the robots that learn.
         start_columns: what a start consists of: each robot, the ball, and whatever else a task starts from.
@@ -82,7 +97,11 @@ class ArenaTask(ABC):
     def __init__(self, settings: TaskSettings | None = None, n: int = 1, seed: int | None = None) -> None:
         if n < 1:
             raise ValueError(f"n must be at least 1, not {n}")
-        self.settings = settings = self.Settings.default() if settings is None else settings
+        if not isinstance(getattr(self, "observation", None), ObservationSpec):
+            raise TypeError(f"{type(self).__name__}: has no observation")
+        if len(self.start_columns) < 6 * self.robots + 4:
+            self.start_columns = columns_of(self.robots)
+        self.settings = settings = self.Settings() if settings is None else settings
         self.n = n
         self.action = settings.action
         self.observation_size = len(self.learners) * self.observation.size
@@ -96,39 +115,83 @@ class ArenaTask(ABC):
         self._seeded = False
         self._all = np.arange(n)
         self._rewards = np.zeros(n)
+        self._terms: NDArray[np.void] = np.zeros(n, dtype=self.terms)
+        judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
+        self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
+        self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
 
-    @abstractmethod
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Sample ``count`` starts (count, S), columns :attr:`start_columns`; ``rng`` decides."""
+        raise NotImplementedError(f"{type(self).__name__}: has no starts")
 
-    @abstractmethod
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """Compute the observations (m, O) of robots (m, R, 6) and balls (m, 4)."""
+        if not isinstance(self.observation, Observation):
+            raise NotImplementedError(f"{type(self).__name__}: nothing makes its observation")
+        made: FloatArray = np.asarray(
+            self.observation.rows(seen(robots, balls, self.blue, self.settings.field)), dtype=np.float64
+        )
+        if made.shape != (len(balls), self.observation.size):
+            raise ValueError(f"makes {made.shape} of {(len(balls), self.observation.size)}")
+        return made
 
-    @abstractmethod
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
-        """Add a tick to ``rewards`` (n,) and ``ends`` (3, n); return whether any episode has ended.
+    def reward(self, tick: Tick) -> Mapping[str, FloatArray]:
+        """Return the terms of a tick's reward by their names, (n,) each; their sum is the reward."""
+        return tick.terms
 
-        An episode that had ended already is left as it is.
+    def ends(self, tick: Tick) -> tuple[BoolArray, BoolArray]:
+        """Return which episodes a tick ends in success and which otherwise, (n,) each.
+
+        Time is up by itself, see ``time_limit``.
+        """
+        return tick.success, tick.failed
+
+    def oppose(self, commands: FloatArray) -> None:
+        """Fill the ``commands`` (n, R, 7) of the robots that do not learn, for one tick.
+
+        ``commands.view(COMMAND)[..., 0]`` has their numbers by name
+        (:class:`robobt.sim.records.Command`); the state of robots and balls is in ``self.arenas``.
         """
 
-    @abstractmethod
-    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
-        """Return the shortest possible times from the starts [s]; nan where there is none."""
+    def begin(self, starts: FloatArray, which: IntArray) -> None:
+        """Take from the ``starts`` (m, S) of the arenas ``which`` what there is besides robots and ball."""
 
-    def _oppose(self) -> None:  # noqa: B027 - nobody opposes where the learner is alone
-        """Fill the commands of the robots that are not the learner's, for one tick."""
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
+        """Add a tick to ``rewards`` (n,) and ``ends`` (3, n); return whether any episode has ended.
 
-    def _announce(self, seen: FloatArray, which: IntArray) -> None:  # noqa: B027
+        An episode that had ended already is left as it is. Tasks whose reward and ends are compiled override
+        it; here nothing but time ends an episode.
+        """
+        fired: BoolArray = np.any(self.arenas.kicked[:, self.learners], axis=1)
+        return count(self.settings.time_limit, fired, self._progress_rows, ends)
+
+    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
+        """Return the shortest possible times from the starts [s]; nan where nobody knows one."""
+        return np.full(len(which), np.nan)
+
+    def _announce(self, seen: FloatArray, which: IntArray) -> None:
         """Fill what the arenas ``which`` are told besides what is seen of them, in observations (m, O)."""
-
-    def _starting(self, starts: FloatArray, which: IntArray) -> None:  # noqa: B027
-        """Take from the starts what a task needs besides robots and ball."""
 
     @property
     def ranges(self) -> dict[str, float]:
-        """What the quantities that entries of the observation name as their ranges are at most."""
-        return {}
+        """What the quantities that entries of the observation name as their ranges are at most.
+
+        They follow from walls, limits, kicker and noise.
+        """
+        settings, noise = self.settings, self.settings.noise
+        limits, own = settings.simulator.limits, settings.robot_limits
+        far, fastest = farthest(settings), own.max_speed * settings.randomisation.top_speed[1]
+        driven = max(fastest, limits.max_speed) + BUMP
+        turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
+        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+        kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
+        return {
+            "far": far,
+            "goal": far + settings.field.goal_width,
+            "speed": seen_speed(settings, driven, noise.robot_position),
+            "turn": seen_turn(settings, turned),
+            "ball_speed": seen_speed(settings, max(kicked, settings.ball_speed), noise.ball_position),
+        }
 
     @property
     def space(self) -> Box[np.float32]:
@@ -185,7 +248,8 @@ class ArenaTask(ABC):
     @property
     def _robot_limits(self) -> list[RobotLimits | None]:
         """What each robot can do; None for the simulator's own."""
-        return [self.settings.robot_limits]
+        own = self.settings.robot_limits
+        return [own if index in self.learners else None for index in range(self.robots)]
 
     @property
     def _progress_rows(self) -> FloatArray:
@@ -194,7 +258,7 @@ class ArenaTask(ABC):
 
     @property
     def _term_rows(self) -> FloatArray:
-        return self._terms.view(np.float64).reshape(self.n, -1)
+        return self._judged_terms.view(np.float64).reshape(self.n, -1)
 
     @property
     def ticks(self) -> FloatArray:
@@ -216,7 +280,8 @@ class ArenaTask(ABC):
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
-        return self.sample(np.random.default_rng(seed), count)
+        drawn: FloatArray = call(self, "sample", np.random.default_rng(seed), count)
+        return drawn
 
     def reset(self, seed: int | None = None) -> FloatArray:
         """See :meth:`robobt.learning.envs.task.VectorTask.reset`."""
@@ -285,9 +350,12 @@ class ArenaTask(ABC):
         ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
-            self._oppose()
-            self.arenas.step(self._randomiser.delayed(self._carried()))
-            ended = self._judge(given, rewards, ends)
+            call(self, "oppose", self._commands)
+            if self._own_reward or self._own_ends:
+                ended = self._step_with_own(given, rewards, ends)
+            else:
+                self.arenas.step(self._randomiser.delayed(self._carried()))
+                ended = self._judge(given, rewards, ends)
             if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
@@ -307,6 +375,48 @@ class ArenaTask(ABC):
         commands[:, learners, 1] = np.where(carrying, aside, commands[:, learners, 1])
         return commands
 
+    def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
+        """Step a tick and judge it by :meth:`reward` and :meth:`ends` where these are a subclass's own."""
+        arenas, progress, blue = self.arenas, self._progress, self.blue
+        field, going = self.settings.field, ~(ends[TERMINATED] | ends[TRUNCATED])
+        robots, balls = arenas.robots.copy(), arenas.balls.copy()
+        arenas.step(self._randomiser.delayed(self._carried()))
+        earned, judged_ends, total = np.zeros(self.n), ends.copy(), progress["total_reward"].copy()
+        self._judged_terms = np.zeros(self.n, dtype=type(self).terms)
+        self._judge(actions, earned, judged_ends)
+        tick = Tick(
+            now=seen(arenas.robots, arenas.balls, blue, field),
+            before=seen(robots, balls, blue, field),
+            contact=arenas.contact,
+            kicked=arenas.kicked,
+            touch=arenas.touch,
+            goal=goals(balls, arenas.balls, field.half_length, field.half_width, field.goal_width / 2),
+            actions=actions,
+            ticks=progress["ticks"],
+            success=judged_ends[SUCCESS] & going,
+            failed=judged_ends[TERMINATED] & ~judged_ends[SUCCESS] & going,
+            terms={name: self._judged_terms[name] for name in type(self).terms.names or ()},
+        )
+        if self._own_ends:
+            success, failed = checked_ends(self, tick, self.n)
+            tick.success, tick.failed = success & going, failed & going & ~success
+            over = tick.success | tick.failed
+            ends[SUCCESS] |= tick.success
+            ends[TERMINATED] |= over
+            ends[TRUNCATED] |= going & ~over & (tick.ticks >= self.settings.time_limit)
+        else:
+            ends[:] = judged_ends
+        terms = checked_terms(self, tick, self.n)
+        if self._terms.dtype.names != tuple(terms):
+            self._terms = np.zeros(self.n, dtype=np.dtype([(name, np.float64) for name in terms]))
+        earned = np.zeros(self.n)
+        for name, term in terms.items():
+            self._terms[name] += np.where(going, term, 0.0)
+            earned += term
+        rewards[going] += earned[going]
+        progress["total_reward"] = np.where(going, total + earned, total)
+        return bool((ends[TERMINATED] | ends[TRUNCATED]).any())
+
     def _seed_all(self, seed: int | None) -> None:
         seeds = [arena.spawn(3) for arena in np.random.SeedSequence(seed).spawn(self.n)]
         starts, noise, parameters = zip(*seeds, strict=True)
@@ -321,13 +431,16 @@ class ArenaTask(ABC):
         self.arenas = Arenas(
             settings.field, self._robot_limits, settings.stepped_simulator, settings.period, n
         )
-        self._pool = StartPool(self.sample, self._start_rngs, len(self.start_columns))
-        self._perception = Perception(settings, self.observe, self.observation_size, robots, self._noise_rngs)
+        self._pool = StartPool(partial(call, self, "sample"), self._start_rngs, len(self.start_columns))
+        self._perception = Perception(
+            settings, partial(call, self, "observe"), self.observation_size, robots, self._noise_rngs
+        )
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
         self._commands = np.zeros((n, robots, size(COMMAND)))
         self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
         self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
-        self._terms: NDArray[np.void] = np.zeros(n, dtype=self.terms)
+        self._terms = np.zeros(n, dtype=self.terms)
+        self._judged_terms = self._terms
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)
         self.ended = None
@@ -340,9 +453,9 @@ class ArenaTask(ABC):
         robots = rows[:, : 6 * self.robots].reshape(len(rows), self.robots, 6)
         balls = rows[:, 6 * self.robots : 6 * self.robots + 4]
         self.arenas.place(robots, balls, which)
-        self._starting(rows, which)
+        self.begin(rows, which)
         self._progress[which] = progress_at(balls)
-        self._terms[which] = np.zeros(len(which), dtype=self.terms)
+        self._terms[which] = np.zeros(len(which), dtype=self._terms.dtype)
         self._optimal_time[which] = self._optimum(rows, which)
         seen = self._perception.start(self.arenas.robots, self.arenas.balls, which)
         self._announce(seen, which)
@@ -375,6 +488,10 @@ class ArenaTask(ABC):
             raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")
 
 
+_TASKS[TaskSettings] = ArenaTask
+
+
 def task_of(settings: type[TaskSettings]) -> type[ArenaTask] | None:
     """Return the task that settings of this class are for; None where no module of its has been imported."""
-    return next((_TASKS[one] for one in settings.__mro__ if one in _TASKS), None)
+    found = next((_TASKS[one] for one in settings.__mro__ if one in _TASKS), ArenaTask)
+    return None if found is ArenaTask else found

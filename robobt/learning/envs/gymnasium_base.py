@@ -49,7 +49,7 @@ def settings_for(
     if render_mode not in (None, "rgb_array"):
         raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
     kind = find_task(task).Settings
-    return kind.default() if settings is None else kind.model_validate(settings)
+    return kind() if settings is None else kind.model_validate(settings)
 
 
 class _OverArenas:

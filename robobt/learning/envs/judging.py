@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from robobt.learning.envs.progress import Progress
-from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray
-from robobt.world.compiled import compilable
+import numpy as np
+
+from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
+from robobt.world.compiled import compilable, compiled
 from robobt.world.rules import goal_side
 
 
@@ -29,6 +31,48 @@ def goal_of(episode: Progress, ball: FloatArray, half_length: float, half_width:
     episode.ball_x = ball[0]
     episode.ball_y = ball[1]
     return side
+
+
+@compiled
+def count(time_limit: float, fired: BoolArray, progress: FloatArray, ends: BoolArray) -> bool:
+    """Count a tick in all arenas, which nothing ends but time; return whether any episode has ended.
+
+    Args:
+        time_limit: ticks after which episodes are truncated.
+        fired: (n,) whether a learner has kicked.
+        progress: (n, ...) rows of ``PROGRESS``.
+        ends: (3, n) filled.
+    """
+    episodes = progress.view(PROGRESS)
+    any_ended = False
+    for i in range(len(fired)):
+        if not is_over(ends, i):
+            episode: Progress = episodes[i, 0]
+            begin_tick(episode, fired[i])
+            ends[TRUNCATED, i] = episode.ticks >= time_limit
+        any_ended = any_ended or is_over(ends, i)
+    return any_ended
+
+
+@compiled
+def goals(
+    before: FloatArray, after: FloatArray, half_length: float, half_width: float, post: float
+) -> IntArray:
+    """Return the sign of x at the goal that each ball goes into in a tick, 0 for none, (n,).
+
+    Args:
+        before: (n, 4) balls.
+        after: (n, 4).
+        half_length: of the field [m].
+        half_width: of the field [m].
+        post: where the posts are [m].
+    """
+    found = np.zeros(len(after), dtype=np.int64)
+    for i in range(len(after)):
+        found[i] = goal_side(
+            before[i, 0], before[i, 1], after[i, 0], after[i, 1], half_length, half_width, post
+        )
+    return found
 
 
 @compilable

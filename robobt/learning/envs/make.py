@@ -6,17 +6,41 @@ from robobt.learning.envs.arena_task import ArenaTask, task_of
 from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.tasks import TASKS, environment_id
+from robobt.plays.python_files import REGISTRIES, import_file
+
+REGISTRIES.append(TASKS)
 
 
 def find_task(name: str) -> type[ArenaTask]:
     """Return a task by the name it is registered under, or by Gymnasium's for it.
 
+    Args:
+        name: of the task; one in a Python file is ``my_task.py:MyTask``, by its class or its name.
+
     Raises:
         KeyError: there is none; the message lists the names there are.
+        PythonFileError: the file cannot be read, or raises as it runs.
     """
+    file, _, inner = name.rpartition(":")
+    if file.endswith(".py") or name.endswith(".py"):
+        return _task_in(file or name, inner if file else "")
     ids = {environment_id(known): known for known in TASKS}
     found: type[ArenaTask] = TASKS[ids.get(name, name)]
     return found
+
+
+def _task_in(file: str, name: str) -> type[ArenaTask]:
+    module = import_file(file)
+    found: dict[str, type[ArenaTask]] = {}
+    for task in vars(module).values():
+        if isinstance(task, type) and issubclass(task, ArenaTask) and task.__module__ == module.__name__:
+            found[task.__name__] = task
+            if "name" in vars(task):
+                found[task.name] = task
+    if name not in found:
+        there = ", ".join([f"{file}:{each}" for each in found]) or "no subclass of ArenaTask"
+        raise KeyError(f"{file}: has no task {name!r}; there is {there}")
+    return found[name]
 
 
 def make_task(settings: TaskSettings, n: int) -> ArenaTask:

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings
-from robobt.models.actions import ActionScaling
+from robobt.models.actions import SCORE_ACTION, ActionScaling
 from robobt.sim.settings import SimSettings, preset, settings_from
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.limits import RobotLimits
@@ -109,8 +109,8 @@ class RandomisationSettings(OrderedSettings):
 class TaskSettings(OrderedSettings):
     """What all environments have in common; a task has its own defaults, reward, starts and ends."""
 
-    action: ActionScaling
-    time_limit: int = Field(ge=1, le=100_000, description="ticks to the end of an episode")
+    action: ActionScaling = SCORE_ACTION
+    time_limit: int = Field(334, ge=1, le=100_000, description="ticks to the end of an episode")
     field: Annotated[FieldGeometry, by_name(TRAINING_FIELDS, "field")] = Field(
         DIVISION_B,
         description="a field by name (division_a, division_b, hardware_challenge) or its dimensions",
@@ -153,11 +153,6 @@ class TaskSettings(OrderedSettings):
             )
         return self
 
-    @classmethod
-    def default(cls) -> Self:
-        """Return what the task has where nothing else is said."""
-        return cls.model_validate({})
-
     @property
     def learners(self) -> tuple[int, ...]:
         """Indices of the robots that learn."""
@@ -167,6 +162,11 @@ class TaskSettings(OrderedSettings):
     def two_alike(self) -> bool:
         """Whether two teams of equal size play, both with learners."""
         return False
+
+    @property
+    def ball_speed(self) -> float:
+        """How fast the ball is at most as an episode starts [m/s]."""
+        return 0.0
 
     @property
     def robot_limits(self) -> RobotLimits:

@@ -14,6 +14,15 @@ BALL_COLUMNS = ("ball_x", "ball_y", "ball_vx", "ball_vy")
 START_COLUMNS = (*ROBOT_COLUMNS, *BALL_COLUMNS)
 """Columns of a start with one robot: robot and ball in field coordinates [m, rad, m/s, rad/s]."""
 
+
+def columns_of(robots: int) -> tuple[str, ...]:
+    """Return the columns of a start with so many robots: each of them, then the ball."""
+    if robots == 1:
+        return START_COLUMNS
+    names = [f"robot_{k}_{name}" for k in range(robots) for name in ROBOT_COLUMNS]
+    return (*names, *BALL_COLUMNS)
+
+
 GIVE_UP = 1000
 """Draws of a start after which there is none that fits."""
 

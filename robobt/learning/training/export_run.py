@@ -61,7 +61,7 @@ def export_run(
         )
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
-    called = name or f"{settings.task}_{settings.learner}"
+    called = name or f"{settings.task.rpartition(':')[2]}_{settings.learner}"
     for format_ in formats:
         refuse_to_replace(Path(folder) / f"{called}{SUFFIXES[format_]}", force)
     environment = environment_of(settings, str(run))

@@ -18,6 +18,7 @@ from robobt.learning.training.results import TrainResult, summary_of, title_of
 from robobt.learning.training.run_folder import CURVES, RESULT, load_run
 from robobt.learning.training.settings import TrainSettings
 from robobt.learning.training.train import TrainError, train
+from robobt.plays.private_files import sender
 
 
 def train_seeds(
@@ -53,7 +54,8 @@ def train_seeds(
     out = Path(out)
     training = _Training(settings, out, resume, problem)
     work = Work(training, "seed", TrainError, passed=(RobobtError, OSError))
-    for _ in run_tasks(work, seeds, min(workers, len(seeds)), on_report=on_progress):
+    count = min(workers, len(seeds))
+    for _ in run_tasks(work, seeds, count, setup=sender(), on_report=on_progress):
         pass
     results = [load_run(training.folder(seed)) for seed in seeds]
     write_atomically(out / RESULT, json.dumps(summary_of(results), indent=2, allow_nan=False) + "\n")

@@ -137,7 +137,10 @@ def load_settings(
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
     environment = environment_of(settings, source)
-    arenas = make_task(environment, 1)
+    try:
+        arenas = make_task(environment, 1)
+    except Exception as error:
+        raise SettingsError(settings.task, f"{type(error).__name__}: {error}") from error
     if settings.central and not arenas.central:
         problem = "a central critic is for tasks of several robots, such as soccer"
         raise SettingsError(source, problem, "ppo.critic")

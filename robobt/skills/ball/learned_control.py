@@ -34,6 +34,7 @@ from robobt.world.features import (
     shoot_of,
 )
 from robobt.world.geometry import FloatArray
+from robobt.world.observation import OWN_OBSERVATIONS
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
@@ -98,7 +99,7 @@ class LearnedControl:
             raise ModelError(
                 f"{file.path}: no skill makes the observation {name!r}; there are {there}, "
                 "and team_view_M_N with places for M mates and N opponents, which may end in _restarts "
-                "or _restarts_double_touch"
+                "or _restarts_double_touch; one of your own comes with --import FILE"
             )
         self._observe: Callable[..., FloatArray] = observe
         places = places_of(name)
@@ -208,7 +209,8 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
     """Return the function that makes the observation of that name from a frame; None: there is none."""
     places = places_of(name)
     if places is None:
-        return OBSERVERS.get(name)
+        own = OWN_OBSERVATIONS.get(name)
+        return OBSERVERS.get(name) if own is None else own.of
     return partial(team_view_of, mates=places[0], opponents=places[1], told=places[2])
 
 

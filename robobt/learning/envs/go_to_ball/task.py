@@ -22,10 +22,11 @@ from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.sim.records import record
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
@@ -33,7 +34,6 @@ from robobt.world.features import (
     go_to_ball_rows,
 )
 from robobt.world.geometry import wrap_angle
-from robobt.world.limits import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _RULES = ("distance", "distance_facing", "infrared", "held")
@@ -45,7 +45,7 @@ _FROM_POST = 0.15
 TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are nearer touch [m]: contact is seen once a tick."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
-_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record_dtype(GoToBallTerms)
+_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record(GoToBallTerms)
 
 
 class GoToBallTask(ArenaTask):
@@ -119,22 +119,20 @@ class GoToBallTask(ArenaTask):
         """See :meth:`ArenaTask.skill`."""
         return GoToBall(goalkeeper=True)
 
-    @property
-    def _robot_limits(self) -> list[RobotLimits | None]:
-        return [self.settings.robot_limits, *[None] * (self.robots - 1)]
-
     def _build(self) -> None:
         settings = self.settings
         self._patrols = Patrols(settings.simulator.limits, settings.period, self.n, self.robots - 1)
         super()._build()
 
-    def _starting(self, starts: FloatArray, which: IntArray) -> None:
+    def begin(self, starts: FloatArray, which: IntArray) -> None:
+        """See :meth:`ArenaTask.begin`."""
         traits = starts[:, 6 * self.robots + 4 :]
         self._patrols.restart(which, traits.reshape(len(which), self.robots - 1, len(TRAITS)))
 
-    def _oppose(self) -> None:
+    def oppose(self, commands: FloatArray) -> None:
+        """See :meth:`ArenaTask.oppose`."""
         if self.robots > 1:
-            self._patrols.decide(self.arenas.robots, self._commands[:, 1:])
+            self._patrols.decide(self.arenas.robots, commands[:, 1:])
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
         arenas = self.arenas

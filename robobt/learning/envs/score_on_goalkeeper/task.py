@@ -15,16 +15,16 @@ from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperS
 from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.keepers import TRAITS, Keepers
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.sim.records import record
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
-from robobt.world.limits import RobotLimits
 from robobt.world.rules import in_area, is_out
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
 from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ScoreOnGoalkeeperSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record_dtype(ScoreTerms)
+_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record(ScoreTerms)
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):
@@ -75,21 +75,19 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             "keeper_speed": seen_speed(settings, keeper, noise.robot_position),
         }
 
-    @property
-    def _robot_limits(self) -> list[RobotLimits | None]:
-        return [self.settings.robot_limits, None]
-
     def _build(self) -> None:
         settings = self.settings
         self._keepers = Keepers(settings.field, settings.simulator.limits, settings.period, self.n)
         super()._build()
 
-    def _starting(self, starts: FloatArray, which: IntArray) -> None:
+    def begin(self, starts: FloatArray, which: IntArray) -> None:
+        """See :meth:`ArenaTask.begin`."""
         self._keepers.restart(which, starts[:, -len(TRAITS) :])
 
-    def _oppose(self) -> None:
+    def oppose(self, commands: FloatArray) -> None:
+        """See :meth:`ArenaTask.oppose`."""
         arenas = self.arenas
-        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, self._commands[:, 1])
+        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands[:, 1])
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
         arenas = self.arenas
@@ -108,10 +106,6 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             rewards,
             ends,
         )
-
-    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
-        # Nobody knows the shortest way round a goalkeeper.
-        return np.full(len(which), np.nan)
 
 
 @compiled

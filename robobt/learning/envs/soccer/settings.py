@@ -155,6 +155,11 @@ class SoccerSettings(TaskSettings):
         return LEARNER in self.blue and LEARNER in self.yellow and len(self.blue) == len(self.yellow)
 
     @property
+    def ball_speed(self) -> float:
+        """See :attr:`TaskSettings.ball_speed`."""
+        return self.starts.ball_speed[1]
+
+    @property
     def sides(self) -> tuple[int, int]:
         """How many robots a learner's own team has and how many the other, at most."""
         sizes = [(len(self.blue), len(self.yellow)), (len(self.yellow), len(self.blue))]

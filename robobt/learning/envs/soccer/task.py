@@ -7,7 +7,6 @@ from typing import ClassVar
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
-from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.central import central_view
 from robobt.learning.envs.soccer.judge import (
     BLUE_TICKS,
@@ -34,8 +33,6 @@ from robobt.learning.opponents.restart_players import SPOT_X, SPOT_Y, TAKER, TEA
 from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.world.compiled import numbers_of
 from robobt.world.game import GameState
-from robobt.world.limits import RobotLimits
-from robobt.world.state import ROBOT_RADIUS
 from robobt.world.team_view import AWAY, team_view, team_view_rows
 
 
@@ -83,22 +80,8 @@ class SoccerTask(ArenaTask):
     @property
     def ranges(self) -> dict[str, float]:
         """See :attr:`ArenaTask.ranges`."""
-        settings, noise = self.settings, self.settings.noise
-        limits, own = settings.simulator.limits, settings.robot_limits
-        far, fastest = farthest(settings), own.max_speed * settings.randomisation.top_speed[1]
-        driven = max(fastest, limits.max_speed) + BUMP
-        turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
-        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
-        kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
-        ball = max(kicked, settings.starts.ball_speed[1])
-        return {
-            "far": far,
-            "away": far + AWAY,
-            "goal": far + settings.field.goal_width,
-            "speed": seen_speed(settings, driven, noise.robot_position),
-            "turn": seen_turn(settings, turned),
-            "ball_speed": seen_speed(settings, ball, noise.ball_position),
-        }
+        known = super().ranges
+        return {**known, "away": known["far"] + AWAY}
 
     @property
     def shares(self) -> FloatArray:
@@ -145,11 +128,6 @@ class SoccerTask(ArenaTask):
         self._shares = np.zeros_like(self._shares)
         return super().advance(actions)
 
-    @property
-    def _robot_limits(self) -> list[RobotLimits | None]:
-        own = self.settings.robot_limits
-        return [own if index in self.learners else None for index in range(self.robots)]
-
     def _build(self) -> None:
         settings, n = self.settings, self.n
         limits, period = settings.simulator.limits, settings.period
@@ -180,7 +158,8 @@ class SoccerTask(ArenaTask):
         self._before = np.zeros((n, len(self.learners), 3))
         super()._build()
 
-    def _starting(self, starts: FloatArray, which: IntArray) -> None:
+    def begin(self, starts: FloatArray, which: IntArray) -> None:
+        """See :meth:`ArenaTask.begin`."""
         self._minds[which] = 0.0
         self._minds[which, LAST] = -1.0
         self._before[which] = np.nan
@@ -191,20 +170,21 @@ class SoccerTask(ArenaTask):
         self._challengers.restart(which)
         self._played.restart(self.arenas, which)
 
-    def _oppose(self) -> None:
+    def oppose(self, commands: FloatArray) -> None:
+        """See :meth:`ArenaTask.oppose`."""
         arenas = self.arenas
-        self._players.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
-        self._challengers.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
+        self._players.decide(arenas.robots, arenas.balls, arenas.contact, commands)
+        self._challengers.decide(arenas.robots, arenas.balls, arenas.contact, commands)
         for keeper in self._keepers:
-            keeper.decide(arenas.robots, arenas.balls, arenas.contact, self._commands)
+            keeper.decide(arenas.robots, arenas.balls, arenas.contact, commands)
         if self.settings.rules.restarts:
-            self._at_restarts.decide(self._restarts.rows, arenas.robots, arenas.balls, self._commands)
-        self._played.decide(arenas, self._commands)
+            self._at_restarts.decide(self._restarts.rows, arenas.robots, arenas.balls, commands)
+        self._played.decide(arenas, commands)
         limit = self.settings.rules.let_go
         if limit is not None and self.learners:
             # What they want holds for several ticks, having to let go for one.
-            self._commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
-            let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, self._commands)
+            commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
+            let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
         arenas = self.arenas

@@ -1,0 +1,118 @@
+"""What a task written in Python is told of a tick, and what is wrong with what it answers."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.config.errors import RobobtError
+from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.world.observation import Seen
+
+
+class TaskError(RobobtError, RuntimeError):
+    """A part of a task has failed; the message names the line of its file, the class and the part."""
+
+
+@dataclass(slots=True)
+class Tick:
+    """A tick of all arenas, as :meth:`ArenaTask.ends` and then :meth:`ArenaTask.reward` are told of it.
+
+    Attributes:
+        now: robots and balls after it, in field coordinates; ``now.me`` is the first learner.
+        before: the same before it.
+        contact: (n, R) in whose mouth the ball lies.
+        kicked: (n, R) whose kicker has fired.
+        touch: (n,) who touched the ball last, -1 for nobody.
+        goal: (n,) the sign of x at the goal that the ball has gone into, 0 for none.
+        actions: (n, A) in [-1, 1].
+        ticks: (n,) how long each episode has gone on.
+        success: (n,) which episodes it ends in success: by the task that is subclassed, then by
+            :meth:`ArenaTask.ends`.
+        failed: (n,) which it ends otherwise.
+        terms: (n,) each, the reward's terms of the task that is subclassed, by their names.
+    """
+
+    now: Seen
+    before: Seen
+    contact: BoolArray
+    kicked: BoolArray
+    touch: NDArray[np.int64]
+    goal: NDArray[np.int64]
+    actions: FloatArray
+    ticks: FloatArray
+    success: BoolArray
+    failed: BoolArray
+    terms: Mapping[str, FloatArray]
+
+
+def call(task: object, part: str, *given: Any) -> Any:
+    """Call a part of a task, and name line, class and part where it goes wrong.
+
+    Raises:
+        TaskError: for any error of one that is not robobt's own.
+    """
+    try:
+        return getattr(task, part)(*given)
+    except Exception as error:
+        if type(task).__module__.startswith("robobt."):
+            raise
+        raise error_of(type(task), part, error) from error
+
+
+def error_of(task: type, part: str, error: BaseException) -> TaskError:
+    """Return an error in a part of a task as one that names the line of the task's file that led to it."""
+    file = getattr(sys.modules.get(task.__module__), "__file__", None)
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    place = f"{Path(file).name}:{lines[-1]}: " if file and lines else ""
+    kind = "" if isinstance(error, ValueError | NotImplementedError) else f"{type(error).__name__}: "
+    return TaskError(f"{place}{task.__name__}.{part}: {kind}{error}")
+
+
+def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray]:
+    """Return which of ``n`` episodes a task's own ``ends`` ends in success, and which otherwise.
+
+    Raises:
+        TaskError: it fails, or answers something else.
+    """
+    parts = call(task, "ends", tick)
+    if (
+        not isinstance(parts, tuple)
+        or len(parts) != 2
+        or any(np.shape(part) not in ((), (n,)) for part in parts)
+    ):
+        problem = ValueError(f"returns no pair of arrays ({n},): success, and other ends")
+        raise error_of(type(task), "ends", problem)
+    success, failed = (np.broadcast_to(np.asarray(part, dtype=np.bool_), n) for part in parts)
+    return success, failed
+
+
+def checked_terms(task: object, tick: Tick, n: int) -> dict[str, FloatArray]:
+    """Return the terms of a task's own ``reward`` in ``n`` arenas, (n,) each.
+
+    Raises:
+        TaskError: it fails, or a term is of another shape or not finite.
+    """
+    terms = call(task, "reward", tick)
+    if not isinstance(terms, Mapping):
+        problem = ValueError(f"returns a {type(terms).__name__}, not the terms by their names")
+        raise error_of(type(task), "reward", problem)
+    found = {}
+    for name, term in terms.items():
+        numbers = np.asarray(term, dtype=np.float64)
+        if numbers.shape not in ((), (n,)) or not np.isfinite(numbers).all():
+            wrong = (
+                "is not finite"
+                if numbers.shape in ((), (n,))
+                else f"has the shape {numbers.shape}, not {(n,)}"
+            )
+            raise error_of(type(task), "reward", ValueError(f"the term {name!r} {wrong}"))
+        found[name] = np.broadcast_to(numbers, n)
+    return found

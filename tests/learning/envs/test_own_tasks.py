@@ -1,0 +1,189 @@
+"""A task in a file of one's own is a task like any other; what is wrong with it is told by line and class."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robobt.learning import TASKS
+from robobt.learning.envs import GoToBallTask, TaskError, Tick, find_task, make_task
+from robobt.learning.training.settings import SettingsError, load_settings
+from robobt.plays.sources import PythonFileError
+from robobt.world.observation import OWN_OBSERVATIONS
+from tests.registries import temporarily
+
+OWN = """
+import numpy as np
+from robobt.learning import TASKS
+from robobt.learning.envs import ArenaTask, TaskSettings
+from robobt.world.observation import entries, observation
+
+
+@observation("to_middle", 1, *entries("x y", "m", "far", 2.0))
+def TO_MIDDLE(seen):
+    return np.column_stack(seen.in_frame_of_me(-seen.me["x"], -seen.me["y"]))
+
+
+class MiddleSettings(TaskSettings):
+    time_limit: int = 40
+
+
+@TASKS.register("Middle")
+class Middle(ArenaTask):
+    Settings = MiddleSettings
+    observation = TO_MIDDLE
+
+    def sample(self, rng, count):
+        rows = np.zeros((count, len(self.start_columns)))
+        rows[:, :2] = rng.uniform(-1.0, 1.0, (count, 2))
+        rows[:, 6] = 3.0
+        return rows
+
+    def ends(self, tick):
+        return np.hypot(tick.now.me["x"], tick.now.me["y"]) < 0.3, tick.goal != 0
+
+    def reward(self, tick):
+        far = [np.hypot(each.me["x"], each.me["y"]) for each in (tick.before, tick.now)]
+        return {"closer": far[0] - far[1], "there": 1.0 * tick.success}
+"""
+
+
+@pytest.fixture(autouse=True)
+def _registered_for_a_test() -> Iterator[None]:
+    with temporarily(TASKS):
+        yield
+    OWN_OBSERVATIONS.clear()
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.chdir(tmp_path)
+    Path("own.py").write_text(OWN)
+    return "own.py:Middle"
+
+
+def test_its_parts_decide_what_is_seen_earned_and_ended(own: str) -> None:
+    task = make_task(find_task(own).Settings(), 8)
+    seen = task.reset(0)
+    places = task.arenas.robots[:, 0, :2].copy()
+    assert seen.shape == (8, 2)
+    np.testing.assert_allclose(np.hypot(*seen.T), np.hypot(*places.T))
+    towards = np.full((8, 4), -1.0)
+    ended = 0
+    for _ in range(40):
+        towards[:, :2] = seen / np.hypot(*seen.T)[:, None]
+        result = task.step(towards)
+        seen = result.observation
+        if task.ended is not None:
+            ended += len(task.ended)
+            assert task.ended.success.all()
+            np.testing.assert_array_equal(task.ended.terms["there"], 1.0)
+            total = task.ended.terms["closer"] + task.ended.terms["there"]
+            np.testing.assert_allclose(total, task.ended.total_reward)
+    assert ended >= 8
+
+
+def test_time_ends_what_its_parts_do_not(own: str) -> None:
+    task = make_task(find_task(own).Settings(), 4)
+    task.reset_to([1.0, 1.0, *[0.0] * 4, 3.0, *[0.0] * 3])
+    for _ in range(40):
+        result = task.advance(np.zeros((4, 4)) - [0.0, 0.0, 0.0, 1.0])
+    assert result.truncated.any()
+    assert not result.terminated[result.truncated].any()
+    assert task.ended is not None
+    assert (task.ended.ticks == 40).all()
+
+
+@pytest.mark.usefixtures("own")
+def test_gymnasium_makes_it_from_its_module() -> None:
+    code = "import gymnasium; print(gymnasium.make('own:Middle-v0').reset(seed=0)[0].shape)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "(2,)\n"
+
+
+def test_a_reward_of_a_shipped_task_is_changed_by_one_method() -> None:
+    class Gently(GoToBallTask):
+        def reward(self, tick: Tick) -> dict[str, np.ndarray]:
+            return {**tick.terms, "jerk": -0.1 * np.abs(tick.actions).sum(axis=1)}
+
+    class Same(GoToBallTask):
+        def reward(self, tick: Tick) -> dict[str, np.ndarray]:
+            return dict(tick.terms)
+
+    tasks = [make_task(kind.Settings(time_limit=30), 8) for kind in (GoToBallTask, Same, Gently)]
+    for task in tasks:
+        task.reset(3)
+    actions = np.full((8, 3), 0.5)
+    for _ in range(60):
+        results = [task.step(actions) for task in tasks]
+        np.testing.assert_allclose(results[1].reward, results[0].reward)
+        np.testing.assert_allclose(results[2].reward, results[0].reward - 0.15)
+        for other in results[1:]:
+            np.testing.assert_array_equal(other.observation, results[0].observation)
+            np.testing.assert_array_equal(other.terminated, results[0].terminated)
+            np.testing.assert_array_equal(other.truncated, results[0].truncated)
+
+
+def test_ends_of_a_shipped_task_are_changed_by_one_method() -> None:
+    class Early(GoToBallTask):
+        def ends(self, tick: Tick) -> tuple[np.ndarray, np.ndarray]:
+            return tick.success, tick.ticks >= 5
+
+    task = make_task(Early.Settings(), 4)
+    task.reset(0)
+    for _ in range(5):
+        result = task.advance(np.zeros((4, 3)))
+    assert result.terminated.all()
+    assert not result.success.any()
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "said"),
+    [
+        ("return {", "return {'far': 1.0 / 0, ", r"own\.py:\d+: Middle\.reward: ZeroDivisionError: "),
+        (
+            "1.0 * tick.success",
+            "np.zeros(3)",
+            r"Middle\.reward: the term 'there' has the shape",
+        ),
+        ("1.0 * tick.success", "np.nan", r"Middle\.reward: the term 'there' is not finite"),
+        ("< 0.3, tick.goal != 0", "< 0.3", r"Middle\.ends: returns no pair"),
+        ("return np.column_stack(", "return np.array(", r"Middle\.observe: makes \(2, 4\) of \(4, 2\)"),
+        ("rows[:, 6] = 3.0", "rows[:, 99] = 3.0", r"own\.py:\d+: Middle\.sample: IndexError"),
+    ],
+)
+def test_what_is_wrong_in_a_part_is_told_by_line_class_and_part(
+    own: str, line: str, wrong: str, said: str
+) -> None:
+    Path("own.py").write_text(OWN.replace(line, wrong))
+    task = make_task(find_task(own).Settings(), 4)
+
+    def play() -> None:
+        task.reset(0)
+        task.step(np.zeros((4, 4)))
+
+    with pytest.raises(TaskError, match=said):
+        play()
+
+
+def test_a_file_without_the_task_is_told(own: str) -> None:
+    with pytest.raises(SettingsError, match=r"own\.py: has no task 'Nobody'; there is own\.py:Middle"):
+        load_settings("own.py:Nobody")
+    with pytest.raises(PythonFileError, match=r"nowhere\.py: cannot be read"):
+        load_settings("nowhere.py:Middle")
+    Path("broken.py").write_text("from robobt.learning.envs import ArenaTask\nclass Broken(Nothing): pass\n")
+    with pytest.raises(PythonFileError, match=r"broken\.py:2: NameError: name 'Nothing'"):
+        load_settings("broken.py:Middle")
+    Path("bare.py").write_text("from robobt.learning.envs import ArenaTask\nclass Bare(ArenaTask): pass\n")
+    with pytest.raises(SettingsError, match=r"bare\.py:Bare: TypeError: Bare: has no observation"):
+        load_settings("bare.py:Bare")
+
+
+def test_a_name_that_is_taken_is_told() -> None:
+    with pytest.raises(ValueError, match="'duel' is one of robobt's"):
+        TASKS.register("duel")(type("Duel", (GoToBallTask,), {}))

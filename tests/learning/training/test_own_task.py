@@ -1,0 +1,78 @@
+"""The file on the page about tasks of one's own is trained, killed, resumed, exported and played by name."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import StartPython
+
+PAGE = (Path(__file__).parents[3] / "docs" / "own_tasks.md").read_text(encoding="utf-8")
+SHORT = (
+    "steps=5120 collection.num_envs=32 ppo.num_steps=20 ppo.hidden_sizes=[16] rebuild_every=640 "
+    "evaluation.every=2560 evaluation.starts=16 evaluation.held_out=16 checkpoint_seconds=0 tensorboard=false"
+)
+TRAIN = (
+    "-m",
+    "robobt",
+    "train",
+    "my_task.py:BringHome",
+    *[part for one in SHORT.split() for part in ("--set", one)],
+)
+
+
+def block(start: str) -> str:
+    found = re.search(rf"(?ms)^```\w+\n({re.escape(start)}.*?)^```", PAGE)
+    assert found
+    return found[1]
+
+
+@pytest.mark.integration
+def test_a_task_in_ones_own_folder_goes_all_the_way(
+    start_python: StartPython, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("my_task.py").write_text(block("# my_task.py"))
+    Path("my_play.yaml").write_text(block("# my_play.yaml"))
+
+    def run(*arguments: str) -> str:
+        process = start_python(*arguments)
+        printed, _ = process.communicate()
+        assert process.returncode == 0
+        return printed
+
+    # Two seeds in workers of their own, one of which is killed and goes on.
+    whole = json.loads(run(*TRAIN, "-n", "2", "-w", "2", "--out", "whole", "--json"))
+    broken = start_python(*TRAIN, "--out", "broken")
+    while not Path("broken/seed_0/checkpoint").exists() and broken.poll() is None:
+        time.sleep(0.01)
+    broken.kill()
+    broken.communicate()
+    assert not Path("broken/seed_0/result.json").exists()
+    resumed = json.loads(run(*TRAIN, "--out", "broken", "--resume", "--json"))
+    assert resumed["runs"][0]["weights"] == whole["runs"][0]["weights"]
+    line = json.loads(Path("broken/seed_0/log.jsonl").read_text().splitlines()[-1])
+    assert set(line["terms"]) == {"home", "advance", "approach"}
+
+    run("-m", "robobt", "export", "broken", "--name", "bring_home", "--out", "models")
+    match = (
+        "-m",
+        "robobt",
+        "match",
+        "striker_vs_goalie",
+        "--blue",
+        "my_play.yaml",
+        "--trials",
+        "1",
+        "--json",
+    )
+    played = json.loads(run(*match, "--set", "ends.time_limit=2", "--import", "my_task.py"))
+    assert played["trials"] == 1
+    observed = run(
+        "-c", "import gymnasium; print(gymnasium.make('my_task:BringHome-v0').reset(seed=0)[0].shape)"
+    )
+    assert observed == "(8,)\n"
