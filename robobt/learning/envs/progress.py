@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.envs.task import FloatArray
-from robobt.sim.records import record
+from robobt.world.compiled import record_dtype
 
 
 class Progress(Protocol):
@@ -39,7 +39,7 @@ class Progress(Protocol):
     potential: float
 
 
-PROGRESS = record(Progress)
+PROGRESS = record_dtype(Progress)
 """How an episode has gone so far; see :class:`Progress`."""
 
 

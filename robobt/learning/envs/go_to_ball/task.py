@@ -22,11 +22,10 @@ from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
-from robobt.sim.records import record
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
@@ -45,7 +44,7 @@ _FROM_POST = 0.15
 TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are nearer touch [m]: contact is seen once a tick."""
 _SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
-_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record(GoToBallTerms)
+_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record_dtype(GoToBallTerms)
 
 
 class GoToBallTask(ArenaTask):

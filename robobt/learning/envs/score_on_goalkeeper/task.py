@@ -15,8 +15,7 @@ from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperS
 from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.keepers import TRAITS, Keepers
-from robobt.sim.records import record
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import in_area, is_out
@@ -24,7 +23,7 @@ from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
 from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ScoreOnGoalkeeperSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record(ScoreTerms)
+_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record_dtype(ScoreTerms)
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):

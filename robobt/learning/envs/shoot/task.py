@@ -16,17 +16,16 @@ from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
 from robobt.learning.envs.task import BoolArray, FloatArray
-from robobt.sim.records import record
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
 
 _SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS, _TERMS = numbers_dtype(ShootReward), record(ShootTerms)
+_WEIGHTS, _TERMS = numbers_dtype(ShootReward), record_dtype(ShootTerms)
 
 _CAREFUL = 0.9
 """Share of what the dribbler can hold that the script turns with."""

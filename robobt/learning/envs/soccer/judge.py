@@ -12,8 +12,7 @@ from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.soccer.rewards import SoccerReward, SoccerTerms, own_reward, sent, team_reward
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
 from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
-from robobt.sim.records import record
-from robobt.world.compiled import compilable, compiled_lean, numbers_dtype
+from robobt.world.compiled import compilable, compiled_lean, numbers_dtype, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.rules import KEPT_GAP, in_area, is_out
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -32,7 +31,7 @@ OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
 
 _SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
 _SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
-TERMS = record(SoccerTerms)
+TERMS = record_dtype(SoccerTerms)
 """Names of the reward's terms."""
 _WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
 
