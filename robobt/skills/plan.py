@@ -111,7 +111,7 @@ class Plan:
 
     def apply_tactics(self, geometry: FieldGeometry, model: BallModel) -> None:
         """Bring ``numbers`` up to the settings, on this field and with this ball."""
-        to = (self.tactics, geometry, model)
+        tactics, before = self.tactics, self._applied
         # By identity: to compare all settings in every frame takes longer than what follows from them.
-        if any(a is not b for a, b in zip(to, self._applied, strict=True)):
-            self.numbers, self._applied = applied(*to), to
+        if before[0] is not tactics or before[1] is not geometry or before[2] is not model:
+            self.numbers, self._applied = applied(tactics, geometry, model), (tactics, geometry, model)

@@ -14,7 +14,13 @@ from robobt.learning.opponents.challengers import Challengers
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND
 from robobt.skills.plan import Task
+from robobt.skills.store import TeamStore
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.settings import TacticsSettings
+from robobt.world import DIVISION_B, RobotLimits
 from robobt.world.geometry import FloatArray
+from tests.skills.fixed_world import frame, robot
+from tests.skills.refereed import OPEN
 
 N = 7
 SAME = ("GoToBall", "PickUpBall", "KickLoose", "wall")
@@ -77,3 +83,51 @@ def test_they_do_what_the_play_does(players: int, monkeypatch: pytest.MonkeyPatc
         # Where the play does something else for a while, what it remembers differs from then on.
         assert both.same[name] > 0.9 * both.ticks[name] > 0.0, name
     assert sum(both.ticks[name] for name in SAME) > 0.5 * sum(both.ticks.values())
+
+
+def chosen_in_arena(
+    ball: tuple[float, float], own: list[tuple[float, float]], tactics: TacticsSettings
+) -> int | None:
+    """Return who of blue's challengers goes for the ball in an arena, None for nobody."""
+    arenas = Challengers(
+        DIVISION_B, RobotLimits(), 1 / 60, 1, ["challenge"] * len(own), len(own), tactics=tactics
+    )
+    robots, commands = np.zeros((1, len(own), 6)), np.zeros((1, len(own), 7))
+    robots[0, :, :2] = own
+    contact: NDArray[np.bool_] = np.zeros((1, len(own)), dtype=np.bool_)
+    for _ in range(100):  # Until nobody is a new attacker any more.
+        arenas.decide(robots, np.array([[*ball, 0.0, 0.0]]), contact, commands)
+    chosen = int(arenas._plans[0, 0, 0])
+    return None if chosen < 0 else chosen
+
+
+def chosen_in_plan(
+    ball: tuple[float, float], own: list[tuple[float, float]], tactics: TacticsSettings
+) -> int | None:
+    """Return who of a team goes for the ball by its plan."""
+    team = TeamStore()
+    team.attacker = 0
+    team.plan.tactics = tactics
+    team.plan.players.update(range(len(own)))
+    robots = tuple(robot(x, y, number=number) for number, (x, y) in enumerate(own))
+    for tick in range(100):
+        agree(frame(robots[0], ball, robots[1:], time=tick / 60, game=OPEN), team)
+    return team.attacker
+
+
+@pytest.mark.parametrize(
+    ("ball", "changes"),
+    [
+        ((-3.3, 0.0), {"own_reach": 0.3}),
+        ((0.0, 0.0), {"behind_ball": 0.0}),
+        ((0.2, 0.0), {"switch_gain": 0.0}),
+    ],
+)
+def test_a_changed_setting_of_the_tactics_changes_who_goes_in_an_arena_as_in_a_match(
+    ball: tuple[float, float], changes: dict[str, float]
+) -> None:
+    own = [(0.75, 0.0), (-0.75, 0.0)]
+    before, after = TacticsSettings(), TacticsSettings.model_validate(changes)
+    assert chosen_in_arena(ball, own, before) == chosen_in_plan(ball, own, before)
+    assert chosen_in_arena(ball, own, after) == chosen_in_plan(ball, own, after)
+    assert chosen_in_arena(ball, own, before) != chosen_in_arena(ball, own, after)

@@ -15,7 +15,8 @@ from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import roughly
 from robobt.motion.scene import BALL_GAP, scene_of, trip_of
 from robobt.skills.defence.wall import GAP, wall_place
-from robobt.skills.tactics.settings import DEFAULT_TACTICS
+from robobt.skills.tactics.attacker import NOBODY, choose_attacker, may_be_attacked
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, AppliedTactics, TacticsSettings, applied
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled
 from robobt.world.field import FieldGeometry
@@ -35,24 +36,18 @@ from robobt.world.records import (
     limits_of,
     mover_records,
 )
-from robobt.world.rules import before_mouth, in_area
+from robobt.world.rules import before_mouth
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 CHALLENGE = "challenge"
 """The role of a field player that does what ``team_player`` does in open play.
 
-Of a team's challengers the one that has the ball soonest goes for it, by the plan's own times and reluctance
-to change (:mod:`robobt.skills.tactics.agree`), and the others are a wall; all are one while the ball is in a
+Of a team's challengers the one that has the ball soonest goes for it, by the same law as in the plan
+(:mod:`robobt.skills.tactics.attacker`), and the others are a wall; all are one while the ball is in a
 defence area. Nobody marks, supports, passes or shoots. The play's own speed is a ``player_speed`` of 3 m/s.
 """
 
 _ATTACKER, _SINCE = range(2)
-SWITCH_GAIN, FRESH_GAIN = DEFAULT_TACTICS.switch_gain, DEFAULT_TACTICS.fresh_gain
-FRESH_FOR, HELD = DEFAULT_TACTICS.fresh_for, DEFAULT_TACTICS.held_gain
-_OWN_REACH, _REACH, _BEHIND_BALL, _REST = 0.12, 0.06, 0.3, 0.5
-"""So far round its own area and the others' nobody goes for the ball [m]; by so much at most a robot beyond
-a ball counts as later [s], if that is slower than this [m/s]."""
-_WALL_AHEAD, _WALL_FACING = 0.15, 0.5
 _SLIDE, _ROLL, _SHARE = (
     DEFAULT_BALL.slide_deceleration,
     DEFAULT_BALL.roll_deceleration,
@@ -71,6 +66,7 @@ class Challengers:
         roles: by the robots' indices; those with other roles are left alone.
         blue: how many of an arena's robots, the first, attack towards +x.
         speed: their top speed [m/s]; None for the limits'.
+        tactics: of their teams.
     """
 
     def __init__(
@@ -82,6 +78,7 @@ class Challengers:
         roles: Sequence[str],
         blue: int,
         speed: float | None = None,
+        tactics: TacticsSettings = DEFAULT_TACTICS,
     ) -> None:
         count = len(roles)
         self._who = np.array([role == CHALLENGE for role in roles])
@@ -90,6 +87,7 @@ class Challengers:
         given = limits if top == limits.max_speed else limits.model_copy(update={"max_speed": top})
         self._own, self._given = limits_of(limits), limits_of(given)
         self._carrying = with_the_ball(limits)
+        self._tactics = applied(tactics, field, DEFAULT_BALL)
         # Each team sees its own robots first, numbered from 0, in open play.
         self._sides: list[tuple[float, int, NDArray[np.int64], FloatArray]] = []
         self._begin: list[list[float]] = []
@@ -142,6 +140,7 @@ class Challengers:
                 self._watch,
                 self._memory,
                 commands,
+                self._tactics,
             )
         self._ticks += 1.0
 
@@ -165,12 +164,14 @@ def _decide(
     watches: FloatArray,
     memory: FloatArray,
     commands: FloatArray,
+    numbers: FloatArray,
 ) -> None:
     scene: Scene = scene_.view(SCENE)[0]
     trip: Trip = trip_.view(TRIP)[0]
     own: Limits = own_.view(LIMITS)[0]
     given: Limits = given_.view(LIMITS)[0]
-    count = len(rows)
+    tactics: AppliedTactics = numbers.view(TACTICS)[0]
+    count, candidates = len(rows), np.empty((mates, 3))
     seen, movers, has = np.empty((count, 6)), np.empty((count, MOVER_SIZE)), np.empty(count, dtype=np.bool_)
     every = mover_records(movers)
     for i in range(len(balls)):
@@ -190,7 +191,7 @@ def _decide(
             disputed = disputed or (row >= mates and has[row])
         scene.ball.x, scene.ball.y, scene.ball.vx, scene.ball.vy = ball[0], ball[1], ball[2], ball[3]
         rolling = _rolling(times[i], ball, watches[i])
-        first = _who_goes(who, rows, mates, scene, seen, movers, has, ball, rolling, times[i], plans[i])
+        first = _who_goes(who, rows, candidates, movers, has, ball, rolling, times[i], plans[i], numbers)
         waiting = place = 0
         for row in range(mates):
             waiting += who[rows[row]] and row != first
@@ -216,7 +217,7 @@ def _decide(
                     command,
                 )
             else:
-                _wall(trip, scene, mover_records(movers), own, given, ball, place, waiting, command)
+                _wall(trip, scene, mover_records(movers), own, given, ball, place, waiting, command, tactics)
                 place += 1
 
 
@@ -234,39 +235,25 @@ def _rolling(time: float, ball: FloatArray, watch: FloatArray) -> float:
 def _who_goes(
     who: NDArray[np.bool_],
     rows: NDArray[np.int64],
-    mates: int,
-    scene: Scene,
-    seen: FloatArray,
+    candidates: FloatArray,
     movers: FloatArray,
     has: NDArray[np.bool_],
     ball: FloatArray,
     rolling: float,
     time: float,
     plan: FloatArray,
+    numbers: FloatArray,
 ) -> int:
     """Return the row of who goes for the ball, -1 for nobody, as the plan of the play's team has it."""
-    before, best, least, present = plan[_ATTACKER], -1, inf, inf
-    length, depth, width = scene.half_length, scene.area_depth, scene.area_width
-    free = not in_area(-ball[0], ball[1], length, depth, width, _OWN_REACH) and not in_area(
-        ball[0], ball[1], length, depth, width, _REACH
-    )
-    if free:
-        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, length, scene.half_width)
+    tactics: AppliedTactics = numbers.view(TACTICS)[0]
+    before, best, mates = int(plan[_ATTACKER]), NOBODY, len(candidates)
+    if may_be_attacked(ball[0], ball[1], numbers):
+        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, tactics.half_length, tactics.half_width)
         for row in range(mates):
-            if not who[rows[row]]:
-                continue
-            needs = met[row, 0]
-            if has[row]:
-                needs = -HELD
-            elif hypot(ball[2], ball[3]) < _REST:
-                needs += min(_BEHIND_BALL, max(0.0, seen[row, 0] - ball[0]))
-            if row == before:
-                present = needs
-            if needs < least:
-                best, least = row, needs
-        gain = SWITCH_GAIN if time - plan[_SINCE] > FRESH_FOR else FRESH_GAIN
-        if present < least + gain:
-            best = int(before)
+            candidates[row, 0] = met[row, 0] if who[rows[row]] else inf
+            candidates[row, 1], candidates[row, 2] = movers[row, 0], has[row]
+        speed, since = hypot(ball[2], ball[3]), time - plan[_SINCE]
+        best = choose_attacker(candidates, ball[0], speed, NOBODY, before, since, False, numbers)
     if best != before:
         plan[_ATTACKER], plan[_SINCE] = best, time
     return best
@@ -283,14 +270,15 @@ def _wall(
     place: int,
     size: int,
     command: FloatArray,
+    tactics: AppliedTactics,
 ) -> None:
     """Drive to a place of the wall by the planned way, facing the ball."""
     depth = scene.area_depth + GAP
     half = min(scene.area_width / 2 + GAP, scene.half_width)
-    x, y = ball[0] + _WALL_AHEAD * ball[2], ball[1] + _WALL_AHEAD * ball[3]
+    x, y = ball[0] + tactics.wall_lead * ball[2], ball[1] + tactics.wall_lead * ball[3]
     trip.x, trip.y = wall_place(-scene.half_length, depth, half, x, y, place, size)
     dx, dy = ball[0] - trip.me.x, ball[1] - trip.me.y
-    slack = _WALL_FACING + atan2(ROBOT_RADIUS, hypot(dx, dy))
+    slack = tactics.facing + atan2(ROBOT_RADIUS, hypot(dx, dy))
     trip.heading = roughly(trip.me.heading, atan2(dy, dx), slack)
     trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0
     command[:] = 0.0

@@ -14,16 +14,18 @@ from robobt.motion.arrival import arrival_times, meetings
 from robobt.skills.plan import Plan, Task
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import assign
+from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.skills.team.teamwork import follow_restart
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
 from robobt.world.records import MOVER, ball_of, movers_of
-from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
+from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
 _RASTER = 0.05
+_NO_CANDIDATE = Candidate(inf, 0.0, False)
 
 
 def agree(frame: Frame, team: TeamStore) -> Plan:
@@ -37,7 +39,7 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
     _look(frame, plan)
     _judge_possession(frame, team, plan)
     before = team.attacker
-    team.attacker = _attacker(frame, team, plan, players)
+    team.attacker = _attacker(frame, team, plan)
     team.agreed_on = frame
     team.meeting = _meeting(frame, team, plan)
     if team.attacker != before:
@@ -100,44 +102,40 @@ def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
         plan.ours, plan.ours_since, plan.turned = ours, frame.time, frame.time
 
 
-def _attacker(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> int | None:
-    ball, game, field, tactics = frame.ball, frame.game, frame.field, plan.tactics
+def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
+    ball, game = frame.ball, frame.game
     if game.penalty is frame.team and game.may_touch and team.attacker in plan.own_times:
         return team.attacker
     placing = game.restart is Restart.BALL_PLACEMENT
-    if not placing and (
-        in_own_defense_area(field, ball.x, ball.y, tactics.own_reach)
-        or in_their_defense_area(field, ball.x, ball.y, tactics.their_reach)
-    ):
+    if not placing and not may_be_attacked(ball.x, ball.y, plan.numbers):
         return None
-    shot = ball.vx > tactics.shot_from and not pass_under_way(frame, team)
+    shot = ball.vx > plan.tactics.shot_from and not pass_under_way(frame, team)
     if shot and game.in_play and team.attacker in plan.own_times and team.attacker != team.kicker:
         # Who gets it depends on what stops it.
         return team.attacker
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None
     meant = team.receiver if pass_under_way(frame, team) else None
-    best, least, present = None, inf, inf
-    for robot in players:
-        if robot.id == team.kicker:
-            continue
-        if spot is not None:
+    candidates, rows = [], {robot.id: row for row, robot in enumerate(frame.own)}
+    for robot in frame.own:
+        if robot.id not in plan.players or robot.id == team.kicker:
+            candidates.append(_NO_CANDIDATE)
+        elif spot is not None:
+            # Nobody has the ball yet, nor is beyond it.
             time = hypot(robot.x - spot[0], robot.y - spot[1]) / 2.0
+            candidates.append(Candidate(time, ball.x, False))
         else:
-            time = plan.own_times[robot.id]
-            if has_ball(robot, ball):
-                time = -tactics.held_gain
-            elif ball.speed < tactics.behind_below:
-                time += min(tactics.behind_ball, max(0.0, robot.x - ball.x))
-            if robot.id == meant:
-                time -= tactics.meant_gain
-        if robot.id == team.attacker:
-            present = time
-        if time < least:
-            best, least = robot.id, time
-    gain = tactics.switch_gain if frame.time - plan.attacker_since > tactics.fresh_for else tactics.fresh_gain
-    if game.restart is not None:
-        gain = tactics.restart_gain
-    return team.attacker if present < least + gain else best
+            candidates.append(Candidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball)))
+    row = choose_attacker(
+        np.array(candidates, dtype=np.float64),
+        ball.x,
+        ball.speed,
+        NOBODY if meant is None else rows.get(meant, NOBODY),
+        NOBODY if team.attacker is None else rows.get(team.attacker, NOBODY),
+        frame.time - plan.attacker_since,
+        game.restart is not None,
+        plan.numbers,
+    )
+    return None if row == NOBODY else frame.own[row].id
 
 
 def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
