@@ -55,6 +55,7 @@ def skills(
     came with, null for robobt's own and imported files'); problems: what is
     wrong with other packages' skills.
     """
+    import robobt.plays  # noqa: F401  (baselines have leaves of their own)
     from robobt.skills import SKILLS
     from robobt.tree.parameters import parameters_of
 

@@ -104,9 +104,9 @@ class Lineup:
         """Let the trees agree anew on who goes for the ball; robots enter themselves as they are asked."""
         team = next(iter(self.players.values())).store.team
         team.attackers.clear()
-        team.markers.clear()
         team.marks.clear()
-        team.attacker = team.agreed_on = None
+        team.kept.clear()
+        team.attacker = team.followed = None
 
 
 def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand:

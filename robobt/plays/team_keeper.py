@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.goalkeeper import keep_goal
-from robobt.plays.team import keep_by_the_rules
+from robobt.plays.keeper import keep_by_the_rules
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_clearance import SelectClearance
 from robobt.skills.ball.kick_to_target import KickToTarget

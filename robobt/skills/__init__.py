@@ -58,7 +58,6 @@ from robobt.skills.defence.close_down import CloseDown as CloseDown
 from robobt.skills.defence.cover_angle import CoverAngle as CoverAngle
 from robobt.skills.defence.cover_near_post import CoverNearPost as CoverNearPost
 from robobt.skills.defence.goalkeeper import Goalkeeper as Goalkeeper
-from robobt.skills.defence.mark_opponent import MarkOpponent as MarkOpponent
 from robobt.skills.defence.return_to_goal import ReturnToGoal as ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing as ShotComing
 from robobt.skills.defence.stay_out import StayOut as StayOut
@@ -80,10 +79,18 @@ from robobt.skills.tactics.receive_pass import ReceivePass as ReceivePass
 from robobt.skills.tactics.take_place import TakePlace as TakePlace
 from robobt.skills.tactics.task_switch import TaskSwitch as TaskSwitch
 from robobt.skills.team.best_field_position import BestFieldPosition as BestFieldPosition
-from robobt.skills.team.is_attacker import IsAttacker as IsAttacker
 from robobt.skills.team.mate_aims_at_me import MateAimsAtMe as MateAimsAtMe
 from robobt.skills.team.pass_is_coming import PassIsComing as PassIsComing
 from robobt.skills.team.select_support_position import SelectSupportPosition as SelectSupportPosition
 from robobt.tree.discovery import import_all
 
 import_all(__name__, __path__)
+
+_OF_BASELINES = {"IsAttacker": "is_attacker", "MarkOpponent": "mark_opponent"}
+
+
+def __getattr__(name: str) -> object:
+    if name in _OF_BASELINES:
+        place = f"robobt.plays.baselines.{_OF_BASELINES[name]}"
+        raise ImportError(f"{name} belongs to the team of November 2026: import it from {place}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, TypeVar, cast
 
 from robobt.skills.aims import GoalLine as GoalLine
 from robobt.skills.aims import Pass as Pass
@@ -13,6 +14,8 @@ from robobt.world.geometry import Point
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotState
 
+T = TypeVar("T")
+
 
 @dataclass(slots=True)
 class TeamStore:
@@ -22,33 +25,38 @@ class TeamStore:
         passer, receiver: numbers of the robots of the pass under way, None without one.
         pass_target: where that pass goes [m].
         pass_time: when it was kicked [s].
-        attackers: numbers of the robots that may go for the ball, each with the largest x of
-            the ball at which it does [m].
+        attackers: numbers of the robots that may go for the ball.
         attacker: who goes for the ball now.
-        markers: numbers of the robots that mark opponents.
-        marks: which opponent each of them marks.
+        marks: which opponent each robot that marks one does.
         threats: numbers of the opponents without the ball that could score soon, the most dangerous first.
         meeting: where the attacker is to meet a rolling ball [m], None without one.
         kicker: who took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
-        agreed_on: the frame that ``attacker`` and ``kicker`` hold for.
-        plan: what the robots of the play set ``team`` have agreed on.
+        followed: the frame that ``kicker`` holds for.
+        plan: what the robots that play ``team_player`` have agreed on.
+        kept: what other plays share, by its type; see :meth:`shared`.
     """
 
     passer: int | None = None
     receiver: int | None = None
     pass_target: Point | None = None
     pass_time: float = 0.0
-    attackers: dict[int, float] = field(default_factory=dict)
+    attackers: set[int] = field(default_factory=set)
     attacker: int | None = None
-    markers: set[int] = field(default_factory=set)
     marks: dict[int, int] = field(default_factory=dict)
     threats: list[int] = field(default_factory=list)
     meeting: Point | None = None
     kicker: int | None = None
     restart_pending: bool = False
-    agreed_on: Frame | None = None
+    followed: Frame | None = None
     plan: Plan = field(default_factory=Plan)
+    kept: dict[type, Any] = field(default_factory=dict)
+
+    def shared(self, kind: type[T]) -> T:
+        """Return the team's one object of this ``kind``, made without arguments when first asked for."""
+        if kind not in self.kept:
+            self.kept[kind] = kind()
+        return cast(T, self.kept[kind])
 
 
 @dataclass(slots=True)

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from robobt.learning.opponents.field_players import FieldPlayers
-from robobt.skills import MarkOpponent, Wall
+from robobt.plays.baselines.agreement import Agreement
+from robobt.plays.baselines.mark_opponent import MarkOpponent
+from robobt.skills import Wall
 from robobt.skills.base import Skill
 from robobt.tree import Behaviour
 from robobt.world import RobotLimits
@@ -72,7 +74,7 @@ def targets(
     for one in alone:
         one.store.team = alone[0].store.team
     # All have asked to mark before, and nobody marks anybody yet.
-    alone[0].store.team.markers.update(range(len(skills)))
+    alone[0].store.team.shared(Agreement).markers.update(range(len(skills)))
     for number, one in enumerate(alone):
         one.tick(frame, number)
     return [found.get(number) for number in range(len(skills))]

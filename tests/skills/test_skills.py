@@ -11,16 +11,20 @@ from typing import Any
 
 import pytest
 
+import robobt.plays.baselines
 import robobt.skills
 from robobt.skills import SKILLS, Skill, Store
 from robobt.tree.parameters import members_of, parameters_of
+
+BASELINES = "robobt.plays.baselines"
 
 
 @pytest.mark.parametrize("name", list(SKILLS))
 class TestEverySkill:
     def test_is_imported_by_name_in_the_package_and_lives_in_a_file_of_its_own_name(self, name: str) -> None:
         cls = SKILLS[name]
-        assert getattr(robobt.skills, name) is cls
+        if not cls.__module__.startswith(BASELINES):
+            assert getattr(robobt.skills, name) is cls
         assert cls.__module__.rpartition(".")[2] == snake_case(name)
 
     def test_is_made_without_arguments_and_by_keywords_only(self, name: str) -> None:
@@ -58,11 +62,20 @@ class TestEverySkill:
 
 def test_every_skill_below_the_package_is_entered() -> None:
     found: set[type[Skill]] = set()
-    for module in pkgutil.walk_packages(robobt.skills.__path__, "robobt.skills."):
+    for module in (
+        *pkgutil.walk_packages(robobt.skills.__path__, "robobt.skills."),
+        *pkgutil.walk_packages(robobt.plays.baselines.__path__, f"{BASELINES}."),
+    ):
         contents = vars(import_module(module.name)).values()
         found |= {value for value in contents if isinstance(value, type) and issubclass(value, Skill)}
     bases = {base for cls in found for base in cls.__mro__[1:]}
     assert {cls.__name__ for cls in found - bases} == set(SKILLS)
+
+
+@pytest.mark.parametrize("name", ["IsAttacker", "MarkOpponent"])
+def test_where_a_skill_of_the_baselines_is_now_is_told(name: str) -> None:
+    with pytest.raises(ImportError, match=f"import it from {BASELINES}.{snake_case(name)}"):
+        getattr(robobt.skills, name)
 
 
 def snake_case(name: str) -> str:

@@ -8,9 +8,9 @@ from math import atan2, cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.skills.defence.mark_opponent import MarkOpponent
+from robobt.plays.baselines.agreement import MARK_FROM
+from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.skills.defence.wall import GAP, wall_place
-from robobt.skills.team.teamwork import MARK_FROM
 from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle

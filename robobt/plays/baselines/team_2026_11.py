@@ -1,18 +1,29 @@
 """The team of November 2026: field players, defenders and a goalkeeper, by the rules.
 
 What a new team is measured against. Nothing here changes any more: where a skill that these
-trees use comes to decide otherwise, they get a copy of the old one.
+trees use comes to decide otherwise, they get a copy of the old one. ``field_player`` and ``defender``
+are the same trees with what has been learned since: they evade moving robots by velocity and touch
+no ball in a defence area.
+
+Every tree reads from the top: what the referee wants comes first, open play last. Nobody has a fixed
+part. Of the field players, and of the defenders near their own goal, the one with the shortest way goes
+for the ball; the others support it, or mark opponents while the ball is in their half.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 from robobt.plays.attack_main import attack_main
 from robobt.plays.attack_support import attack_support
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.baselines.go_round import GoRound
+from robobt.plays.baselines.is_attacker import IsAttacker
+from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.plays.goalkeeper import goalkeeper
+from robobt.plays.keeper import ball_dead
 from robobt.plays.penalty_kick import penalty_kick
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.raters import Rater
@@ -22,7 +33,6 @@ from robobt.skills.ball.intercept import Intercept
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.conditions.ball_coming import BallComing
 from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
-from robobt.skills.conditions.ball_in_play import BallInPlay
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.is_halted import IsHalted
@@ -31,7 +41,7 @@ from robobt.skills.conditions.may_touch_ball import MayTouchBall
 from robobt.skills.conditions.team_has_ball import TeamHasBall
 from robobt.skills.conditions.under_pressure import UnderPressure
 from robobt.skills.defence.cover_angle import CoverAngle
-from robobt.skills.defence.mark_opponent import MarkOpponent
+from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.defence.wall import Wall
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
@@ -39,7 +49,6 @@ from robobt.skills.restarts.keep_distance import KeepDistance
 from robobt.skills.restarts.place_ball import PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
-from robobt.skills.team.is_attacker import IsAttacker
 from robobt.tree import Behaviour, Inverter, Selector, Sequence
 from robobt.world.game import Restart
 
@@ -47,18 +56,156 @@ UPFIELD_SPEED = 2.0
 """Of a kick that is neither shot nor pass: fast enough to get away, too slow to leave the field [m/s]."""
 
 
-class _Shooting(NamedTuple):
-    """Which shots are taken.
+@dataclass(frozen=True)
+class _Player:
+    """A field player or defender.
 
     Attributes:
         rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1; what a score means is the rater's.
-        distance: farthest from the goal [m].
+        shot_distance: farthest from the goal [m].
+        dribble_speed: top speed with the ball [m/s].
+        farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
 
     rater: Rater
     min_score: float
-    distance: float
+    shot_distance: float
+    dribble_speed: float
+    farthest: float | None
+
+    def field_player(self, name: str, penalty: Behaviour) -> Behaviour:
+        """Attack when first to the ball, else mark in the own half and support in the other."""
+        return first_of(
+            name,
+            *self._restarts(penalty),
+            when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
+            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+            when("ball is dead", ball_dead(), KeepDistance(), _off_the_ball()),
+            when("on the ball", self._attacks(), self._on_the_ball()),
+            _off_the_ball(),
+        )
+
+    def defender(self, name: str, penalty: Behaviour, wall: Callable[[], Behaviour]) -> Behaviour:
+        """Stand in the wall before the own defence area; play the ball when first to it there."""
+        return first_of(
+            name,
+            *self._restarts(penalty),
+            when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
+            when("ball is dead", ball_dead(), KeepDistance(), wall()),
+            when("on the ball", self._attacks(), self._on_the_ball()),
+            wall(),
+        )
+
+    def _restarts(self, penalty: Behaviour) -> tuple[Behaviour, ...]:
+        """Return what the referee wants of the robot that is nearest to the ball, and of all in a halt."""
+        take_it = Sequence("take it", memory=True, children=[MayTouchBall(), self._kick_away(settled=True)])
+        get_ready = when("get ready", first_of("where to", *self._aims()), PrepareRestart())
+        placing = IsRestart(kind=Restart.BALL_PLACEMENT, ours=True)
+        return (
+            when("halted", IsHalted(), Stop()),
+            when(
+                "our penalty",
+                IsRestart(kind=Restart.PENALTY, ours=True),
+                self._attacks(),
+                first_of("wait", MayTouchBall(), PrepareRestart()),
+                penalty,
+            ),
+            when("our placement", placing, self._attacks(), PlaceBall()),
+            # Where it goes is settled when it may be taken.
+            when(
+                "our restart", IsRestart(ours=True), self._attacks(), first_of("restart", take_it, get_ready)
+            ),
+        )
+
+    def _attacks(self) -> Behaviour:
+        return IsAttacker(farthest=self.farthest)
+
+    def _kick_away(self, *, settled: bool) -> Behaviour:
+        """Shoot, else pass, else kick the ball upfield; ``settled`` stays with what was begun."""
+        shot, pass_, upfield = self._aims()
+        return Selector(
+            "kick away",
+            memory=settled,
+            children=[
+                Sequence("shoot", memory=settled, children=[shot, KickToTarget()]),
+                Sequence("pass", memory=settled, children=[pass_, KickToTarget()]),
+                Sequence(
+                    "upfield", memory=settled, children=[upfield, KickToTarget(kick_speed=UPFIELD_SPEED)]
+                ),
+            ],
+        )
+
+    def _aims(self) -> tuple[Behaviour, Behaviour, Behaviour]:
+        """Return where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
+        shot = SelectShot(rater=self.rater, min_score=self.min_score, max_distance=self.shot_distance)
+        return shot, SelectPass(min_score=0.1), AimUpfield()
+
+    def _on_the_ball(self) -> Behaviour:
+        """Attack, and let the ball go before it has been carried as far as the rules allow."""
+        return first_of(
+            "attack",
+            when("let go", CarriedFar(limit=0.8), Stop()),
+            when("receive", BallComing(), Intercept()),
+            when("pressed", HasBall(), UnderPressure(), self._kick_away(settled=False)),
+            attack_main(
+                rater=self.rater,
+                min_score=self.min_score,
+                max_distance=self.shot_distance,
+                dribble_speed=self.dribble_speed,
+            ),
+        )
+
+
+@PLAYS.register("field_player")
+def field_player(
+    *,
+    rater: Rater = "open_angle",
+    min_score: float = 0.05,
+    shot_distance: float = 5.0,
+    dribble_speed: float = 1.2,
+    farthest: float | None = None,
+) -> Behaviour:
+    """Attack when first to the ball, else mark in the own half and support in the other.
+
+    Args:
+        rater: the shot rater, by name or with settings.
+        min_score: worst shot taken, 0 to 1.
+        shot_distance: no shots from farther than this from the goal [m].
+        dribble_speed: top speed with the ball [m/s].
+        farthest: largest x of the ball at which it goes for it [m]; None is any.
+    """
+    player = _Player(rater, min_score, shot_distance, dribble_speed, farthest)
+    return StayOut("field player", player.field_player("by the rules", penalty_kick()))
+
+
+@PLAYS.register("defender")
+def defender(
+    *,
+    place: int = 0,
+    size: int = 1,
+    rater: Rater = "open_angle",
+    min_score: float = 0.05,
+    shot_distance: float = 5.0,
+    dribble_speed: float = 1.0,
+    farthest: float = -1.0,
+) -> Behaviour:
+    """Stand in the wall before the own defence area; play the ball when first to it there.
+
+    Args:
+        place: in the wall, counted from 0 on the left as it looks out.
+        size: how many defenders the wall has.
+        rater: the shot rater, by name or with settings.
+        min_score: worst shot taken, 0 to 1.
+        shot_distance: no shots from farther than this from the goal [m].
+        dribble_speed: top speed with the ball [m/s].
+        farthest: largest x of the ball at which it goes for it [m].
+    """
+    player, wall = (
+        _Player(rater, min_score, shot_distance, dribble_speed, farthest),
+        partial(Wall, place=place, size=size),
+    )
+    return StayOut("defender", player.defender("by the rules", penalty_kick(), wall))
 
 
 @PLAYS.register("field_player_2026_11")
@@ -79,20 +226,8 @@ def field_player_2026_11(
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
-    shooting = _Shooting(rater, min_score, shot_distance)
-    tree = first_of(
-        "field player",
-        when("halted", IsHalted(), Stop()),
-        _take_penalty(farthest),
-        _place_ball(farthest),
-        _take_restart(shooting, farthest),
-        when("kick-off", IsRestart(kind=Restart.KICKOFF), GoToKickoffPosition()),
-        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-        when("ball is dead", _ball_dead(), KeepDistance(), _off_the_ball()),
-        when("on the ball", IsAttacker(farthest=farthest), _on_the_ball(shooting, dribble_speed)),
-        _off_the_ball(),
-    )
-    return GoRound("as in 2026-11", tree)
+    player = _Player(rater, min_score, shot_distance, dribble_speed, farthest)
+    return GoRound("as in 2026-11", player.field_player("field player", _penalty_kick()))
 
 
 @PLAYS.register("defender_2026_11")
@@ -117,19 +252,11 @@ def defender_2026_11(
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m].
     """
-    shooting = _Shooting(rater, min_score, shot_distance)
-    tree = first_of(
-        "defender",
-        when("halted", IsHalted(), Stop()),
-        _take_penalty(farthest),
-        _place_ball(farthest),
-        _take_restart(shooting, farthest),
-        when("penalty", IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition()),
-        when("ball is dead", _ball_dead(), KeepDistance(), Wall(place=place, size=size)),
-        when("on the ball", IsAttacker(farthest=farthest), _on_the_ball(shooting, dribble_speed)),
-        Wall(place=place, size=size),
+    player, wall = (
+        _Player(rater, min_score, shot_distance, dribble_speed, farthest),
+        partial(Wall, place=place, size=size),
     )
-    return GoRound("as in 2026-11", tree)
+    return GoRound("as in 2026-11", player.defender("defender", _penalty_kick(), wall))
 
 
 @PLAYS.register("keeper_2026_11")
@@ -142,85 +269,15 @@ def keeper_2026_11(*, speed: float = 1.0) -> Behaviour:
     tree = first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
-        when("penalty", _ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
-        when("ball is dead", _ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
+        when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
+        when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
         goalkeeper(speed=speed),
     )
     return GoRound("as in 2026-11", tree)
 
 
-def _ball_dead() -> Behaviour:
-    """Succeed while the ball is not in play."""
-    return Inverter("ball is dead", BallInPlay())
-
-
-def _take_penalty(farthest: float | None) -> Behaviour:
-    """Take an own penalty kick when nearest to it: carry the ball on, draw the goalkeeper, shoot in time."""
-    return when(
-        "our penalty",
-        IsRestart(kind=Restart.PENALTY, ours=True),
-        IsAttacker(farthest=farthest),
-        first_of("wait", MayTouchBall(), PrepareRestart()),
-        penalty_kick(patience=1.2, dribble_speed=1.5),
-    )
-
-
-def _place_ball(farthest: float | None) -> Behaviour:
-    """Bring the ball to the referee's spot when nearest to it; the others keep away."""
-    return when(
-        "our placement",
-        IsRestart(kind=Restart.BALL_PLACEMENT, ours=True),
-        IsAttacker(farthest=farthest),
-        PlaceBall(),
-    )
-
-
-def _take_restart(shooting: _Shooting, farthest: float | None) -> Behaviour:
-    """Take an own restart when nearest to it; where it goes is settled when it may be taken."""
-    take_it = Sequence("take it", memory=True, children=[MayTouchBall(), _kick_away(shooting, settled=True)])
-    where_to = first_of("where to", *_aims(shooting))
-    return when(
-        "our restart",
-        IsRestart(ours=True),
-        IsAttacker(farthest=farthest),
-        first_of("restart", take_it, when("get ready", where_to, PrepareRestart())),
-    )
-
-
-def _kick_away(shooting: _Shooting, *, settled: bool) -> Behaviour:
-    """Shoot, else pass, else kick the ball upfield; ``settled`` stays with what was begun."""
-    shot, pass_, upfield = _aims(shooting)
-    return Selector(
-        "kick away",
-        memory=settled,
-        children=[
-            Sequence("shoot", memory=settled, children=[shot, KickToTarget()]),
-            Sequence("pass", memory=settled, children=[pass_, KickToTarget()]),
-            Sequence("upfield", memory=settled, children=[upfield, KickToTarget(kick_speed=UPFIELD_SPEED)]),
-        ],
-    )
-
-
-def _aims(shooting: _Shooting) -> tuple[Behaviour, Behaviour, Behaviour]:
-    """Return where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
-    shot = SelectShot(rater=shooting.rater, min_score=shooting.min_score, max_distance=shooting.distance)
-    return shot, SelectPass(min_score=0.1), AimUpfield()
-
-
-def _on_the_ball(shooting: _Shooting, dribble_speed: float) -> Behaviour:
-    """Attack, and let the ball go before it has been carried as far as the rules allow."""
-    return first_of(
-        "attack",
-        when("let go", CarriedFar(limit=0.8), Stop()),
-        when("receive", BallComing(), Intercept()),
-        when("pressed", HasBall(), UnderPressure(), _kick_away(shooting, settled=False)),
-        attack_main(
-            rater=shooting.rater,
-            min_score=shooting.min_score,
-            max_distance=shooting.distance,
-            dribble_speed=dribble_speed,
-        ),
-    )
+def _penalty_kick() -> Behaviour:
+    return penalty_kick(patience=1.2, dribble_speed=1.5)
 
 
 def _off_the_ball() -> Behaviour:

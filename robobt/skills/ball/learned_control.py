@@ -17,8 +17,8 @@ from robobt.models.file import ModelError, ModelFile, UnknownModelError
 from robobt.models.find import find_model, read_fitting_model
 from robobt.models.policy import load_policy
 from robobt.motion.dribbling import carry
+from robobt.skills.restarts.kicker import has_kicked
 from robobt.skills.store import TeamStore
-from robobt.skills.team.teamwork import has_kicked
 from robobt.tree import Registry
 from robobt.tree.by_name import ByName
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of

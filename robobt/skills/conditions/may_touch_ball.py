@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robobt.skills.base import Condition, skill
-from robobt.skills.team.teamwork import attacker
+from robobt.skills.restarts.kicker import follow_restart
 from robobt.tree import Status
 
 
@@ -20,7 +20,7 @@ class MayTouchBall(Condition):
     def on_running(self) -> Status:
         """Ask the referee's state and remember who kicked."""
         frame, team = self.frame, self.store.team
-        attacker(frame, team)
+        follow_restart(frame, team)
         game = frame.game
         if game.in_play:
             if team.kicker == self.me.id:

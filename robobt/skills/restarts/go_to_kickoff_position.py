@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robobt.skills.base import Skill, skill
-from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
@@ -31,7 +30,7 @@ class GoToKickoffPosition(Skill):
         """Drive to the place for one tick."""
         frame, me, team = self.frame, self.me, self.store.team
         field = frame.field
-        taker = attacker(frame, team) if frame.game.restart_team is frame.team else None
+        taker = team.attacker if frame.game.restart_team is frame.team else None
         line = sorted({*team.attackers, me.id} - {taker})
         share = (line.index(me.id) + 0.5) / len(line) - 0.5
         x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)

@@ -12,12 +12,12 @@ import numpy as np
 
 from robobt.motion.arrival import arrival_times, meetings
 from robobt.skills.plan import Plan, Task
+from robobt.skills.restarts.kicker import follow_restart
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import assign
 from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
-from robobt.skills.team.teamwork import follow_restart
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
 from robobt.world.records import MOVER, ball_of, movers_of
@@ -40,7 +40,6 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
     _judge_possession(frame, team, plan)
     before = team.attacker
     team.attacker = _attacker(frame, team, plan)
-    team.agreed_on = frame
     team.meeting = _meeting(frame, team, plan)
     if team.attacker != before:
         plan.attacker_since = frame.time

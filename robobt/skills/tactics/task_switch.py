@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
-from math import inf
 
 from py_trees.behaviour import Behaviour
 
@@ -82,8 +81,8 @@ class TaskSwitch(Switch, Bound[Store]):
             team.plan.players.add(number)
             team.plan.without = self.without
             team.plan.change_tactics(self.tactics)
-            team.attackers[number] = inf
-            team.plan.frame = None
+            team.attackers.add(number)
+            team.plan.frame = team.followed = None
         task = agree(frame, team).tasks.get(number, Task.SUPPORT)
         game = frame.game
         if game.in_play and game.penalty is None:

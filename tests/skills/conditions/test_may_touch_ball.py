@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
+from robobt.plays.baselines.is_attacker import IsAttacker
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
-from robobt.skills.team.is_attacker import IsAttacker
 from robobt.tree import Sequence, Status
 from robobt.world import GameState, Restart, RobotId, Team
 from tests.skills.fixed_world import Alone, frame, robot

@@ -22,7 +22,7 @@ def test_robots_wait_in_their_half_outside_the_circle(start: tuple[float, float]
 
 
 def test_robots_spread_over_the_width_in_order_of_their_numbers() -> None:
-    team = TeamStore(attackers={1: 9.0, 2: 9.0, 3: 9.0})
+    team = TeamStore(attackers={1, 2, 3})
     ends = [
         Drive(
             GoToKickoffPosition(),
@@ -38,7 +38,7 @@ def test_robots_spread_over_the_width_in_order_of_their_numbers() -> None:
 
 def test_the_kicker_leaves_no_gap_in_the_line() -> None:
     kicker, waiting = robot(-0.3, 0.0, number=1), robot(-2.0, 0.0, number=2)
-    team = TeamStore(attackers={1: 9.0, 2: 9.0})
+    team = TeamStore(attackers={1, 2}, attacker=1)
     game = kickoff(Team.BLUE, may_touch=False)
     drive = Drive(GoToKickoffPosition(), waiting, game, (0.0, 0.0), mates=(kicker,), team=team)
     assert abs(drive.end.y) < 0.01

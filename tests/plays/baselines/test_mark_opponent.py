@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from robobt.skills.defence.mark_opponent import MarkOpponent
+from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.skills.store import TeamStore
 from robobt.tree import Status
 from robobt.world import RobotState

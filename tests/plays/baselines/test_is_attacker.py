@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import pytest
 
+from robobt.plays.baselines.is_attacker import IsAttacker
 from robobt.skills.store import TeamStore
-from robobt.skills.team.is_attacker import IsAttacker
 from robobt.tree import Status
 from robobt.world import OPEN_PLAY, GameState, RobotState, Team
 from tests.skills.fixed_world import Alone, frame, held, robot

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from robobt.plays.baselines.agreement import enter_marker, marked
 from robobt.skills.base import Skill, skill
-from robobt.skills.team.teamwork import marked
 from robobt.tree import Status
 
 
@@ -29,9 +29,7 @@ class MarkOpponent(Skill):
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
         frame, me, team = self.frame, self.me, self.store.team
-        if me.id not in team.markers:
-            team.markers.add(me.id)
-            team.agreed_on = None
+        enter_marker(team, me.id)
         opponent = marked(frame, team, me.id)
         if opponent is None:
             return self.fail("nobody to mark")

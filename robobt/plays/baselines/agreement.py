@@ -1,14 +1,15 @@
-"""Who goes for the ball and who marks whom, agreed once a frame by the first robot that asks.
+"""Who goes for the ball and who marks whom, as the team of November 2026 agreed on it.
 
-Robots enter themselves in the team's store when they first ask, so a team may
-have any size. Choices stay until another is clearly better, so that two robots
-do not take turns.
+The first robot that asks in a frame decides for all. Robots enter themselves when they first ask, so a team
+may have any size. Choices stay until another is clearly better, so that two robots do not take turns.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from math import hypot, inf
 
+from robobt.skills.restarts.kicker import follow_restart
 from robobt.skills.store import TeamStore
 from robobt.world.game import Restart
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner
@@ -40,13 +41,53 @@ MARK_FROM = 0.5
 """Opponents are marked up to this x: the own half and a little more [m]."""
 
 
+@dataclass(slots=True)
+class Agreement:
+    """What the robots of a team remember of it.
+
+    Attributes:
+        farthest: of each robot that may go for the ball the largest x of the ball at which it does [m].
+        markers: numbers of the robots that mark opponents.
+        frame: the frame that it holds for.
+    """
+
+    farthest: dict[int, float] = field(default_factory=dict)
+    markers: set[int] = field(default_factory=set)
+    frame: Frame | None = None
+
+
+def enter_attacker(team: TeamStore, number: int, farthest: float | None) -> None:
+    """Let a robot go for the ball where its x is at most ``farthest`` [m], None for anywhere."""
+    agreed = team.shared(Agreement)
+    if number not in agreed.farthest:
+        agreed.farthest[number] = inf if farthest is None else farthest
+        team.attackers.add(number)
+        _agree_anew(team)
+
+
+def enter_marker(team: TeamStore, number: int) -> None:
+    """Let a robot mark opponents."""
+    agreed = team.shared(Agreement)
+    if number not in agreed.markers:
+        agreed.markers.add(number)
+        _agree_anew(team)
+
+
+def _agree_anew(team: TeamStore) -> None:
+    team.shared(Agreement).frame = team.followed = None
+
+
 def attacker(frame: Frame, team: TeamStore) -> int | None:
-    """Return the number of the robot that goes for the ball; None when nobody may."""
-    if team.agreed_on is not frame:
-        team.agreed_on = frame
+    """Return the number of the robot that goes for the ball; None when nobody may.
+
+    Beside robots that share out their tasks it is theirs that goes.
+    """
+    agreed = team.shared(Agreement)
+    if agreed.frame is not frame and team.plan.frame is not frame:
+        agreed.frame = frame
         follow_restart(frame, team)
-        team.attacker = _choose_attacker(frame, team)
-        team.marks = _choose_marks(frame, team) if team.markers else {}
+        team.attacker = _choose_attacker(frame, team, agreed.farthest)
+        team.marks = _choose_marks(frame, team, agreed.markers) if agreed.markers else {}
     return team.attacker
 
 
@@ -59,40 +100,7 @@ def marked(frame: Frame, team: TeamStore, number: int) -> RobotState | None:
     return next((robot for robot in frame.opponents if robot.id == opponent), None)
 
 
-def has_kicked(frame: Frame, team: TeamStore, number: int) -> bool:
-    """Return whether that robot took a restart and may not touch the ball before another has.
-
-    Who goes for the ball is not asked: a team may agree on that otherwise.
-    """
-    if team.agreed_on is not frame and team.plan.frame is not frame:
-        follow_restart(frame, team)
-    return team.kicker == number
-
-
-def follow_restart(frame: Frame, team: TeamStore) -> None:
-    """Remember who took the own restart until somebody else has touched the ball."""
-    game = frame.game
-    if game.penalty is not None:
-        # Whoever takes it may touch the ball as often as it likes.
-        team.kicker, team.restart_pending = None, False
-        return
-    if game.restart is not None:
-        team.kicker = None
-        team.restart_pending = game.may_touch and game.restart_team is frame.team
-        return
-    touched = frame.last_touch or owner(frame)
-    if team.restart_pending:
-        team.restart_pending = False
-        if game.in_play:
-            ours = touched is not None and touched.team is frame.team
-            team.kicker = touched.number if touched is not None and ours else team.attacker
-    elif team.kicker is not None and (
-        not game.in_play or (touched is not None and touched != RobotId(frame.team, team.kicker))
-    ):
-        team.kicker = None
-
-
-def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
+def _choose_attacker(frame: Frame, team: TeamStore, farthest: dict[int, float]) -> int | None:
     ball, field = frame.ball, frame.field
     if frame.game.penalty is frame.team and frame.game.may_touch and team.attacker is not None:
         return team.attacker
@@ -105,9 +113,9 @@ def _choose_attacker(frame: Frame, team: TeamStore) -> int | None:
     best: int | None = None
     least = present = inf
     for robot in frame.own:
-        if robot.id == team.kicker or robot.id not in team.attackers:
+        if robot.id == team.kicker or robot.id not in farthest:
             continue
-        if ball.x > team.attackers[robot.id] and not placing:
+        if ball.x > farthest[robot.id] and not placing:
             continue
         time = _time_to_ball(frame, robot)
         if robot.id == team.attacker:
@@ -135,11 +143,11 @@ def _time_to_ball(frame: Frame, robot: RobotState) -> float:
     return hypot(robot.x - x, robot.y - y) / _PACE + min(_DETOUR, max(0.0, robot.x - x))
 
 
-def _choose_marks(frame: Frame, team: TeamStore) -> dict[int, int]:
+def _choose_marks(frame: Frame, team: TeamStore, markers: set[int]) -> dict[int, int]:
     """Assign opponents, those nearest to the own goal first, each to the nearest free marker."""
     goal_x, goal_y = frame.field.our_goal
     holder = owner(frame)
-    free = [robot for robot in frame.own if robot.id in team.markers and robot.id != team.attacker]
+    free = [robot for robot in frame.own if robot.id in markers and robot.id != team.attacker]
     threats = [
         (hypot(robot.x - goal_x, robot.y - goal_y), robot)
         for robot in frame.opponents

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from math import inf
-
+from robobt.plays.baselines.agreement import attacker, enter_attacker
 from robobt.skills.base import Condition, skill
-from robobt.skills.team.teamwork import attacker
 from robobt.tree import Status
 
 
@@ -29,9 +27,7 @@ class IsAttacker(Condition):
     def on_running(self) -> Status:
         """Enter this robot and see who it is."""
         team, number = self.store.team, self.me.id
-        if number not in team.attackers:
-            team.attackers[number] = inf if self.farthest is None else self.farthest
-            team.agreed_on = None
+        enter_attacker(team, number, self.farthest)
         chosen = attacker(self.frame, team)
         if chosen == number:
             return self.succeed()

@@ -1,0 +1,57 @@
+"""A goalkeeper under a referee: what the referee wants comes first, open play last."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS, first_of, when
+from robobt.plays.goalkeeper import goalkeeper
+from robobt.skills.conditions.ball_in_play import BallInPlay
+from robobt.skills.conditions.is_halted import IsHalted
+from robobt.skills.conditions.is_restart import IsRestart
+from robobt.skills.defence.block_shot import BlockShot
+from robobt.skills.defence.close_down import CloseDown
+from robobt.skills.defence.cover_angle import CoverAngle
+from robobt.skills.defence.shot_coming import ShotComing
+from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
+from robobt.skills.restarts.keep_distance import KeepDistance
+from robobt.skills.stop import Stop
+from robobt.tree import Behaviour, Inverter
+from robobt.world.game import Restart
+
+_KICKED = 2.5
+"""A ball that approaches the goal faster than this was kicked, not rolled on [m/s]."""
+
+
+@PLAYS.register("keeper")
+def keeper(*, speed: float = 1.0) -> Behaviour:
+    """Keep goal as ``goalkeeper`` does, within the referee's commands.
+
+    Args:
+        speed: factor on its top speed.
+    """
+    return keep_by_the_rules(speed, goalkeeper(speed=speed))
+
+
+def keep_by_the_rules(speed: float, in_play: Behaviour) -> Behaviour:
+    """Do what the referee wants of a goalkeeper, and ``in_play`` while the ball is."""
+    return first_of(
+        "keeper",
+        when("halted", IsHalted(), Stop()),
+        when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
+        when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
+        when("their penalty", IsRestart(kind=Restart.PENALTY, ours=False), save_penalty(speed)),
+        in_play,
+    )
+
+
+def save_penalty(speed: float) -> Behaviour:
+    """Come out to the kicker of a penalty kick, who is alone; get onto the line of what it kicks."""
+    return first_of(
+        "save",
+        when("shot", ShotComing(min_speed=_KICKED, margin=0.1), BlockShot(speed=speed)),
+        CloseDown(speed=speed),
+    )
+
+
+def ball_dead() -> Behaviour:
+    """Succeed while the ball is not in play."""
+    return Inverter("ball is dead", BallInPlay())
