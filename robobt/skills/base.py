@@ -11,8 +11,10 @@ from robobt.motion.pilot import roughly
 from robobt.motion.scene import BALL_GAP
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, direction, distance
 from robobt.world.limits import RobotLimits
+from robobt.world.records import Robot
 from robobt.world.sketch import Sketch
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
@@ -91,10 +93,7 @@ class Skill(Leaf[Store]):
         store = self.store
         frame, me = store.frame, store.me
         here = me.position
-        heading = direction(here, facing)
-        if thereabouts:
-            # What is close passes by quickly, and the robot itself covers more of the view.
-            heading = roughly(me.heading, heading, slack + atan2(ROBOT_RADIUS, distance(here, facing)))
+        heading = heading_thereabouts(me, facing, slack) if thereabouts else direction(here, facing)
         has_kicked = self.has_kicked
         store.command = travel(
             frame,
@@ -109,6 +108,16 @@ class Skill(Leaf[Store]):
             spare_mates=spare_mates,
             sketch=store.draw,
         )
+
+
+@compilable
+def heading_thereabouts(me: Robot, facing: Point, slack: float) -> float:
+    """Return the heading of a robot that looks at most ``slack`` past the point ``facing`` [rad].
+
+    What is close passes by quickly, and the robot itself covers more of the view.
+    """
+    here = (me.x, me.y)
+    return roughly(me.heading, direction(here, facing), slack + atan2(ROBOT_RADIUS, distance(here, facing)))
 
 
 class Condition(Skill):

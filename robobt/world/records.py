@@ -198,3 +198,11 @@ def mover_records(movers_: FloatArray) -> Sequence[Mover]:
     rows: Any = movers_.view(MOVER)
     first: Sequence[Mover] = rows[:, 0]
     return first
+
+
+@compilable
+def robot_records(robots_: FloatArray) -> Sequence[Robot]:
+    """Return the rows of states (n, ``ROBOT_SIZE``) as records."""
+    rows: Any = robots_.view(ROBOT)
+    first: Sequence[Robot] = rows[:, 0]
+    return first

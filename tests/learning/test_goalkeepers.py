@@ -7,9 +7,16 @@ from math import pi
 import numpy as np
 import pytest
 
-from robobt.learning.opponents.cases import AIM, CLEAR, COVER, FETCH, HOME, SHOT
-from robobt.learning.opponents.fitted_goalkeeper import FittedGoalkeepers
-from robobt.learning.opponents.goalkeeper import Goalkeepers
+from robobt.learning.opponents.goalkeepers import (
+    AIM,
+    CLEAR,
+    COVER,
+    FETCH,
+    HOME,
+    SHOT,
+    FittedGoalkeepers,
+    Goalkeepers,
+)
 from robobt.plays import goalkeeper
 from robobt.plays.goalkeeper import fitted_goalkeeper
 from robobt.sim.arenas import Arenas
@@ -92,9 +99,7 @@ def test_the_fitted_one_does_what_it_decided_a_delay_before() -> None:
     np.testing.assert_allclose(told[2:, 1], 0.2 * told[:-2, 0] + 0.8 * told[1:-1, 0], atol=1e-12)
 
 
-def decides_as(
-    keepers: Goalkeepers | FittedGoalkeepers, trees: list[Alone], limits: RobotLimits, names: tuple[str, ...]
-) -> None:
+def decides_as(keepers: Goalkeepers, trees: list[Alone], limits: RobotLimits, names: tuple[str, ...]) -> None:
     """Statement: on random frames each plays the case that its tree plays, with the same command."""
     n, rng = len(trees), np.random.default_rng(4)
     robots, balls = scenes(n, rng)

@@ -1,8 +1,8 @@
 """Goalkeepers of several kinds over many arenas, for attackers to be trained against and evaluated on.
 
 Four kinds are a few lines each and differ in what they watch. Two are for evaluations: "shipped" is the play
-``goalkeeper`` (:mod:`robobt.learning.opponents.goalkeeper`), "fitted" the play ``fitted_goalkeeper`` with the
-traits of those that the paper's real shots met (:mod:`robobt.learning.opponents.fitted_goalkeeper`).
+``goalkeeper``, "fitted" the play ``fitted_goalkeeper`` with the traits of those that the paper's real shots
+met (:mod:`robobt.learning.opponents.goalkeepers`).
 """
 
 from __future__ import annotations
@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.cases import CLEAR, FETCH
-from robobt.learning.opponents.fitted_goalkeeper import FittedGoalkeepers
-from robobt.learning.opponents.goalkeeper import Goalkeepers
+from robobt.learning.opponents.goalkeepers import CLEAR, FETCH, FittedGoalkeepers, Goalkeepers
 from robobt.world.compiled import compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle

@@ -6,8 +6,11 @@ from dataclasses import field
 
 from robobt.skills.base import Condition, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import distance
-from robobt.world.rules import in_own_defense_area
+from robobt.world.records import Ball
+from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -31,14 +34,9 @@ class BallAtDefenseEdge(Condition):
 
     def on_running(self) -> Status:
         """Look where the ball is and who is near."""
-        field, ball = self.frame.field, self.ball
-        near = in_own_defense_area(field, ball.x, ball.y, 2.0 * ROBOT_RADIUS) and field.contains(
-            ball.x, ball.y
-        )
-        if self._fetching:
-            self._fetching = near and not in_own_defense_area(field, ball.x, ball.y, -ROBOT_RADIUS)
-        elif near and not in_own_defense_area(field, ball.x, ball.y, -0.5 * ROBOT_RADIUS):
-            self._fetching = ball.speed <= self.rest_speed and self._ours()
+        ball, field = self.ball, self.frame.field
+        at_edge = is_at_edge(ball, field, self._fetching)
+        self._fetching = at_edge and (self._fetching or (ball.speed <= self.rest_speed and self._ours()))
         return self.succeed() if self._fetching else self.fail("no ball to fetch")
 
     def _ours(self) -> bool:
@@ -46,4 +44,20 @@ class BallAtDefenseEdge(Condition):
         if not self.frame.opponents:
             return True
         theirs = min(distance(robot.position, here) for robot in self.frame.opponents)
-        return theirs - min(distance(robot.position, here) for robot in self.frame.own) > ROBOT_RADIUS
+        return is_ours(min(distance(robot.position, here) for robot in self.frame.own), theirs)
+
+
+@compilable
+def is_at_edge(ball: Ball, field: FieldGeometry, fetching: bool) -> bool:
+    """Return whether the ball lies where it may be fetched, or still is being fetched."""
+    half_length, depth, width = field.length / 2, field.defense_depth, field.defense_width
+    x, y, inside = ball.x, ball.y, -ROBOT_RADIUS if fetching else -0.5 * ROBOT_RADIUS
+    near = in_area(-x, y, half_length, depth, width, 2.0 * ROBOT_RADIUS)
+    on_field = abs(x) <= half_length and abs(y) <= field.width / 2
+    return near and on_field and not in_area(-x, y, half_length, depth, width, inside)
+
+
+@compilable
+def is_ours(own_way: float, their_way: float) -> bool:
+    """Return whether no opponent is about as near to the ball as the own team [m, m]."""
+    return their_way - own_way > ROBOT_RADIUS

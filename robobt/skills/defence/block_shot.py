@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import cos, sin, sqrt
+from math import cos, hypot, sin, sqrt
 
 from robobt.motion.ball_watch import BallWatch
 from robobt.motion.pilot import drive, stop_time
@@ -13,7 +13,7 @@ from robobt.tree import Status
 from robobt.world.ball_model import time_for
 from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
-from robobt.world.limits import RobotLimits
+from robobt.world.records import Ball, Robot
 
 _SLOW = 0.5
 """The robot does not dive for a slower ball [m/s]."""
@@ -52,70 +52,59 @@ class BlockShot(DrivingSkill):
         target = self.store.target
         if target is None:
             return self.fail("no target to block the way to")
-        me, ball = self.me, self.ball
-        place = closest_point_on_segment(me.position, ball.position, target)
-        if self.offset != 0.0:
-            course = direction(ball.position, target)
-            place = (place[0] - self.offset * sin(course), place[1] + self.offset * cos(course))
-        limits = self.drive_limits
-        final_speed = self._dive_speed(place, limits) if self.dive else 0.0
+        me, ball, limits, model = self.me, self.ball, self.drive_limits, self.frame.ball_model
+        place = blocking_place(me, ball, target, self.offset)
+        final_speed = 0.0
+        if self.dive:
+            slide, roll = model.slide_deceleration, model.roll_deceleration
+            rolling = self._watch.rolling_speed(self.frame)
+            pace = (limits.max_speed, limits.acceleration, limits.braking)
+            final_speed = dive_speed(me, ball, place, rolling, pace, slide, roll)
         facing = direction(me.position, ball.position)
         self.store.command = drive(me, place, facing, limits, self.frame.period, final_speed)
         self.store.command.dribbler = self.dribbler
         return self.run("diving" if final_speed > 0.0 else "to the line of the shot")
 
-    def _dive_speed(self, place: Point, limits: RobotLimits) -> float:
-        """Return the least speed at ``place`` with which the robot is there before the ball [m/s]."""
-        me, ball, model = self.me, self.ball, self.frame.ball_model
-        return dive_speed(
-            me.position,
-            (me.vx, me.vy),
-            place,
-            ball.position,
-            ball.speed,
-            self._watch.rolling_speed(self.frame),
-            limits.max_speed,
-            limits.acceleration,
-            limits.braking,
-            model.slide_deceleration,
-            model.roll_deceleration,
-        )
+
+@compilable
+def blocking_place(me: Robot, ball: Ball, target: Point, offset: float) -> Point:
+    """Return the nearest point of the line from the ball to ``target`` [m], or one ``offset`` beside it."""
+    there = (ball.x, ball.y)
+    x, y = closest_point_on_segment((me.x, me.y), there, target)
+    if offset != 0.0:
+        course = direction(there, target)
+        x, y = x - offset * sin(course), y + offset * cos(course)
+    return x, y
 
 
 @compilable
 def dive_speed(
-    here: Point,
-    velocity: Point,
+    me: Robot,
+    ball: Ball,
     place: Point,
-    ball: Point,
-    speed: float,
     rolling: float,
-    top: float,
-    acceleration: float,
-    braking: float,
+    pace: tuple[float, float, float],
     slide: float,
     roll: float,
 ) -> float:
     """Return the least speed at ``place`` with which a robot is there before the ball [m/s].
 
     Args:
-        here: where the robot is [m].
-        velocity: its velocity [m/s].
-        place: where it is to be [m].
-        ball: where the ball is [m].
-        speed: of the ball [m/s].
-        rolling: below which the ball rolls [m/s].
-        top: how fast the robot drives at most [m/s].
-        acceleration: how fast it speeds up [m/s^2].
-        braking: how fast it slows down [m/s^2].
+        me: the robot.
+        ball: the ball.
+        place: where the robot is to be [m].
+        rolling: speed below which the ball rolls [m/s].
+        pace: top speed, acceleration and braking of the robot [m/s, m/s^2, m/s^2].
         slide: deceleration of the ball while it slides [m/s^2].
         roll: the same while it rolls [m/s^2].
     """
+    top, acceleration, braking = pace
+    here, speed = (me.x, me.y), hypot(ball.vx, ball.vy)
     gap = distance(here, place)
     if speed < _SLOW or gap < _THERE:
         return 0.0
-    time = time_for(distance(ball, place), speed, rolling, slide, roll)
-    towards = (velocity[0] * (place[0] - here[0]) + velocity[1] * (place[1] - here[1])) / gap
+    time = time_for(distance((ball.x, ball.y), place), speed, rolling, slide, roll)
+    towards = (me.vx * (place[0] - here[0]) + me.vy * (place[1] - here[1])) / gap
     least, most = 0.0, top
     if _in_time_braking(gap - _THERE, towards, time, braking) or (
         _time_through(gap, towards, least, top, acceleration, braking) <= time

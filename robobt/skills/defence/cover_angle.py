@@ -8,8 +8,10 @@ from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
 from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point
-from robobt.world.rules import in_own_defense_area
+from robobt.world.records import Ball, Robot
+from robobt.world.rules import in_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
@@ -34,18 +36,11 @@ class CoverAngle(DrivingSkill):
         field, me, ball = self.frame.field, self.me, self.ball
         if ball.x <= -field.half_length:
             return self.fail("the ball is behind the goal line")
+        place = cover_place(ball, field, self.stand_out)
         self.drive_to(
-            cover_place(
-                ball.position,
-                self.stand_out,
-                field.half_length,
-                field.goal_width / 2,
-                field.defense_depth,
-                field.defense_width,
-            ),
+            place,
             ball.position,
-            # Inside nobody else may stand; a new goalkeeper from outside goes round its own wall.
-            avoid_robots=not in_own_defense_area(field, me.x, me.y, ROBOT_RADIUS),
+            avoid_robots=not is_at_home(me, field),
             goalkeeper=True,
             thereabouts=True,
         )
@@ -53,16 +48,23 @@ class CoverAngle(DrivingSkill):
 
 
 @compilable
-def cover_place(
-    ball: Point, stand_out: float, half_length: float, half_goal: float, depth: float, width: float
-) -> Point:
-    """Return where to stand against a ball before the goal line; ``depth`` and ``width`` are the area's [m].
+def is_at_home(me: Robot, field: FieldGeometry) -> bool:
+    """Return whether the goalkeeper is where nobody else may stand, so that it need not go round robots.
 
-    Arguments as for :class:`CoverAngle` and :func:`bisector_foot`.
+    A new goalkeeper from outside goes round its own wall.
     """
+    half_length, depth, width = field.length / 2, field.defense_depth, field.defense_width
+    return in_area(-me.x, me.y, half_length, depth, width, ROBOT_RADIUS)
+
+
+@compilable
+def cover_place(ball: Ball, field: FieldGeometry, stand_out: float) -> Point:
+    """Return where to stand against a ball before the goal line, at most ``stand_out`` before it [m]."""
+    half_length, half_goal = field.length / 2, field.goal_width / 2
+    depth, width, there = field.defense_depth, field.defense_width, (ball.x, ball.y)
     line = -half_length
-    foot = bisector_foot(ball, half_length, half_goal)
-    dx, dy = ball[0] - line, ball[1] - foot
+    foot = bisector_foot(there, half_length, half_goal)
+    dx, dy = ball.x - line, ball.y - foot
     gap = hypot(dx, dy)
     hides = ROBOT_RADIUS / half_goal * gap
     out = min(stand_out, max(gap - hides, ROBOT_RADIUS), gap - ROBOT_RADIUS - BALL_RADIUS)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import closest_point_on_segment
+from robobt.world.records import Ball, Robot
 from robobt.world.state import ROBOT_RADIUS
 
 
@@ -31,12 +34,18 @@ class CoverNearPost(DrivingSkill):
         field, ball = self.frame.field, self.ball.position
         if ball[0] < self.before_goal - field.half_length:
             return self.fail("the ball is beside the goal")
-        half_goal = field.goal_width / 2
-        nearest = (-field.half_length, min(half_goal, max(-half_goal, ball[1])))
-        place = closest_point_on_segment(self.me.position, ball, nearest)
-        if place[0] > field.defense_depth - field.half_length - ROBOT_RADIUS or (
-            abs(place[1]) > field.defense_width / 2
-        ):
+        x, y, inside = near_post_place(self.me, self.ball, field)
+        if not inside:
             return self.fail("too far out")
-        self.drive_to(place, ball, avoid_robots=False, goalkeeper=True, thereabouts=True)
+        self.drive_to((x, y), ball, avoid_robots=False, goalkeeper=True, thereabouts=True)
         return self.run("covering the near post")
+
+
+@compilable
+def near_post_place(me: Robot, ball: Ball, field: FieldGeometry) -> tuple[float, float, bool]:
+    """Return where to stand [m], and whether that is well inside the own defence area."""
+    half_length, half_goal = field.length / 2, field.goal_width / 2
+    nearest = (-half_length, min(half_goal, max(-half_goal, ball.y)))
+    x, y = closest_point_on_segment((me.x, me.y), (ball.x, ball.y), nearest)
+    inside = x <= field.defense_depth - half_length - ROBOT_RADIUS and abs(y) <= field.defense_width / 2
+    return x, y, inside

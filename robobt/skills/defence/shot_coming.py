@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from math import inf, isnan, nan
+
 from robobt.skills.base import Condition, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
+from robobt.world.records import Ball
 from robobt.world.rules import carries
 from robobt.world.state import ROBOT_RADIUS
 
@@ -30,10 +35,10 @@ class ShotComing(Condition):
     def on_running(self) -> Status:
         """Extend the ball's way to the goal line."""
         field, ball = self.frame.field, self.ball
-        if ball.vx > -self.min_speed:
+        y = crossing(ball, field, self.min_speed, self.margin)
+        if isnan(y):
             return self.fail("no ball comes")
-        y = ball.y - (ball.x + field.half_length) * ball.vy / ball.vx
-        if ball.x < -field.half_length or abs(y) >= field.goal_width / 2 + self.margin:
+        if y == inf:
             return self.fail("the ball goes wide")
         for robots in (self.frame.own, self.frame.opponents):
             for robot in robots:
@@ -41,3 +46,15 @@ class ShotComing(Condition):
                     return self.fail("the ball is carried")
         self.store.target = (ROBOT_RADIUS - field.half_length, y)
         return self.succeed(f"crosses at y = {y:.2f}")
+
+
+@compilable
+def crossing(ball: Ball, field: FieldGeometry, min_speed: float, margin: float) -> float:
+    """Return the y at which the ball crosses our goal line [m]; nan where it does not come.
+
+    Infinity where it goes wide. ``min_speed`` and ``margin`` are as of :class:`ShotComing`.
+    """
+    if ball.vx > -min_speed:
+        return nan
+    y = ball.y - (ball.x + field.length / 2) * ball.vy / ball.vx
+    return y if ball.x >= -field.length / 2 and abs(y) < field.goal_width / 2 + margin else inf

@@ -1,0 +1,382 @@
+"""The plays ``goalkeeper`` and ``fitted_goalkeeper`` over many arenas at once.
+
+Each is the play's table of conditions and what is done where they hold, with the functions of the play's
+skills; a test compares them with the trees on random frames.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, inf, isnan, pi
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robobt.motion.ball_watch import rolling_after
+from robobt.motion.path_planner import travel_law
+from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law
+from robobt.motion.scene import BALL_GAP, scene_of, trip_of
+from robobt.skills.base import FACING, heading_thereabouts
+from robobt.skills.conditions.ball_aimed_at_goal import aimed_at
+from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge, is_at_edge, is_ours
+from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense, lies_in_area
+from robobt.skills.defence.block_shot import blocking_place, dive_speed
+from robobt.skills.defence.cover_angle import CoverAngle, cover_place, is_at_home
+from robobt.skills.defence.cover_near_post import CoverNearPost, near_post_place
+from robobt.skills.defence.return_to_goal import ReturnToGoal
+from robobt.skills.defence.shot_coming import ShotComing, crossing
+from robobt.world.ball_model import DEFAULT_BALL
+from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.field import FieldGeometry
+from robobt.world.game import Team
+from robobt.world.geometry import FloatArray, direction, wrap_angle
+from robobt.world.limits import RobotLimits
+from robobt.world.records import (
+    LIMITS,
+    MOVER_SIZE,
+    ROBOT_SIZE,
+    SCENE,
+    TRIP,
+    Limits,
+    Robot,
+    Scene,
+    Trip,
+    limits_of,
+    mover_records,
+    robot_records,
+)
+from robobt.world.rules import ALONG, MOUTH_SECTOR, before_mouth
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
+
+AIM, SHOT, FETCH, CLEAR, COVER, HOME = range(6)
+"""Cases of the play, in the order in which their conditions are looked at."""
+
+_BEFORE_GOAL, _STAND_OUT = ReturnToGoal.before_goal, CoverAngle.stand_out
+_EDGE_REST, _REST = BallAtDefenseEdge.rest_speed, BallRestsInDefense.rest_speed
+_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
+_SHARE = DEFAULT_BALL.switch_share
+
+
+class _Style(NamedTuple):
+    """What differs between the two plays.
+
+    Attributes:
+        min_speed: slowest approach that counts as a shot [m/s].
+        margin: how far beside the goal a shot still counts [m].
+        before_goal: balls farther back than this count as beside the goal [m].
+        near_post: whether it covers the near post, rather than the angle between the posts.
+        dives: whether it dives, and catches with the dribbler.
+    """
+
+    min_speed: float
+    margin: float
+    before_goal: float
+    near_post: bool
+    dives: bool
+
+
+_SHIPPED = _Style(ShotComing.min_speed, 0.1, 0.0, near_post=False, dives=True)
+_FITTED = _Style(0.01, 0.0, CoverNearPost.before_goal, near_post=True, dives=False)
+
+
+class _Setting(Protocol):
+    """What every arena has in common; the trip is the goalkeeper's."""
+
+    trip: Trip
+    scene: Scene
+    own: Limits
+    field: FieldGeometry
+
+
+class _Watch(Protocol):
+    """When the ball was seen [s], how fast, and from which speed on it rolls [m/s]."""
+
+    time: float
+    speed: float
+    rolling: float
+
+
+class _Memory(Protocol):
+    """Of one goalkeeper.
+
+    Attributes:
+        aim, shot: the ball as seen in these cases.
+        fetching: whether a ball is being fetched.
+        slowed: whether it drives by other limits than its own.
+    """
+
+    aim: _Watch
+    shot: _Watch
+    fetching: float
+    slowed: float
+
+
+_SETTING = record_dtype(_Setting, trip=TRIP, scene=SCENE, own=LIMITS, field=numbers_dtype(FieldGeometry))
+_WATCH = record_dtype(_Watch)
+_MEMORY = record_dtype(_Memory, aim=_WATCH, shot=_WATCH)
+
+
+class Goalkeepers:
+    """One goalkeeper in each of ``n`` arenas; it defends the goal at +x, everybody else attacks that.
+
+    The game is in play and the ball on the ground. A ball that rests before the goal
+    or in the defence area is the goalkeeper's: in the cases :data:`FETCH` and
+    :data:`CLEAR` it stands still, for a task to end the episode.
+
+    Args:
+        field: dimensions.
+        limits: what the goalkeeper can do.
+        period: control period [s].
+        n: number of arenas.
+        speed: factor on the top speed and turning rate, one for all or (n,).
+
+    Attributes:
+        cases: (n,) which case each played last.
+    """
+
+    style = _SHIPPED
+
+    def __init__(
+        self, field: FieldGeometry, limits: RobotLimits, period: float, n: int, speed: ArrayLike = 1.0
+    ) -> None:
+        self.cases: NDArray[np.int64] = np.full(n, HOME, dtype=np.int64)
+        # Open play, seen by a team whose only robot is the goalkeeper.
+        me = RobotState(0, 0.0, 0.0)
+        frame = Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period)
+        trip = trip_of(me, me.position, goalkeeper=True)
+        self._own = limits_of(limits)
+        self._setting = np.concatenate((trip, scene_of(frame), self._own, numbers_of(field)))
+        self._given = np.tile(self._own, (n, 1))
+        self._period = period
+        self._ticks = np.zeros(n)
+        self._memory = np.zeros((n, len(_MEMORY.names or ()) + 4))
+        self.restart(np.arange(n), speed)
+
+    def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
+        """Forget what was seen in the arenas ``which``; ``speed``, if given, is as for the constructor."""
+        memory = self._memory.view(_MEMORY)[:, 0]
+        if speed is not None:
+            factors = np.broadcast_to(np.asarray(speed, dtype=np.float64), which.shape)
+            if not ((factors > 0.0) & np.isfinite(factors)).all():
+                raise ValueError("speed must be above 0 and finite")
+            self._given[which] = self._own
+            for limit in ("max_speed", "max_turn"):
+                self._given.view(LIMITS)[limit][which, 0] *= factors
+            memory["slowed"][which] = factors != 1.0
+        self._forget(which)
+
+    def _forget(self, which: NDArray[np.int64]) -> None:
+        self._ticks[which] = 0.0
+        memory = self._memory.view(_MEMORY)[:, 0]
+        memory["fetching"][which] = 0.0
+        for watch in ("aim", "shot"):
+            for name, value in (("time", -inf), ("speed", 0.0), ("rolling", 0.0)):
+                memory[watch][name][which] = value
+
+    def decide(
+        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], me: int, commands: FloatArray
+    ) -> None:
+        """Decide one control tick.
+
+        Args:
+            robots: (n, R, 6) x, y, heading, vx, vy, omega in field coordinates [m, rad, m/s, rad/s].
+            balls: (n, 4) x, y, vx, vy [m, m/s].
+            contact: (n, R) whether the ball lies in the robot's mouth.
+            me: which of the R is the goalkeeper.
+            commands: (n, 6) to be filled, as :meth:`robobt.sim.arenas.Arenas.step` takes them.
+        """
+        self._decide(robots, balls, contact, me, commands)
+
+    def _decide(
+        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], me: int, commands: FloatArray
+    ) -> None:
+        now = self._ticks * self._period
+        arenas = (robots, balls, contact)
+        _decide(self.style, self._setting, self._given, self._memory, now, arenas, me, commands, self.cases)
+        self._ticks += 1.0
+
+
+class FittedGoalkeepers(Goalkeepers):
+    """The play ``fitted_goalkeeper`` as real shots show it.
+
+    It drives by RoboBulls' limits with the acceleration and braking given, which its robot has to be able to,
+    and stands on the line of a shot, not beside it.
+
+    Args:
+        field: dimensions.
+        limits: what its robot can do.
+        period: control period [s].
+        n: number of arenas.
+        acceleration: how fast it speeds up [m/s^2].
+        braking: it drives so that it could stop at this rate [m/s^2].
+        delay: from what happens to what it does about it [s]; between two decisions, in proportion.
+    """
+
+    style = _FITTED
+
+    def __init__(
+        self,
+        field: FieldGeometry,
+        limits: RobotLimits,
+        period: float,
+        n: int,
+        acceleration: float = ROBOBULLS_LIMITS.acceleration,
+        braking: float = ROBOBULLS_LIMITS.braking,
+        delay: float = 0.0,
+    ) -> None:
+        self._share = delay / period % 1.0
+        # What was decided and is not done yet, the oldest first.
+        self._held = np.zeros((int(delay / period) + 2, n, 6))
+        super().__init__(field, limits, period, n)
+        driven = ROBOBULLS_LIMITS.model_copy(update={"acceleration": acceleration, "braking": braking})
+        self._given[:] = limits_of(driven)
+        self._memory.view(_MEMORY)["slowed"] = 1.0
+
+    def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
+        """Begin anew in the arenas ``which``, with these top speeds [m/s], one for all or as many."""
+        if speed is not None:
+            self._given.view(LIMITS)["max_speed"][which, 0] = speed
+        self._forget(which)
+        self._held[:, which] = 0.0
+
+    def decide(
+        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], me: int, commands: FloatArray
+    ) -> None:
+        """See :meth:`Goalkeepers.decide`."""
+        self._held[:-1] = self._held[1:]
+        self._decide(robots, balls, contact, me, self._held[-1])
+        commands[:] = self._share * self._held[0] + (1.0 - self._share) * self._held[1]
+
+
+@compiled
+def _decide(
+    style: _Style,
+    setting_: FloatArray,
+    given_: FloatArray,
+    memory_: FloatArray,
+    times: FloatArray,
+    arenas: tuple[FloatArray, FloatArray, NDArray[np.bool_]],
+    me: int,
+    commands: FloatArray,
+    cases: NDArray[np.int64],
+) -> None:
+    robots, balls, contact = arenas
+    count = robots.shape[1]
+    seen, movers = np.empty((count, ROBOT_SIZE)), np.zeros((count, MOVER_SIZE))
+    sensed: NDArray[np.bool_] = np.empty(count, dtype=np.bool_)
+    every, all_ = mover_records(movers), robot_records(seen)
+    setting: _Setting = setting_.view(_SETTING)[0]
+    scene, trip, own = setting.scene, setting.trip, setting.own
+    for i in range(len(balls)):
+        _see(robots[i], contact[i], me, seen, movers, sensed)
+        ball, memory, given = scene.ball, memory_.view(_MEMORY)[i, 0], given_.view(LIMITS)[i, 0]
+        ball.x, ball.y, ball.vx, ball.vy = -balls[i, 0], -balls[i, 1], -balls[i, 2], -balls[i, 3]
+        setting_[:ROBOT_SIZE] = seen[0]
+        case, y = _case(style, setting, all_, sensed, memory)
+        command, slowed, order = commands[i], memory.slowed > 0.0, (0.0, 0.0, 0.0)
+        command[:] = 0.0
+        if case == COVER and not _set_out(style, setting):
+            case = HOME
+        if case in (AIM, SHOT):
+            target, final_speed = (ROBOT_RADIUS - scene.half_length, y), 0.0
+            place = blocking_place(trip.me, ball, target, 0.0)
+            if style.dives:
+                rolling = _rolling(
+                    memory.aim if case == AIM else memory.shot, times[i], hypot(ball.vx, ball.vy)
+                )
+                pace = (given.max_speed, given.acceleration, given.braking)
+                final_speed = dive_speed(trip.me, ball, place, rolling, pace, _SLIDE, _ROLL)
+                command[5] = 1.0
+            facing = direction((trip.me.x, trip.me.y), (ball.x, ball.y))
+            gentle = slowed or own.reaction > 0.0
+            order = drive_law(trip.me, place, facing, final_speed, own, given, gentle, scene.period)
+        elif case in (COVER, HOME):
+            if case == HOME:
+                trip.x, trip.y, trip.heading = _BEFORE_GOAL - scene.half_length, 0.0, 0.0
+                trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0
+            order = travel_law(trip, scene, every, own, given, slowed, False)
+        cases[i] = case
+        command[0], command[1], command[2] = order
+
+
+@compiled
+def _see(
+    robots: FloatArray,
+    contact: NDArray[np.bool_],
+    me: int,
+    seen: FloatArray,
+    movers: FloatArray,
+    sensed: NDArray[np.bool_],
+) -> None:
+    """Fill in an arena as the goalkeeper's team sees it: the own goal at -x, the own robot first.
+
+    ``movers`` take what a way in open play depends on.
+    """
+    for k in range(len(robots)):
+        row = 0 if k == me else (k + 1 if k < me else k)
+        seen[row] = -robots[k]
+        seen[row, 2], seen[row, 5] = wrap_angle(robots[k, 2] + pi), robots[k, 5]
+        sensed[row] = contact[k]
+        movers[row, :2] = seen[row, :2]
+        movers[row, 2:4] = seen[row, 3:5]
+
+
+@compiled
+def _case(
+    style: _Style, setting: _Setting, robots: Sequence[Robot], sensed: NDArray[np.bool_], memory: _Memory
+) -> tuple[int, float]:
+    """Return the case, and where the ball would cross the goal line if it is one of a shot [m]."""
+    field, ball = setting.field, setting.scene.ball
+    carried, carries, nearest, own_way = False, False, inf, 0.0
+    for k in range(len(robots)):
+        robot = robots[k]
+        dx, dy = ball.x - robot.x, ball.y - robot.y
+        held = sensed[k] or before_mouth(dx, dy, robot.heading, MOUTH_SECTOR)
+        along = held and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
+        carried = carried or along
+        if k == 0:
+            carries, own_way = along, hypot(dx, dy)
+            continue
+        nearest = min(nearest, hypot(dx, dy))
+        if held:
+            aim = aimed_at(robot, ball, field)
+            if not isnan(aim):
+                return AIM, aim
+    y = crossing(ball, field, style.min_speed, style.margin)
+    if abs(y) < inf and not carried:
+        return SHOT, y
+    speed, fetching = hypot(ball.vx, ball.vy), memory.fetching > 0.0
+    at_edge = is_at_edge(ball, field, fetching)
+    fetching = at_edge and (fetching or (speed <= _EDGE_REST and is_ours(own_way, nearest)))
+    memory.fetching = 1.0 if fetching else 0.0
+    if fetching:
+        return FETCH, 0.0
+    if lies_in_area(ball, field) and (speed <= _REST or carries):
+        return CLEAR, 0.0
+    return (COVER if ball.x > style.before_goal - field.length / 2 else HOME), 0.0
+
+
+@compiled
+def _rolling(watch: _Watch, time: float, speed: float) -> float:
+    """Follow the ball's speed; return that from which on it rolls [m/s]."""
+    watch.rolling = rolling_after(time - watch.time, watch.speed, watch.rolling, speed, _SLIDE, _ROLL, _SHARE)
+    watch.time, watch.speed = time, speed
+    return min(watch.rolling, speed)
+
+
+@compiled
+def _set_out(style: _Style, setting: _Setting) -> bool:
+    """Set the trip of CoverNearPost or CoverAngle; return False where that fails."""
+    trip, ball, field = setting.trip, setting.scene.ball, setting.field
+    avoids = False
+    if style.near_post:
+        trip.x, trip.y, inside = near_post_place(trip.me, ball, field)
+        if not inside:
+            return False
+    else:
+        trip.x, trip.y = cover_place(ball, field, _STAND_OUT)
+        avoids = not is_at_home(trip.me, field)
+    trip.heading = heading_thereabouts(trip.me, (ball.x, ball.y), FACING)
+    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, -1.0, 1.0 if avoids else 0.0
+    return True
