@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Protocol
 
 from robobt.world.compiled import compilable
 from robobt.world.state import Frame
@@ -40,32 +41,38 @@ def rolling_after(
     return _GUESS * speed if rolling >= speed else rolling
 
 
+class Watch(Protocol):
+    """When the ball was seen last [s], how fast, and the speed at which it rolls [m/s]."""
+
+    time: float
+    speed: float
+    rolling: float
+
+
+@compilable
+def follow(watch: Watch, time: float, speed: float, slide: float, roll: float, share: float) -> float:
+    """Look at the ball's speed at a ``time``; return that below which it rolls [m/s]."""
+    elapsed = time - watch.time
+    if elapsed != 0.0:
+        watch.rolling = rolling_after(elapsed, watch.speed, watch.rolling, speed, slide, roll, share)
+        watch.time, watch.speed = time, speed
+    return min(watch.rolling, speed)
+
+
 class BallWatch:
-    """The ball's speed from frame to frame.
+    """The ball's speed from frame to frame, a :class:`Watch`.
 
     A frame holds no spin, so a sliding ball and a rolling one look the same in
     it; over two frames the sliding one loses its speed several times as fast.
     """
 
     def __init__(self) -> None:
-        self._time = -inf
-        self._speed = 0.0
-        self._rolling = 0.0
+        self.time = -inf
+        self.speed = 0.0
+        self.rolling = 0.0
 
     def rolling_speed(self, frame: Frame) -> float:
         """Return the speed [m/s] below which the ball rolls: its own when it already rolls."""
-        model, speed = frame.ball_model, frame.ball.speed
-        elapsed = frame.time - self._time
-        if elapsed == 0.0:
-            return min(self._rolling, speed)
-        self._rolling = rolling_after(
-            elapsed,
-            self._speed,
-            self._rolling,
-            speed,
-            model.slide_deceleration,
-            model.roll_deceleration,
-            model.switch_share,
-        )
-        self._time, self._speed = frame.time, speed
-        return min(self._rolling, speed)
+        model = frame.ball_model
+        slide, roll, share = model.slide_deceleration, model.roll_deceleration, model.switch_share
+        return follow(self, frame.time, frame.ball.speed, slide, roll, share)

@@ -33,7 +33,7 @@ _IN_PLAY = 1.3
 _SLOWER = 0.4
 """A robot that is so much slower than the opponent that comes at it is not at fault [m/s]."""
 
-_BRAKES = 0.7
+BRAKES = 0.7
 """Share of its braking that a robot uses for it in play."""
 
 
@@ -51,7 +51,7 @@ def avoid_crash(frame: Frame, me: RobotState, order: RobotCommand) -> RobotComma
     if frame.game.in_play and (order.vx != 0.0 or order.vy != 0.0):
         velocity = float(order.vx), float(order.vy)
         theirs = movers_of(frame)[len(frame.own) :]
-        order.vx, order.vy = _slowed(robot_of(me), velocity, theirs, _BRAKES * me.limits.braking)
+        order.vx, order.vy = _slowed(robot_of(me), velocity, theirs, BRAKES * me.limits.braking)
     return order
 
 

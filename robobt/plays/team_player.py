@@ -43,6 +43,12 @@ from robobt.tree import Behaviour, Inverter, Sequence
 PASS_TOLERANCE = 0.06
 """Angle by which a pass may be off [rad]."""
 
+CARRIED = 0.9
+"""It lets go of a ball carried so far [m]."""
+
+CARRYING, KEEP_WAY = 1.5, 0.25
+"""How fast it carries the ball [m/s], and for how long it keeps to a way where another turns up [s]."""
+
 SURE = 0.5
 """Least chance with which a pass has to arrive at a restart, where the ball is safe."""
 
@@ -128,7 +134,10 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),
         "carry": when(
-            "carry", HasBall(), BestFieldPosition(), DribbleTo(max_speed=1.5, max_distance=0.6, keep=0.25)
+            "carry",
+            HasBall(),
+            BestFieldPosition(),
+            DribbleTo(max_speed=CARRYING, max_distance=0.6, keep=KEEP_WAY),
         ),
         "get": when("get the ball", GoToBall(), PickUpBall()),
     }
@@ -143,7 +152,7 @@ def play_on(model: str) -> Behaviour:
 
 def let_go() -> Behaviour:
     """Leave a ball that has been carried as far as is allowed."""
-    return when("let go", CarriedFar(limit=0.9), LetGo())
+    return when("let go", CarriedFar(limit=CARRIED), LetGo())
 
 
 def kick() -> KickToTarget:

@@ -3,41 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, hypot, inf, pi
+from math import hypot, inf, pi
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.at_the_ball import FRESH, MEMORY, play_the_ball, with_the_ball
+from robobt.learning.opponents.at_the_ball import FRESH, MEMORY, Attack, play_the_ball, with_the_ball
 from robobt.motion.arrival import meetings
-from robobt.motion.ball_watch import rolling_after
+from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.path_planner import travel_law
-from robobt.motion.pilot import roughly
 from robobt.motion.scene import BALL_GAP, scene_of, trip_of
-from robobt.skills.defence.wall import GAP, wall_place
+from robobt.skills.base import heading_thereabouts
+from robobt.skills.defence.wall import wall_place
 from robobt.skills.tactics.attacker import NOBODY, choose_attacker, may_be_attacked
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, AppliedTactics, TacticsSettings, applied
+from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.world.ball_model import DEFAULT_BALL
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
-from robobt.world.records import (
-    LIMITS,
-    MOVER_SIZE,
-    ROBOT_SIZE,
-    SCENE,
-    TRIP,
-    Limits,
-    Mover,
-    Scene,
-    Trip,
-    limits_of,
-    mover_records,
-)
+from robobt.world.records import MOVER_SIZE, ROBOT_SIZE, limits_of, mover_records
 from robobt.world.rules import before_mouth
-from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
+from robobt.world.state import BallState, Frame, RobotState
 
 CHALLENGE = "challenge"
 """The role of a field player that does what ``team_player`` does in open play.
@@ -47,12 +36,23 @@ Of a team's challengers the one that has the ball soonest goes for it, by the sa
 defence area. Nobody marks, supports, passes or shoots. The play's own speed is a ``player_speed`` of 3 m/s.
 """
 
-_ATTACKER, _SINCE = range(2)
-_SLIDE, _ROLL, _SHARE = (
-    DEFAULT_BALL.slide_deceleration,
-    DEFAULT_BALL.roll_deceleration,
-    DEFAULT_BALL.switch_share,
-)
+
+class _Side(Attack, Protocol):
+    """A team of every arena, as it sees the field."""
+
+    field: FieldGeometry
+
+
+class _Plan(Protocol):
+    """Which of a team goes for the ball, a row of it, and since when [s]."""
+
+    attacker: float
+    since: float
+
+
+_ON_SIDE, _PLAN, _WATCH = record_dtype(_Side), record_dtype(_Plan), record_dtype(Watch)
+_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
+_SHARE = DEFAULT_BALL.switch_share
 
 
 class Challengers:
@@ -85,8 +85,7 @@ class Challengers:
         self.any = bool(self._who.any())
         top = limits.max_speed if speed is None else min(speed, limits.max_speed)
         given = limits if top == limits.max_speed else limits.model_copy(update={"max_speed": top})
-        self._own, self._given = limits_of(limits), limits_of(given)
-        self._carrying = with_the_ball(limits)
+        driving = (limits_of(limits), limits_of(given), with_the_ball(limits))
         self._tactics = applied(tactics, field, DEFAULT_BALL)
         # Each team sees its own robots first, numbered from 0, in open play.
         self._sides: list[tuple[float, int, NDArray[np.int64], FloatArray]] = []
@@ -98,14 +97,14 @@ class Challengers:
             frame = Frame(0.0, field, BallState(0.0, 0.0), own, (), Team.BLUE, period)
             others = [k for k in range(count) if not first <= k < last]
             rows = np.array([*range(first, last), *others], dtype=np.int64)
-            self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, scene_of(frame)))
+            parts = (trip_of(own[0], (0.0, 0.0)), scene_of(frame), *driving, self._tactics, numbers_of(field))
+            self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, np.concatenate(parts)))
             # Whoever asks first of all is alone, and goes.
             self._begin.append([float(self._who[first:last].argmax()), 0.0])
-        self._trip = trip_of(RobotState(0, 0.0, 0.0), (0.0, 0.0))
         self._period = period
         self._ticks = np.zeros(n)
-        self._memory = np.empty((n, count, MEMORY))
-        self._plans = np.empty((n, len(self._sides), 2))
+        self._memory = np.empty((n, count, len(FRESH)))
+        self._plans = np.empty((len(self._sides), n, 2))
         self._watch = np.empty((n, 3))
         self.restart(np.arange(n))
 
@@ -113,69 +112,56 @@ class Challengers:
         """Forget what was seen in the arenas ``which``."""
         self._ticks[which] = 0.0
         self._memory[which] = FRESH
-        self._plans[which] = np.reshape(self._begin, (-1, 2))
+        self._plans[:, which] = np.reshape(self._begin, (-1, 1, 2))
         self._watch[which] = [-inf, 0.0, 0.0]
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
     ) -> None:
         """Decide one control tick: fill these robots' commands (n, R, >= 6), given the arenas' state."""
-        times = self._ticks * self._period
-        for side, (sign, mates, rows, scene) in enumerate(self._sides):
-            _decide(
-                self._who,
-                rows,
-                mates,
-                sign,
-                scene,
-                self._trip,
-                self._own,
-                self._given,
-                self._carrying,
-                times,
-                robots,
-                balls,
-                contact,
-                self._plans[:, side],
-                self._watch,
-                self._memory,
-                commands,
-                self._tactics,
-            )
+        times, arenas = self._ticks * self._period, (robots, balls, contact)
+        for side, (sign, mates, rows, seen_as) in enumerate(self._sides):
+            minds = (self._plans[side], self._watch, self._memory)
+            who = (self._who, rows, mates, sign)
+            _decide(who, seen_as, self._tactics, times, arenas, minds, commands)
         self._ticks += 1.0
 
 
 @compiled
 def _decide(
-    who: NDArray[np.bool_],
-    rows: NDArray[np.int64],
-    mates: int,
-    sign: float,
-    scene_: FloatArray,
-    trip_: FloatArray,
-    own_: FloatArray,
-    given_: FloatArray,
-    carrying: FloatArray,
+    team: tuple[NDArray[np.bool_], NDArray[np.int64], int, float],
+    side_: FloatArray,
+    tactics: FloatArray,
     times: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    contact: NDArray[np.bool_],
-    plans: FloatArray,
-    watches: FloatArray,
-    memory: FloatArray,
+    arenas: tuple[FloatArray, FloatArray, NDArray[np.bool_]],
+    minds: tuple[FloatArray, FloatArray, FloatArray],
     commands: FloatArray,
-    numbers: FloatArray,
 ) -> None:
-    scene: Scene = scene_.view(SCENE)[0]
-    trip: Trip = trip_.view(TRIP)[0]
-    own: Limits = own_.view(LIMITS)[0]
-    given: Limits = given_.view(LIMITS)[0]
-    tactics: AppliedTactics = numbers.view(TACTICS)[0]
+    """Decide for the challengers of one team.
+
+    Args:
+        team: which robots are challengers; the robots' indices as the team sees them, its own first; how many
+            those are; the sign of x in which it attacks.
+        side_: :class:`_Side` of the team.
+        tactics: numbers of its tactics.
+        times: now, in each arena [s].
+        arenas: states of robots and balls, and who has contact.
+        minds: the team's plans, what was seen of the balls, and the robots' memories; changed.
+        commands: to be filled.
+    """
+    (who, rows, mates, sign), (robots, balls, contact), (plans, watches, memory) = team, arenas, minds
+    side: _Side = side_.view(_ON_SIDE)[0]
+    own, trip, ball = side.own, side.trip, side.scene.ball
     count, candidates = len(rows), np.empty((mates, 3))
     seen, movers, has = np.empty((count, 6)), np.empty((count, MOVER_SIZE)), np.empty(count, dtype=np.bool_)
     every = mover_records(movers)
     for i in range(len(balls)):
-        ball = sign * balls[i]
+        ball.x, ball.y, ball.vx, ball.vy = (
+            sign * balls[i, 0],
+            sign * balls[i, 1],
+            sign * balls[i, 2],
+            sign * balls[i, 3],
+        )
         disputed = False
         for row in range(count):
             robot = robots[i, rows[row]]
@@ -186,101 +172,50 @@ def _decide(
             mover.x, mover.y, mover.vx, mover.vy = seen[row, 0], seen[row, 1], seen[row, 3], seen[row, 4]
             mover.max_speed, mover.acceleration, mover.braking = own.max_speed, own.acceleration, own.braking
             mover.number = row
-            dx, dy = ball[0] - seen[row, 0], ball[1] - seen[row, 1]
+            dx, dy = ball.x - mover.x, ball.y - mover.y
             has[row] = contact[i, rows[row]] or before_mouth(dx, dy, seen[row, 2])
             disputed = disputed or (row >= mates and has[row])
-        scene.ball.x, scene.ball.y, scene.ball.vx, scene.ball.vy = ball[0], ball[1], ball[2], ball[3]
-        rolling = _rolling(times[i], ball, watches[i])
-        first = _who_goes(who, rows, candidates, movers, has, ball, rolling, times[i], plans[i], numbers)
+        time, speed = times[i], hypot(ball.vx, ball.vy)
+        rolling = follow(watches.view(_WATCH)[i, 0], time, speed, _SLIDE, _ROLL, _SHARE)
+        first = -1
+        plan: _Plan = plans[i].view(_PLAN)[0]
+        if may_be_attacked(ball.x, ball.y, tactics):
+            there = np.array([ball.x, ball.y, ball.vx, ball.vy])
+            length, width = side.scene.half_length, side.scene.half_width
+            met = meetings(movers[:mates], there, rolling, _SLIDE, _ROLL, length, width)
+            for row in range(mates):
+                candidates[row, 0] = met[row, 0] if who[rows[row]] else inf
+                candidates[row, 1], candidates[row, 2] = every[row].x, has[row]
+            before, since = int(plan.attacker), time - plan.since
+            first = choose_attacker(candidates, ball.x, speed, NOBODY, before, since, False, tactics)
+        if first != plan.attacker:
+            plan.attacker, plan.since = first, time
         waiting = place = 0
         for row in range(mates):
             waiting += who[rows[row]] and row != first
         for row in range(mates):
             if not who[rows[row]]:
                 continue
-            trip_[:ROBOT_SIZE], trip.number = seen[row], row
+            side_[:ROBOT_SIZE], trip.number = seen[row], row
             command = commands[i, rows[row]]
             if row == first:
-                play_the_ball(
-                    trip,
-                    scene,
-                    movers,
-                    own,
-                    given,
-                    carrying,
-                    ball,
-                    rolling,
-                    has[row],
-                    disputed,
-                    times[i],
-                    memory[i, rows[row]],
-                    command,
-                )
+                mind = memory[i, rows[row]].view(MEMORY)[0]
+                play_the_ball(side, movers, rolling, has[row], disputed, time, mind, command)
             else:
-                _wall(trip, scene, mover_records(movers), own, given, ball, place, waiting, command, tactics)
+                _wall(side, movers, place, waiting, command)
                 place += 1
 
 
 @compiled
-def _rolling(time: float, ball: FloatArray, watch: FloatArray) -> float:
-    """Follow the ball's speed; return that from which on it rolls [m/s]."""
-    speed = hypot(ball[2], ball[3])
-    if time > watch[0]:
-        watch[2] = rolling_after(time - watch[0], watch[1], watch[2], speed, _SLIDE, _ROLL, _SHARE)
-        watch[0], watch[1] = time, speed
-    return min(float(watch[2]), speed)
-
-
-@compiled
-def _who_goes(
-    who: NDArray[np.bool_],
-    rows: NDArray[np.int64],
-    candidates: FloatArray,
-    movers: FloatArray,
-    has: NDArray[np.bool_],
-    ball: FloatArray,
-    rolling: float,
-    time: float,
-    plan: FloatArray,
-    numbers: FloatArray,
-) -> int:
-    """Return the row of who goes for the ball, -1 for nobody, as the plan of the play's team has it."""
-    tactics: AppliedTactics = numbers.view(TACTICS)[0]
-    before, best, mates = int(plan[_ATTACKER]), NOBODY, len(candidates)
-    if may_be_attacked(ball[0], ball[1], numbers):
-        met = meetings(movers[:mates], ball, rolling, _SLIDE, _ROLL, tactics.half_length, tactics.half_width)
-        for row in range(mates):
-            candidates[row, 0] = met[row, 0] if who[rows[row]] else inf
-            candidates[row, 1], candidates[row, 2] = movers[row, 0], has[row]
-        speed, since = hypot(ball[2], ball[3]), time - plan[_SINCE]
-        best = choose_attacker(candidates, ball[0], speed, NOBODY, before, since, False, numbers)
-    if best != before:
-        plan[_ATTACKER], plan[_SINCE] = best, time
-    return best
-
-
-@compiled
-def _wall(
-    trip: Trip,
-    scene: Scene,
-    movers: Sequence[Mover],
-    own: Limits,
-    given: Limits,
-    ball: FloatArray,
-    place: int,
-    size: int,
-    command: FloatArray,
-    tactics: AppliedTactics,
-) -> None:
+def _wall(side: _Side, movers: FloatArray, place: int, size: int, command: FloatArray) -> None:
     """Drive to a place of the wall by the planned way, facing the ball."""
-    depth = scene.area_depth + GAP
-    half = min(scene.area_width / 2 + GAP, scene.half_width)
-    x, y = ball[0] + tactics.wall_lead * ball[2], ball[1] + tactics.wall_lead * ball[3]
-    trip.x, trip.y = wall_place(-scene.half_length, depth, half, x, y, place, size)
-    dx, dy = ball[0] - trip.me.x, ball[1] - trip.me.y
-    slack = tactics.facing + atan2(ROBOT_RADIUS, hypot(dx, dy))
-    trip.heading = roughly(trip.me.heading, atan2(dy, dx), slack)
+    trip, ball, tactics = side.trip, side.scene.ball, side.tactics
+    x, y = ball.x + tactics.wall_lead * ball.vx, ball.y + tactics.wall_lead * ball.vy
+    trip.x, trip.y = wall_place(side.field, x, y, place, size)
+    trip.heading = heading_thereabouts(trip.me, (ball.x, ball.y), tactics.facing)
     trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0
     command[:] = 0.0
-    other = given.max_speed != own.max_speed
-    command[0], command[1], command[2] = travel_law(trip, scene, movers, own, given, other, True)
+    other = side.given.max_speed != side.own.max_speed
+    command[0], command[1], command[2] = travel_law(
+        trip, side.scene, mover_records(movers), side.own, side.given, other, True
+    )

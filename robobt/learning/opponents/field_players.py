@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robobt.plays.baselines.agreement import MARK_FROM
 from robobt.plays.baselines.mark_opponent import MarkOpponent
-from robobt.skills.defence.wall import GAP, wall_place
+from robobt.skills.defence.wall import wall_place
 from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
@@ -249,9 +249,7 @@ def _walled(
         if roles[r] == _WALL:
             rank += r < me
             size += 1
-    depth = field.defense_depth + GAP
-    half = min(field.defense_width / 2 + GAP, field.width / 2)
-    x, y = wall_place(-field.length / 2, depth, half, sign * ball[0], sign * ball[1], rank, size)
+    x, y = wall_place(field, sign * ball[0], sign * ball[1], rank, size)
     return sign * x, sign * y
 
 

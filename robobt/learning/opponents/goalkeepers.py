@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.motion.ball_watch import rolling_after
+from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law
 from robobt.motion.scene import BALL_GAP, scene_of, trip_of
@@ -27,7 +27,7 @@ from robobt.skills.defence.cover_near_post import CoverNearPost, near_post_place
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing, crossing
 from robobt.world.ball_model import DEFAULT_BALL
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, direction, wrap_angle
@@ -36,8 +36,6 @@ from robobt.world.records import (
     LIMITS,
     MOVER_SIZE,
     ROBOT_SIZE,
-    SCENE,
-    TRIP,
     Limits,
     Robot,
     Scene,
@@ -89,14 +87,6 @@ class _Setting(Protocol):
     field: FieldGeometry
 
 
-class _Watch(Protocol):
-    """When the ball was seen [s], how fast, and from which speed on it rolls [m/s]."""
-
-    time: float
-    speed: float
-    rolling: float
-
-
 class _Memory(Protocol):
     """Of one goalkeeper.
 
@@ -106,15 +96,13 @@ class _Memory(Protocol):
         slowed: whether it drives by other limits than its own.
     """
 
-    aim: _Watch
-    shot: _Watch
+    aim: Watch
+    shot: Watch
     fetching: float
     slowed: float
 
 
-_SETTING = record_dtype(_Setting, trip=TRIP, scene=SCENE, own=LIMITS, field=numbers_dtype(FieldGeometry))
-_WATCH = record_dtype(_Watch)
-_MEMORY = record_dtype(_Memory, aim=_WATCH, shot=_WATCH)
+_SETTING, _MEMORY = record_dtype(_Setting), record_dtype(_Memory)
 
 
 class Goalkeepers:
@@ -282,9 +270,8 @@ def _decide(
             target, final_speed = (ROBOT_RADIUS - scene.half_length, y), 0.0
             place = blocking_place(trip.me, ball, target, 0.0)
             if style.dives:
-                rolling = _rolling(
-                    memory.aim if case == AIM else memory.shot, times[i], hypot(ball.vx, ball.vy)
-                )
+                watch, speed = memory.aim if case == AIM else memory.shot, hypot(ball.vx, ball.vy)
+                rolling = follow(watch, times[i], speed, _SLIDE, _ROLL, _SHARE)
                 pace = (given.max_speed, given.acceleration, given.braking)
                 final_speed = dive_speed(trip.me, ball, place, rolling, pace, _SLIDE, _ROLL)
                 command[5] = 1.0
@@ -355,14 +342,6 @@ def _case(
     if lies_in_area(ball, field) and (speed <= _REST or carries):
         return CLEAR, 0.0
     return (COVER if ball.x > style.before_goal - field.length / 2 else HOME), 0.0
-
-
-@compiled
-def _rolling(watch: _Watch, time: float, speed: float) -> float:
-    """Follow the ball's speed; return that from which on it rolls [m/s]."""
-    watch.rolling = rolling_after(time - watch.time, watch.speed, watch.rolling, speed, _SLIDE, _ROLL, _SHARE)
-    watch.time, watch.speed = time, speed
-    return min(watch.rolling, speed)
 
 
 @compiled

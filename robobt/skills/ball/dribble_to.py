@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import cos, hypot, inf
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
@@ -10,7 +10,9 @@ from robobt.motion.path_planner import next_waypoint
 from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, direction, distance, wrap_angle
+from robobt.world.records import Robot
 from robobt.world.rules import has_ball
 
 _GRACE = 0.15
@@ -19,6 +21,14 @@ _RULE_MARGIN = 0.1
 """How far before the dribbling limit the skill gives up, to have let go in time [m]."""
 _OTHER_WAY = 0.6
 """A way that differs by more is another one [rad]."""
+
+
+@dataclass(slots=True)
+class Course:
+    """Which way a robot carries the ball [rad], and since when [s]."""
+
+    way: float = 0.0
+    since: float = -inf
 
 
 @skill
@@ -53,8 +63,7 @@ class DribbleTo(Skill):
     keep: float = 0.0
     _taken_at: Point | None = field(default=None, init=False)
     _last_held: float = field(default=0.0, init=False)
-    _way: float = field(default=0.0, init=False)
-    _way_since: float = field(default=-inf, init=False)
+    _course: Course = field(default_factory=Course, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -66,7 +75,7 @@ class DribbleTo(Skill):
         """Take the ball's present place as the start of the carry."""
         self._taken_at = None
         self._last_held = self.frame.time
-        self._way_since = -inf
+        self._course.since = -inf
 
     def on_running(self) -> Status:
         """Carry for one tick."""
@@ -94,34 +103,53 @@ class DribbleTo(Skill):
     def _carry(self, target: Point) -> None:
         frame, me, limits = self.frame, self.me, self._limits
         point, speed_there = next_waypoint(frame, me, target)
-        heading = self._steady(direction(me.position, point))
-        dx, dy = point[0] - me.x, point[1] - me.y
-        gap = hypot(dx, dy)
-        vx = vy = 0.0
-        if gap > 0.0:
-            ux, uy = dx / gap, dy / gap
-            acceleration = limits.acceleration
-            speed_there = min(speed_there, limits.max_speed)
-            speed = approach_speed(
-                gap + speed_there * speed_there / (2.0 * acceleration),
-                ux * me.vx + uy * me.vy,
-                limits.max_speed,
-                acceleration,
-                acceleration,
-                frame.period + 2.0 * me.limits.reaction,
-            )
-            # Only a ball that is pushed stays: the robot turns first and drives as it faces the way.
-            speed *= max(0.0, cos(wrap_angle(heading - me.heading))) ** 2
-            vx, vy = ux * speed, uy * speed
+        heading = steady(self._course, frame.time, direction(me.position, point), self.keep)
+        pace = limits.max_speed, limits.acceleration
+        stands = frame.period + 2.0 * me.limits.reaction
+        vx, vy = carrying_velocity(me, point, speed_there, heading, pace, stands)
         omega = turn_rate(me, heading, limits, frame.period)
         self.store.command = command(me, vx, vy, omega, limits, frame.period)
         self.store.command.dribbler = True
 
-    def _steady(self, way: float) -> float:
-        """Return the direction to face [rad]: ``way``, or the last one before a change has lasted."""
-        now = self.frame.time
-        changed = abs(wrap_angle(way - self._way)) > _OTHER_WAY
-        if changed and 0.0 <= now - self._way_since < self.keep:
-            return self._way
-        self._way, self._way_since = way, now
-        return way
+
+@compilable
+def steady(course: Course, now: float, way: float, keep: float) -> float:
+    """Return the direction to face [rad]: ``way``, or the last one until ``keep`` has passed [s]."""
+    if abs(wrap_angle(way - course.way)) > _OTHER_WAY and 0.0 <= now - course.since < keep:
+        return course.way
+    course.way, course.since = way, now
+    return way
+
+
+@compilable
+def carrying_velocity(
+    me: Robot, point: Point, speed_there: float, heading: float, pace: Point, stands: float
+) -> Point:
+    """Return the velocity with which the ball is carried to the next ``point`` of a way [m/s].
+
+    Args:
+        me: the robot, with the ball.
+        point: where to [m].
+        speed_there: speed allowed there [m/s].
+        heading: which way it is to face [rad].
+        pace: top speed and acceleration with the ball [m/s, m/s^2].
+        stands: for how long a command stands [s].
+    """
+    top, acceleration = pace
+    dx, dy = point[0] - me.x, point[1] - me.y
+    gap = hypot(dx, dy)
+    if gap <= 0.0:
+        return 0.0, 0.0
+    ux, uy = dx / gap, dy / gap
+    speed_there = min(speed_there, top)
+    speed = approach_speed(
+        gap + speed_there * speed_there / (2.0 * acceleration),
+        ux * me.vx + uy * me.vy,
+        top,
+        acceleration,
+        acceleration,
+        stands,
+    )
+    # Only a ball that is pushed stays: the robot turns first and drives as it faces the way.
+    speed *= max(0.0, cos(wrap_angle(heading - me.heading))) ** 2
+    return ux * speed, uy * speed

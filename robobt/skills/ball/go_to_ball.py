@@ -12,24 +12,26 @@ from pydantic import Field
 from robobt.config.validation import Settings
 from robobt.motion.dribbling import carry
 from robobt.motion.path_planner import allowed_target, travel
-from robobt.motion.pilot import roughly, travel_time
+from robobt.motion.pilot import roughly, stop_time
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
 from robobt.skills.ball.pick_up_ball import LOST_DISTANCE
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.skills.store import Store
 from robobt.tree import Registry, Status
+from robobt.world.ball_model import way_in
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.records import Ball, Robot
 from robobt.world.rules import has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
 HANDOVER_DISTANCE = 0.2
 """Distance to the ball's centre at which the approach ends [m]. Source: the paper's Go-To-Ball."""
 
-_FACING = radians(30.0)
+FACING_BALL = radians(30.0)
 _FACING_STILL = radians(60.0)
 _CLOSE = 0.16
 """How far from the ball's centre the approach aims [m]: the planner's ball detour is just narrower."""
@@ -41,6 +43,8 @@ _LOOKING = radians(10.0)
 _SURE = 0.8
 """Share of its braking that is relied on."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+_RESTS = 0.05
+"""A slower ball is met where it is [m/s]."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -128,18 +132,15 @@ class GoToBall(DrivingSkill):
         return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
 
     def _near(self, me: RobotState, ball: BallState, facing: float | None) -> bool:
-        within, off = HANDOVER_DISTANCE, _FACING
+        within, off = HANDOVER_DISTANCE, FACING_BALL
         if self._learned is not None:
             within, off = self._learned.reached
+        if not is_at_ball(me, ball, self._handed_over, within, off):
+            return False
         if self._handed_over:
-            within, off = LOST_DISTANCE, max(off, _FACING_STILL)
-        dx, dy = ball.x - me.x, ball.y - me.y
-        bearing = atan2(dy, dx)
-        return (
-            hypot(dx, dy) <= within
-            and abs(wrap_angle(bearing - me.heading)) <= off
-            and (facing is None or abs(wrap_angle(bearing - facing)) <= off)
-        )
+            off = max(off, _FACING_STILL)
+        bearing = atan2(ball.y - me.y, ball.x - me.x)
+        return facing is None or abs(wrap_angle(bearing - facing)) <= off
 
     def _facing(self, meeting: Point) -> float | None:
         """Return the direction in which to come to the ball; None for any, as to a ball at a wall."""
@@ -167,12 +168,9 @@ class Geometric(Settings):
         frame, me = store.frame, store.me
         meeting, facing = approach.meeting, approach.facing
         bearing = direction(me.position, meeting)
-        heading = direction(me.position, frame.ball.position)
         round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
-        far = distance(me.position, meeting) >= _TURN_DISTANCE
-        if far:
-            heading = roughly(me.heading, heading, _LOOKING)
-        elif facing is not None:
+        heading, far = approach_heading(me, frame.ball, meeting)
+        if not far and facing is not None:
             heading = facing
         return travel(
             frame,
@@ -254,16 +252,58 @@ def beside(ball: Point, facing: float) -> Point:
 
 def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
     """Predict where a rolling ball will be when the robot gets there [m]."""
-    ball = frame.ball
-    speed = ball.speed
-    if speed < 0.05:
-        return ball.position
+    model, pace = frame.ball_model, (limits.max_speed, limits.acceleration, limits.braking)
+    return meeting_law(me, frame.ball, pace, model.slide_deceleration, model.roll_deceleration)
+
+
+@compilable
+def meeting_law(me: Robot, ball: Ball, pace: tuple[float, float, float], slide: float, roll: float) -> Point:
+    """Return :func:`meeting_point`.
+
+    Args:
+        me: the robot.
+        ball: the ball, which rolls.
+        pace: the robot's top speed, acceleration and braking [m/s, m/s^2, m/s^2].
+        slide: deceleration of the ball while it slides [m/s^2].
+        roll: the same while it rolls [m/s^2].
+    """
+    top, acceleration, braking = pace
+    x, y, speed = ball.x, ball.y, hypot(ball.vx, ball.vy)
+    if speed < _RESTS:
+        return x, y
     ux, uy = ball.vx / speed, ball.vy / speed
-    x, y = ball.position
     for _ in range(2):
         dx, dy = x - me.x, y - me.y
         gap = hypot(dx, dy)
         towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
-        way = frame.ball_model.way_in(travel_time(max(0.0, gap - _TOUCHING), towards, limits), speed)
+        time = stop_time(max(0.0, gap - _TOUCHING), towards, acceleration, braking, top)
+        way = way_in(time, speed, speed, slide, roll)
         x, y = ball.x + ux * way, ball.y + uy * way
-    return (x, y)
+    return x, y
+
+
+@compilable
+def is_at_ball(me: Robot, ball: Ball, handed_over: bool, within: float, off: float) -> bool:
+    """Return whether the approach has ended.
+
+    Args:
+        me: the robot.
+        ball: the ball.
+        handed_over: whether it had ended in the tick before.
+        within: distance at which it ends [m].
+        off: angle between heading and ball up to which it does [rad].
+    """
+    if handed_over:
+        within, off = LOST_DISTANCE, max(off, _FACING_STILL)
+    dx, dy = ball.x - me.x, ball.y - me.y
+    return hypot(dx, dy) <= within and abs(wrap_angle(atan2(dy, dx) - me.heading)) <= off
+
+
+@compilable
+def approach_heading(me: Robot, ball: Ball, meeting: Point) -> tuple[float, bool]:
+    """Return where to look on the way to the ``meeting`` [rad], and whether that is still far."""
+    here = (me.x, me.y)
+    heading = direction(here, (ball.x, ball.y))
+    if distance(here, meeting) < _TURN_DISTANCE:
+        return heading, False
+    return roughly(me.heading, heading, _LOOKING), True

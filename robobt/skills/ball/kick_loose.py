@@ -2,22 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import cos, inf
 
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
+from robobt.world.compiled import compilable
 from robobt.world.rules import has_ball
 
 _PAUSE = 0.1
 """A hold that is interrupted for longer begins anew [s]."""
 
-_SPEED = 2.0
+SPEED = 2.0
 """Of the kick: the ball comes out to the side and is to stay in the field [m/s]."""
 
-_FOLLOW = 0.3
+FOLLOW = 0.3
 """How fast the robot goes after the ball [m/s]."""
+
+
+@dataclass(slots=True)
+class Hold:
+    """Since when, and when last, an opponent held the ball too [s]."""
+
+    since: float = -inf
+    seen: float = -inf
+
+
+@compilable
+def has_lasted(hold: Hold, now: float, heading: float, patience: float) -> bool:
+    """Note that an opponent holds the ball too; return whether it has done so long enough to be kicked loose.
+
+    ``heading`` is the robot's [rad], ``patience`` as of :class:`KickLoose`.
+    """
+    if not 0.0 <= now - hold.seen < _PAUSE:
+        hold.since = now
+    hold.seen = now
+    return now - hold.since >= patience * (1.0 if cos(heading) > 0.0 else 2.0)
 
 
 @skill
@@ -36,8 +57,7 @@ class KickLoose(Skill):
     """
 
     patience: float = 0.6
-    _since: float = field(default=-inf, init=False)
-    _seen: float = field(default=-inf, init=False)
+    _hold: Hold = field(default_factory=Hold, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -49,11 +69,8 @@ class KickLoose(Skill):
         frame, me, ball, now = self.frame, self.me, self.ball, self.frame.time
         if not has_ball(me, ball) or not any(has_ball(other, ball) for other in frame.opponents):
             return self.fail("no opponent holds the ball too")
-        if not 0.0 <= now - self._seen < _PAUSE:
-            self._since = now
-        self._seen = now
-        if now - self._since < self.patience * (1.0 if cos(me.heading) > 0.0 else 2.0):
+        if not has_lasted(self._hold, now, me.heading, self.patience):
             return self.fail("it may get away with the ball yet")
         command = self.store.command
-        command.vx, command.kick_speed, command.kick_trigger = _FOLLOW, _SPEED, KickTrigger.ON_CONTACT
+        command.vx, command.kick_speed, command.kick_trigger = FOLLOW, SPEED, KickTrigger.ON_CONTACT
         return self.run("kicking it loose")

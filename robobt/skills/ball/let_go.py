@@ -7,6 +7,8 @@ from math import cos, sin
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
+from robobt.world.compiled import compilable
+from robobt.world.records import Ball, Robot
 
 FASTER = 1.0
 """How much faster than along the heading so far the ball leaves [m/s]."""
@@ -23,8 +25,15 @@ class LetGo(Skill):
 
     def on_running(self) -> Status:
         """Kick if the ball is before the kicker."""
-        ball, heading, command = self.ball, self.me.heading, self.store.command
-        if ball.x > 0.0 or cos(heading) > 0.0:
-            along = cos(heading) * ball.vx + sin(heading) * ball.vy
-            command.kick_speed, command.kick_trigger = max(0.0, along) + FASTER, KickTrigger.NOW
+        speed, command = push_speed(self.me, self.ball), self.store.command
+        if speed > 0.0:
+            command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
         return self.run("letting go")
+
+
+@compilable
+def push_speed(me: Robot, ball: Ball) -> float:
+    """Return the speed with which the kicker pushes the ball off [m/s]; 0 where the robot only brakes."""
+    if ball.x <= 0.0 and cos(me.heading) <= 0.0:
+        return 0.0
+    return max(0.0, cos(me.heading) * ball.vx + sin(me.heading) * ball.vy) + FASTER

@@ -10,7 +10,9 @@ from robobt.motion.pilot import command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
+from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
+from robobt.world.records import Ball, Robot
 from robobt.world.state import BallState, Frame, RobotState
 
 LOST_DISTANCE = 0.3
@@ -31,14 +33,20 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
     """
     if me.ball_contact:
         return settle(me, period)
-    bearing = atan2(ball.y - me.y, ball.x - me.x)
-    aside = abs(wrap_angle(bearing - me.heading))
-    closing = speed * cos(min(2.0 * aside, 0.5 * pi))
+    bearing, vx, vy = creeping(me, ball, speed)
     omega = turn_rate(me, bearing, me.limits, period)
-    vx, vy = ball.vx + closing * cos(bearing), ball.vy + closing * sin(bearing)
     chase = command(me, vx, vy, omega, me.limits, period)
     chase.dribbler = True
     return chase
+
+
+@compilable
+def creeping(me: Robot, ball: Ball, speed: float) -> tuple[float, float, float]:
+    """Return the direction to the ball [rad] and the velocity of :func:`grab` [m/s]."""
+    bearing = atan2(ball.y - me.y, ball.x - me.x)
+    aside = abs(wrap_angle(bearing - me.heading))
+    closing = speed * cos(min(2.0 * aside, 0.5 * pi))
+    return bearing, ball.vx + closing * cos(bearing), ball.vy + closing * sin(bearing)
 
 
 class Grip:

@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
 from robobt.world.rules import has_ball
+
+
+@dataclass(slots=True)
+class Settling:
+    """When the robot had the ball last [s], and whether that was slow since it has it."""
+
+    had: float = -10.0
+    settled: float = 0.0
+
+
+@compilable
+def is_settled(settling: Settling, now: float, speed: float, slow: float, pause: float) -> bool:
+    """Note that the robot has a ball of this ``speed`` [m/s]; return whether it may be turned with.
+
+    ``slow`` and ``pause`` are as of :class:`SettleBall`.
+    """
+    settled = (settling.settled > 0.0 and now - settling.had <= pause) or speed < slow
+    settling.had, settling.settled = now, 1.0 if settled else 0.0
+    return settled
 
 
 @skill
@@ -29,8 +49,7 @@ class SettleBall(Skill):
     slow: float = 0.6
     pause: float = 0.3
     share: float = 0.85
-    _settled: bool = field(default=False, init=False)
-    _had: float = field(default=-10.0, init=False)
+    _settling: Settling = field(default_factory=Settling, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -45,11 +64,7 @@ class SettleBall(Skill):
         frame, me, ball = self.frame, self.me, self.ball
         if not has_ball(me, ball):
             return self.fail("it does not have the ball")
-        if frame.time - self._had > self.pause:
-            self._settled = False
-        self._had = frame.time
-        self._settled = self._settled or ball.speed < self.slow
-        if self._settled:
+        if is_settled(self._settling, frame.time, ball.speed, self.slow, self.pause):
             return self.fail("the ball is settled")
         limits = dribbling_limits(max_acceleration=self.share * me.limits.hold_acceleration)
         self.store.command = turn_with_ball(me, me.heading, limits, frame.period)

@@ -7,7 +7,9 @@ from math import hypot, inf
 
 from robobt.skills.base import Condition, skill
 from robobt.tree import Status
+from robobt.world.compiled import compilable
 from robobt.world.geometry import Point
+from robobt.world.records import Ball
 from robobt.world.rules import has_ball, keeps_ball, touches
 from robobt.world.state import RobotId
 
@@ -49,7 +51,13 @@ class CarriedFar(Condition):
             if not (touches(self.me, ball) or has_ball(self.me, ball)):
                 return self.fail("it has no ball yet")
             self._start = ball.position
-        way = hypot(ball.x - self._start[0], ball.y - self._start[1]) + LETTING_GO * ball.speed
+        way = way_carried(ball, *self._start)
         if way < self.limit:
             return self.fail(f"{way:.2f} m")
         return self.succeed(f"{way:.2f} m")
+
+
+@compilable
+def way_carried(ball: Ball, x: float, y: float) -> float:
+    """Return how far from (x, y) the ball will have been carried when the robot has let it go [m]."""
+    return hypot(ball.x - x, ball.y - y) + LETTING_GO * hypot(ball.vx, ball.vy)

@@ -43,31 +43,17 @@ class Wall(Skill):
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
         frame = self.frame
-        edge = DefenseEdge(frame.field, GAP)
-        target = edge.wall_place(frame.ball.position, self.place, self.size)
+        target = wall_place(frame.field, *frame.ball.position, self.place, self.size)
         self.drive_to(target, frame.ball.position, avoid_ball=True, thereabouts=True)
         return self.run("in the wall")
 
 
-class DefenseEdge:
-    """The edge of the own defence area grown by ``gap``, as one way from left to right [m].
-
-    "Left" is +y. The way begins and ends on the goal line.
-    """
-
-    def __init__(self, field: FieldGeometry, gap: float) -> None:
-        self.line = -field.half_length
-        self.depth = field.defense_depth + gap
-        self.half = min(field.defense_width / 2 + gap, field.half_width)
-
-    def wall_place(self, ball: Point, place: int, size: int) -> Point:
-        """Return where one of a wall of ``size`` stands; places count from the left as they look out."""
-        return wall_place(self.line, self.depth, self.half, *ball, place, size)
-
-
 @compilable
-def edge_point(line: float, depth: float, half: float, way: float) -> Point:
-    """Return the point ``way`` metres along a :class:`DefenseEdge`, of which the first three are."""
+def _edge_point(line: float, depth: float, half: float, way: float) -> Point:
+    """Return the point ``way`` metres along the edge of the own defence area, from left (+y) to right [m].
+
+    The edge begins and ends on the goal line, at x = ``line``, ``half`` beside the middle, ``depth`` deep.
+    """
     if way < depth:
         return (line + way, half)
     if way < depth + 2.0 * half:
@@ -76,7 +62,7 @@ def edge_point(line: float, depth: float, half: float, way: float) -> Point:
 
 
 @compilable
-def edge_towards(line: float, depth: float, half: float, ball_x: float, ball_y: float) -> float:
+def _edge_towards(line: float, depth: float, half: float, ball_x: float, ball_y: float) -> float:
     """Return how far along the edge the line from the goal's centre to the ball leaves the area [m]."""
     dx, dy = ball_x - line, ball_y
     to_front = depth / dx if dx > 0.0 else inf
@@ -90,11 +76,11 @@ def edge_towards(line: float, depth: float, half: float, ball_x: float, ball_y: 
 
 
 @compilable
-def wall_place(
-    line: float, depth: float, half: float, ball_x: float, ball_y: float, place: int, size: int
-) -> Point:
-    """See :meth:`DefenseEdge.wall_place`, for compiled code."""
-    spread = 0.5 * (size - 1) * WIDTH
-    middle = edge_towards(line, depth, half, ball_x, ball_y)
+def wall_place(field: FieldGeometry, ball_x: float, ball_y: float, place: int, size: int) -> Point:
+    """Return where one of a wall of ``size`` stands [m]; places count from the left as they look out."""
+    depth = field.defense_depth + GAP
+    half = min(field.defense_width / 2 + GAP, field.width / 2)
+    spread, line = 0.5 * (size - 1) * WIDTH, -field.length / 2
+    middle = _edge_towards(line, depth, half, ball_x, ball_y)
     middle = min(2.0 * depth + 2.0 * half - spread, max(spread, middle))
-    return edge_point(line, depth, half, middle + (place - 0.5 * (size - 1)) * WIDTH)
+    return _edge_point(line, depth, half, middle + (place - 0.5 * (size - 1)) * WIDTH)

@@ -5,10 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-import numpy as np
-
 from robobt.skills.tactics.settings import TACTICS, AppliedTactics
-from robobt.world.compiled import FloatArray, compiled
+from robobt.world.compiled import FloatArray, compiled, record_dtype
 from robobt.world.rules import in_area
 
 NOBODY = -1
@@ -28,7 +26,7 @@ class Candidate(NamedTuple):
     has_ball: float
 
 
-CANDIDATE = np.dtype([(name, "f8") for name in Candidate._fields])
+CANDIDATE = record_dtype(Candidate)
 """The record of a :class:`Candidate`."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from math import hypot
 
-from robobt.skills.defence.wall import GAP, DefenseEdge
+from robobt.skills.defence.wall import wall_place
 from robobt.skills.tactics.settings import TacticsSettings
 from robobt.world.geometry import Point
 from robobt.world.rules import owner
@@ -17,8 +17,8 @@ def wall_places(frame: Frame, size: int, tactics: TacticsSettings) -> list[Point
     if size <= 0:
         return []
     ball, lead = frame.ball, tactics.wall_lead
-    edge, ahead = DefenseEdge(frame.field, GAP), (ball.x + lead * ball.vx, ball.y + lead * ball.vy)
-    return [edge.wall_place(ahead, place, size) for place in range(size)]
+    x, y = ball.x + lead * ball.vx, ball.y + lead * ball.vy
+    return [wall_place(frame.field, x, y, place, size) for place in range(size)]
 
 
 def threats(frame: Frame, tactics: TacticsSettings, marked: Collection[int] = ()) -> list[RobotState]:

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from robobt.learning.opponents.goalkeeper import Goalkeepers
 
 from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask, run_starts
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, kicked
-from robobt.learning.opponents.goalkeeper import Goalkeepers
 from robobt.learning.opponents.keepers import KINDS
 from robobt.models.actions import command_of
 from robobt.sim import SimWorld
