@@ -96,7 +96,7 @@ def file_formats() -> str:
     from robobt.match.scenario.scenario import Scenario
     from robobt.models.card import ModelCard
     from robobt.sim import SimSettings
-    from robobt.skills.tactics.settings import TacticsSettings
+    from robobt.skills.tactics_settings import TacticsSettings
     from robobt.tournament.entrants import EntrantFile
 
     roots = {

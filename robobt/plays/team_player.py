@@ -34,9 +34,9 @@ from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
 from robobt.skills.tactics.choose_kick import ChooseKick
 from robobt.skills.tactics.receive_pass import ReceivePass
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.skills.tactics.take_place import TakePlace
 from robobt.skills.tactics.task_switch import TaskSwitch
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, Inverter, Sequence
 

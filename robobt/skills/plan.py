@@ -10,7 +10,7 @@ import numpy as np
 
 from robobt.motion.ball_watch import BallWatch
 from robobt.skills.aims import Pass
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings, applied
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.world.ball_model import BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
@@ -52,7 +52,7 @@ class Plan:
         players: numbers of the field players that take part.
         without: what the team does without.
         tactics: what it weighs, and how.
-        numbers: of :func:`~robobt.skills.tactics.settings.applied`, for the present field and ball.
+        numbers: of :func:`~robobt.skills.tactics_settings.applied`, for the present field and ball.
         tasks: of every player.
         places: where each of them is to stand that has no other aim [m].
         marks: which opponent each marker marks.

@@ -16,7 +16,7 @@ from robobt.sim.records import COMMAND
 from robobt.skills.plan import Task
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
-from robobt.skills.tactics.settings import TacticsSettings
+from robobt.skills.tactics_settings import TacticsSettings
 from robobt.world import DIVISION_B, RobotLimits
 from robobt.world.geometry import FloatArray
 from tests.skills.fixed_world import frame, robot

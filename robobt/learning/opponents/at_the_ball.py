@@ -37,7 +37,7 @@ from robobt.skills.ball.pick_up_ball import PickUpBall, creeping
 from robobt.skills.ball.settle_ball import SettleBall, Settling, is_settled
 from robobt.skills.conditions.carried_far import way_carried
 from robobt.skills.tactics.receive_pass import ReceivePass
-from robobt.skills.tactics.settings import AppliedTactics
+from robobt.skills.tactics_settings import AppliedTactics
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, record_dtype
 from robobt.world.geometry import FloatArray, direction

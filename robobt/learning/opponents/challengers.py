@@ -17,7 +17,7 @@ from robobt.motion.scene import BALL_GAP, scene_of, trip_of
 from robobt.skills.base import heading_thereabouts
 from robobt.skills.defence.wall import wall_place
 from robobt.skills.tactics.attacker import NOBODY, choose_attacker, may_be_attacked
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings, applied
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import hypot, inf
 
-from robobt.skills.restarts.kicker import follow_restart
+from robobt.skills.kicker import follow_restart
 from robobt.skills.store import TeamStore
 from robobt.world.game import Restart
 from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_area, owner

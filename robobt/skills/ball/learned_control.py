@@ -17,7 +17,7 @@ from robobt.models.file import ModelError, ModelFile, UnknownModelError
 from robobt.models.find import find_model, read_fitting_model
 from robobt.models.policy import load_policy
 from robobt.motion.dribbling import carry
-from robobt.skills.restarts.kicker import has_kicked
+from robobt.skills.kicker import has_kicked
 from robobt.skills.store import TeamStore
 from robobt.tree import Registry
 from robobt.tree.by_name import ByName

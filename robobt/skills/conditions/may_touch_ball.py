@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robobt.skills.base import Condition, skill
-from robobt.skills.restarts.kicker import follow_restart
+from robobt.skills.kicker import follow_restart
 from robobt.tree import Status
 
 

@@ -11,8 +11,8 @@ from math import hypot, inf
 import numpy as np
 
 from robobt.motion.arrival import arrival_times, meetings
+from robobt.skills.kicker import follow_restart
 from robobt.skills.plan import Plan, Task
-from robobt.skills.restarts.kicker import follow_restart
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import assign
 from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker, may_be_attacked

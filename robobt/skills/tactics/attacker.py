@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-from robobt.skills.tactics.settings import TACTICS, AppliedTactics
+from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import FloatArray, compiled, record_dtype
 from robobt.world.rules import in_area
 
@@ -60,7 +60,7 @@ def choose_attacker(
         before: row of who went for it last, :data:`NOBODY` without one.
         attacking_for: how long that robot has done so [s].
         restart: whether a restart is to be taken.
-        numbers: of :func:`~robobt.skills.tactics.settings.applied`.
+        numbers: of :func:`~robobt.skills.tactics_settings.applied`.
 
     Returns:
         Its row; ``NOBODY`` where no robot may.

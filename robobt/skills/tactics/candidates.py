@@ -20,7 +20,7 @@ from robobt.skills.tactics.lanes import (
     flight_time,
     kick_speed,
 )
-from robobt.skills.tactics.settings import TACTICS, AppliedTactics
+from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray
 from robobt.world.state import Frame, RobotState

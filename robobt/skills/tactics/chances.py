@@ -18,7 +18,7 @@ from robobt.skills.tactics.lanes import (
     sigmoid,
     time_to_pass,
 )
-from robobt.skills.tactics.settings import TACTICS, AppliedTactics
+from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import MOVER_SIZE
@@ -196,7 +196,7 @@ def rate_points(
     """Rate passes from (ox, oy) to every point: (G, 2), chance to arrive and worth there.
 
     ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m]; ``numbers`` are those of
-    :func:`~robobt.skills.tactics.settings.applied`.
+    :func:`~robobt.skills.tactics_settings.applied`.
     """
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     out = np.empty((len(points), 2))

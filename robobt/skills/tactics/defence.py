@@ -6,7 +6,7 @@ from collections.abc import Collection
 from math import hypot
 
 from robobt.skills.defence.wall import wall_place
-from robobt.skills.tactics.settings import TacticsSettings
+from robobt.skills.tactics_settings import TacticsSettings
 from robobt.world.geometry import Point
 from robobt.world.rules import owner
 from robobt.world.state import Frame, RobotId, RobotState

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import exp, hypot, inf, sqrt
 
-from robobt.skills.tactics.settings import AppliedTactics
+from robobt.skills.tactics_settings import AppliedTactics
 from robobt.world import ball_model
 from robobt.world.ball_model import time_for
 from robobt.world.compiled import compiled

@@ -10,7 +10,7 @@ import numpy as np
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
-from robobt.skills.tactics.settings import TacticsSettings
+from robobt.skills.tactics_settings import TacticsSettings
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Restart
 from robobt.world.geometry import FloatArray, Point, distance

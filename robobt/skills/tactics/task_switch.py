@@ -10,7 +10,7 @@ from py_trees.behaviour import Behaviour
 from robobt.skills.plan import Omitted, Task
 from robobt.skills.store import Store
 from robobt.skills.tactics.agree import agree
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TacticsSettings
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
 from robobt.world.game import Restart

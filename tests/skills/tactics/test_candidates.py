@@ -7,7 +7,7 @@ from robobt.skills.plan import Omitted
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
-from robobt.skills.tactics.settings import DEFAULT_TACTICS
+from robobt.skills.tactics_settings import DEFAULT_TACTICS
 from robobt.world import DIVISION_B, GameState, RobotState, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area

@@ -14,7 +14,7 @@ from robobt.skills.tactics.chances import (
     redirect_kick,
     shot_chance,
 )
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import FloatArray, wrap_angle

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.tactics.defence import threats
-from robobt.skills.tactics.settings import DEFAULT_TACTICS
+from robobt.skills.tactics_settings import DEFAULT_TACTICS
 from robobt.world import RobotState
 from tests.skills.fixed_world import frame, robot
 

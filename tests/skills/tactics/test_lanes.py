@@ -17,7 +17,7 @@ from robobt.skills.tactics.lanes import (
     lane_margin,
     time_to_pass,
 )
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.records import MOVER_SIZE, movers

@@ -7,8 +7,8 @@ import pytest
 from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.changes import changed, with_team
 from robobt.skills import Stop
-from robobt.skills.tactics.settings import DEFAULT_TACTICS, TACTICS, TacticsSettings, applied
 from robobt.skills.tactics.task_switch import TaskSwitch
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, TacticsSettings, applied
 from robobt.tournament.sweeps.vary import SweepError, read_varied
 from robobt.world import DIVISION_B, RobotState, Team
 from robobt.world.ball_model import DEFAULT_BALL
