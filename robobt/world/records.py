@@ -178,8 +178,16 @@ def movers(robots: Iterable[RobotState]) -> FloatArray:
     row: list[float] = []
     for robot in robots:
         limits = robot.limits
-        row += (robot.x, robot.y, robot.vx, robot.vy)
-        row += (limits.max_speed, limits.acceleration, limits.braking, robot.id)
+        row += (
+            robot.x,
+            robot.y,
+            robot.vx,
+            robot.vy,
+            limits.max_speed,
+            limits.acceleration,
+            limits.braking,
+            robot.id,
+        )
     # From one list, for numpy takes twice as long over a list of rows.
     return np.array(row, dtype=np.float64).reshape(-1, MOVER_SIZE)
 
