@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Annotated, Literal, TypeAlias
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.go_to_ball import GoToBall, GoToBallPolicy
 from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.learned_control import policies_by_name
 from robobt.skills.ball.pick_up_ball import PickUpBall
-from robobt.skills.ball.shoot import Shoot
+from robobt.skills.ball.shoot import POLICIES, Policy, Shoot
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.tree import Behaviour
+from robobt.tree.parameters import formerly
+
+_Shot: TypeAlias = Annotated[
+    str | Mapping[str, object] | Policy, policies_by_name(POLICIES, "kick_to_target")
+]
 
 
+@formerly(shoot_model="shoot: MODEL")
 @PLAYS.register("go_to_ball_and_shoot")
 def go_to_ball_and_shoot(
     *,
     style: Literal["default", "robobulls"] = "default",
     policy: GoToBallPolicy = "geometric",
-    shoot: Literal["kick_to_target", "geometric", "ddpg"] = "kick_to_target",
-    shoot_model: str = "ddpg",
+    shoot: _Shot = "kick_to_target",
     pickup_speed: float | None = 0.5,
     rater: Rater = "segment_clearance",
 ) -> Behaviour:
@@ -39,22 +46,20 @@ def go_to_ball_and_shoot(
             baseline, whose kick includes the way behind the ball.
         policy: what decides the approach in the default style: "geometric", "ddpg",
             or the name or file of a model for GoToBall; as ``{name: NAME, SETTING: VALUE}`` with settings.
-        shoot: what shoots in the default style: KickToTarget at the rater's choice, or
-            Shoot with its hand-written or its learned policy.
-        shoot_model: the learned policy of Shoot: "ddpg", or the name or file of a model.
+        shoot: what shoots in the default style: "kick_to_target" is KickToTarget at the rater's choice, and
+            a policy is Shoot's: "geometric", which takes the rater's choice too, "ddpg", or the name or
+            file of a model.
         pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for
             as fast as the robot's dribbler takes it, for approaches that arrive at speed.
         rater: the shot rater that chooses the point to shoot at, by name or with settings.
     """
     if style == "robobulls":
         return when("go to ball and shoot", SelectShot(rater=rater), KickToTarget(style="robobulls"))
-    if shoot == "ddpg":
-        shot: list[Behaviour] = [Shoot(policy=shoot_model)]
-    else:
-        shot = [SelectShot(rater=rater), Shoot() if shoot == "geometric" else KickToTarget()]
+    kick = KickToTarget() if shoot == "kick_to_target" else Shoot(policy=shoot)
+    aim = () if isinstance(kick, Shoot) and kick.learned else (SelectShot(rater=rater),)
     return first_of(
         "go to ball and shoot",
-        when("shoot", HasBall(), *shot),
+        when("shoot", HasBall(), *aim, kick),
         when(
             "get the ball", GoToBall(policy=policy, approach="behind_target"), PickUpBall(speed=pickup_speed)
         ),

@@ -9,7 +9,7 @@ from typing import Literal
 import pytest
 
 from robobt.plays import go_to_ball_and_shoot
-from robobt.skills import GoToBall, KickToTarget, Shoot
+from robobt.skills import GoToBall, KickToTarget, SelectShot, Shoot
 from robobt.tree import preorder
 from tests.models.made_models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
 from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
@@ -53,9 +53,20 @@ def test_a_word_swaps_a_part() -> None:
     assert parts(policy="ddpg", shoot="ddpg") == [("Shoot", "ddpg"), ("GoToBall", "ddpg")]
 
 
+def test_a_shot_is_selected_unless_a_trained_policy_aims() -> None:
+    for shoot, selected in (
+        ("kick_to_target", True),
+        ("geometric", True),
+        ({"name": "geometric", "kick_speed": 5.0}, True),
+        ("ddpg", False),
+    ):
+        nodes = preorder(go_to_ball_and_shoot(shoot=shoot))  # type: ignore[arg-type]
+        assert any(isinstance(node, SelectShot) for node in nodes) is selected
+
+
 def test_models_of_ones_own_take_the_place_of_the_shipped_ones(shipped: Path) -> None:
     own = str(shipped / "shoot_ddpg.pt")
-    tree = go_to_ball_and_shoot(policy=str(shipped / "go_to_ball_ddpg.pt"), shoot="ddpg", shoot_model=own)
+    tree = go_to_ball_and_shoot(policy=str(shipped / "go_to_ball_ddpg.pt"), shoot=own)
     assert [node.policy for node in preorder(tree) if isinstance(node, Shoot)] == [own]
 
 

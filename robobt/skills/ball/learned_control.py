@@ -214,9 +214,10 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
     return partial(team_view_of, mates=places[0], opponents=places[1], told=places[2])
 
 
-def policies_by_name(registry: Registry[Callable[..., object]]) -> ByName:
-    """Return what reads the policies of a skill by name; what is no policy of its registry may be a model."""
-    return ByName(registry, others=_may_be_model, also="models go by name or file (robobt models)")
+def policies_by_name(registry: Registry[Callable[..., object]], *besides: str) -> ByName:
+    """Return what reads the policies of a skill by name; other names are ``besides`` or those of models."""
+    also = "".join([f"{name}, and " for name in besides]) + "models by name or file (robobt models)"
+    return ByName(registry, others=lambda name: name in besides or _may_be_model(name), also=f"also {also}")
 
 
 def _may_be_model(name: str) -> bool:

@@ -68,6 +68,11 @@ class Shoot(Skill):
         super().__post_init__()
         self._decide = find_policy(self.policy, _BY_NAME, LearnedShot)
 
+    @property
+    def learned(self) -> bool:
+        """Return whether a trained policy decides, which aims by itself."""
+        return isinstance(self._decide, LearnedShot)
+
     def on_start(self) -> None:
         """Forget the last shot."""
         self._kicked = False
