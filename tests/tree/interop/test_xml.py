@@ -352,6 +352,22 @@ def test_values_of_all_kinds_are_read(attributes: str, expected: Behaviour) -> N
     assert tree_differences(root, expected, PLAY_VOCABULARY) == []
 
 
+@pytest.mark.parametrize(
+    ("attribute", "problem"),
+    [
+        (
+            'rater="gausian"',
+            "rater of <SelectShot>: no shot rater is called 'gausian'; .*did you mean gaussian",
+        ),
+        ("""rater='json:{"name": "gaussian", "spaceing": 1}'""", "rater.spaceing of .*did you mean spacing"),
+        ('tolerance="0.3"', "no attribute tolerance; write rater: {name: segment_clearance, tolerance: ...}"),
+    ],
+)
+def test_what_is_wrong_with_a_rater_is_named(attribute: str, problem: str) -> None:
+    with pytest.raises(TreeFileError, match=problem):
+        tree(f"<SelectShot {attribute}/>", vocabulary=PLAY_VOCABULARY)
+
+
 @pytest.mark.integration
 @pytest.mark.parametrize(
     "root",
